@@ -1,0 +1,109 @@
+r"""A piston that follows a given pressure, as a parcel follows that of the air around it.
+
+Every interval the ceiling gets the velocity
+
+.. math:: u = h \left[ S / \gamma + \ln(p / p_{env}) / (20 \tau) \right], \quad S = -d \ln p_{env} / dt,
+
+the first term being what an adiabat asks for, the second what closes the gap that is left. Between, it moves evenly.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engine.refusal import RefusedError
+
+__all__ = ["FollowPressure"]
+
+
+class FollowPressure:
+    """Let the ceiling give way so that the pressure follows a schedule.
+
+    The pressure is p = n (kT + w / 3 N), the virial theorem. Here kT comes from all the energy, translation and rotation, that the ledger
+    holds, and so has no noise at fixed volume; n counts the volume open to centres; and w, the virial of contacts per unit time, is
+    averaged over the relaxation. With it the adiabat is T ~ p^(2/7) to second order in the packing fraction; without, it
+    is not even to first.
+
+    Parameters
+    ----------
+    time : (corner,)
+        Times [time], increasing.
+    pressure : (corner,)
+        The pressure to follow at these times, > 0 [energy/length^3]; its logarithm is linear between them.
+    mean_free_time
+        tau of the gas at the start [time].
+    interval
+        How long the piston keeps one velocity, in tau.
+    relaxation
+        In how many tau a gap of pressure is closed.
+
+    Raises
+    ------
+    RefusedError
+        If times do not increase, or a pressure is not above 0.
+
+    Examples
+    --------
+    >>> follow = FollowPressure([0.0, 10.0], [1.0, 0.5], mean_free_time=1.0)
+    >>> round(follow.log_pressure(5.0), 6), round(math.log(math.sqrt(0.5)), 6)
+    (-0.346574, -0.346574)
+    """
+
+    def __init__(
+        self,
+        time: Sequence[float],
+        pressure: Sequence[float],
+        *,
+        mean_free_time: float,
+        interval: float = 0.25,
+        relaxation: float = 20.0,
+    ) -> None:
+        self._time = np.asarray(time, np.float64)
+        values = np.asarray(pressure, np.float64)
+        if self._time.shape != values.shape or self._time.ndim != 1 or self._time.size < 1:
+            raise RefusedError("give as many times as pressures, at least one")
+        if not (np.diff(self._time) > 0.0).all():
+            raise RefusedError("the times of a pressure schedule must increase")
+        if not (np.isfinite(values).all() and (values > 0.0).all()):
+            raise RefusedError("every pressure of a schedule must be finite and above 0")
+        if not (math.isfinite(mean_free_time) and mean_free_time > 0.0):
+            raise RefusedError(f"mean_free_time = {mean_free_time} must be finite and above 0")
+        self._log = np.log(values)
+        self._relaxation = relaxation * mean_free_time
+        self.interval = interval * mean_free_time
+        self._virial = 0.0
+        self._virial_rate = math.nan
+
+    def log_pressure(self, time: float) -> float:
+        """Return the logarithm of the pressure to follow at a time [time]."""
+        return float(np.interp(time, self._time, self._log))
+
+    def pressure(self, parcel: ParcelSet) -> float:
+        """Return the pressure of the parcel [energy/length^3]."""
+        kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
+        contacts = self._virial_rate if math.isfinite(self._virial_rate) else 0.0
+        density = parcel.open_density
+        return density * (kT + contacts / (3.0 * max(parcel.number, 1)))
+
+    def _average_virial(self, parcel: ParcelSet) -> None:
+        """Average the virial of contacts per unit time over the last relaxation time."""
+        now = float(parcel.virial.sum())
+        rate = (now - self._virial) / self.interval
+        self._virial = now
+        if parcel.time == 0.0:
+            return
+        share = min(self.interval / self._relaxation, 1.0)
+        self._virial_rate = rate if math.isnan(self._virial_rate) else self._virial_rate + share * (rate - self._virial_rate)
+
+    def velocity(self, parcel: ParcelSet) -> float:
+        """Return the velocity [length/time] of the ceiling for the next interval."""
+        freedom = parcel.degrees_of_freedom
+        self._average_virial(parcel)
+        pressure = self.pressure(parcel)
+        now = parcel.time
+        wanted = self.log_pressure(now)
+        fall = (wanted - self.log_pressure(now + self.interval)) / self.interval
+        gamma = (freedom + 2.0) / freedom
+        return parcel.ceiling * (fall / gamma + (math.log(pressure) - wanted) / self._relaxation)

@@ -1,0 +1,24 @@
+"""What the engine refuses or cannot do. Each subclasses a builtin and carries one sentence.
+
+::
+
+    ValueError
+     +-- RefusedError     a number that no box can have: its name, its value, what is allowed
+          +-- PackingError   molecules that do not fit
+    RuntimeError
+     +-- StalledError     time no longer advances
+"""
+
+__all__ = ["PackingError", "RefusedError", "StalledError"]
+
+
+class RefusedError(ValueError):
+    """An input that the engine refuses."""
+
+
+class PackingError(RefusedError):
+    """So many or so large molecules that they do not fit into the box."""
+
+
+class StalledError(RuntimeError):
+    """Events pile up without end in a vanishing time."""

@@ -1,0 +1,149 @@
+"""What the engine knows of its molecules: NamedTuples of arrays, and nothing else.
+
+Everything is in reduced units: the caller chooses a length, a mass and an energy, and time follows as
+length * sqrt(mass / energy). ``kT`` is an energy; the engine knows no kelvin.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+__all__ = [
+    "EVENT",
+    "KIND",
+    "MOLECULE",
+    "Box",
+    "Calendar",
+    "Cells",
+    "Kinds",
+    "Tallies",
+    "Walls",
+    "aligned_records",
+]
+
+MOLECULE = np.dtype(
+    [("x", "f8"), ("y", "f8"), ("z", "f8"), ("vx", "f8"), ("vy", "f8"), ("vz", "f8"), ("clock", "f8"), ("count", "u4"), ("kind", "u4")]
+)
+"""One molecule, one 64-byte line of memory: its centre [length] and velocity [length/time] *at the time of its clock* [time],
+how many encounters it has had, and its kind (a row of `Kinds`). Only an encounter writes it."""
+
+EVENT = np.dtype(
+    {
+        "names": ["contact_time", "partner", "partner_count", "slot_x", "slot_y", "slot_z", "what"],
+        "formats": ["f8", "u4", "u4", "u2", "u2", "u2", "u2"],
+        "itemsize": 32,
+    }
+)
+"""What lies ahead of one molecule: its next contact [time], with whom, how many encounters the partner had had when that was
+predicted (if it has had more since, the prediction is stale), where it stands among the cells (`cells`), and which of
+contact, crossing or wall comes first."""
+
+KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size", "i8")])
+"""A kind of molecule: mass [mass], radius [length], rotational degrees of freedom, row of the table of cell boundaries."""
+
+
+class Box(NamedTuple):
+    """The box [length], gravity along -z [length/time^2]; ``inverse_*`` is 1/length on a periodic axis and 0 on a walled one."""
+
+    length_x: float
+    length_y: float
+    length_z: float
+    inverse_x: float
+    inverse_y: float
+    inverse_z: float
+    gravity: float
+    planar: bool
+    exchange: float
+    stall: float
+
+
+class Kinds(NamedTuple):
+    """The kinds of molecule: ``table : (kind,)`` of `KIND`, and ``rotational_energy : (molecule,)`` [energy] where molecules rotate."""
+
+    table: Any
+    rotational_energy: Any
+
+
+class Cells(NamedTuple):
+    """Which molecules stand where.
+
+    ``row : (cell * stride,)``: each cell's number of molecules, then their indices. ``boundary : (size, axis, slot)``
+    [length], ``first`` and ``span : (size, axis, slot)``: the first cell, and the number of cells, that a sphere of that
+    size overlaps when its centre lies between ``boundary[slot]`` and ``boundary[slot + 1]``. ``slot : (molecule, 3)`` is a
+    view into the events. ``last_slot_*`` is the number of slots less one.
+    """
+
+    row: Any
+    stride: int
+    boundary: Any
+    first: Any
+    span: Any
+    slot: Any
+    number_x: int
+    number_y: int
+    number_z: int
+    last_slot_x: int
+    last_slot_y: int
+    last_slot_z: int
+
+
+class Calendar(NamedTuple):
+    """A tournament of next events: see `calendar`."""
+
+    time: Any
+    winner: Any
+    leaf: int
+    node: int
+    depth: int
+
+
+class Walls(NamedTuple):
+    """The six walls, in the order x low, x high, y low, y high, z low, z high.
+
+    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, their temperatures as polygons in time: wall w has the
+    points ``schedule[w] <= k < schedule[w + 1]`` of ``schedule_time`` [time] and ``schedule_kT`` [energy]. ``piston`` holds the
+    ceiling's position [length] and velocity at a time [time]: (position, velocity, time). ``epoch`` is the time at
+    which all clocks read zero.
+    """
+
+    law: Any
+    accommodation: Any
+    schedule: Any
+    schedule_time: Any
+    schedule_kT: Any
+    piston: Any
+    epoch: Any
+
+
+class Tallies(NamedTuple):
+    """What has been counted since the start.
+
+    ``count : (5,)`` contacts, cells entered, cells left, stale predictions, wall hits; ``impulse``, ``heat``, ``hits``,
+    ``work : (wall,)`` [momentum, energy, 1, energy]: what each wall took up as normal impulse (outward), gave as heat, how
+    often it was hit, what it did as work; ``virial : (layer,)`` [energy]: sum of r . dp over contacts by height;
+    ``layer_scale`` [1/length]; ``random : (1,)`` state of the random numbers; ``progress : (2,)`` a time [time], and the events
+    since: many in no time are a pile-up.
+    """
+
+    count: Any
+    impulse: Any
+    heat: Any
+    hits: Any
+    work: Any
+    virial: Any
+    layer_scale: float
+    random: Any
+    progress: Any
+
+
+def aligned_records(number: int, dtype: np.dtype[Any]) -> Any:
+    """Return a zeroed record array that starts on a cache line.
+
+    Examples
+    --------
+    >>> aligned_records(3, MOLECULE).ctypes.data % 64
+    0
+    """
+    buffer = np.zeros(number * dtype.itemsize + 64, np.uint8)
+    start = -buffer.ctypes.data % 64
+    return buffer[start : start + number * dtype.itemsize].view(dtype).view(np.recarray)

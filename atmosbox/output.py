@@ -1,0 +1,509 @@
+"""Datasets to netCDF files and back, with the provenance from which a run can be repeated.
+
+A file appears under its name only when it is whole: it is built in memory, written beside its place under a
+hidden name, flushed to the disk and then renamed. While a run goes on, a `Checkpoint` keeps what there is so
+far in ``NAME.part.nc`` in the same way, so that a run that is killed leaves a file that opens.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import glob
+import json
+import os
+import shlex
+import shutil
+import time
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import netCDF4
+import xarray as xr
+
+from atmosbox import __version__
+from atmosbox.errors import DiskFullError, FileError, SettingError, shown
+
+__all__ = [
+    "FORMAT",
+    "Checkpoint",
+    "check_writable",
+    "global_attributes",
+    "history_line",
+    "parameters",
+    "part_path",
+    "read",
+    "write",
+]
+
+FORMAT = 1
+"""The version of the layout of the files, in the attribute ``atmosbox_format``."""
+LONGEST_NAME = 200  # bytes; file systems allow 255, and the hidden name is longer than the file's own
+SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
+LEFT_OVER = 3600.0  # seconds after which a hidden file can only be that of a run that was killed
+SHARE = 0.05  # of a run's time, which its checkpoints may take
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+AnyPath: TypeAlias = str | os.PathLike[str]
+
+
+def _moment() -> str:
+    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that a file can come out the same every time."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    try:
+        moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+    except (ValueError, OverflowError, OSError):
+        problem, fix = "is not a number of seconds since 1970", "type unset SOURCE_DATE_EPOCH"
+        raise SettingError("SOURCE_DATE_EPOCH", epoch, problem, fix) from None
+    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def history_line(command: str | Sequence[str]) -> str:
+    """Return the line that a step adds to a file's history: the time in UTC and the command.
+
+    Parameters
+    ----------
+    command
+        The command as typed, or its words.
+
+    Returns
+    -------
+    str
+        For example ``2026-11-21T11:18:00Z: atmosbox run lifting-dry --seed 7``.
+
+    Raises
+    ------
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> history_line(["atmosbox", "plot", "my run.nc"]).partition(": ")[2]
+    "atmosbox plot 'my run.nc'"
+    """
+    return f"{_moment()}: {command if isinstance(command, str) else shlex.join(command)}"
+
+
+def global_attributes(
+    parameters: Mapping[str, Any],
+    *,
+    title: str,
+    command: str | Sequence[str],
+    comment: str = "",
+    references: str = "",
+    panels: str = "[]",
+    status: str = "complete",
+) -> dict[str, Any]:
+    """Return what a file says about itself: what it is, where it comes from and how to repeat it.
+
+    Parameters
+    ----------
+    parameters
+        Everything that makes the run, as JSON can hold it: ``scene``, ``settings``, ``engine``, ``version``.
+    title
+        What the file holds, in a line.
+    command
+        The command that made it, as typed, or its words.
+    comment
+        The assumptions of the scene.
+    references
+        What the scene is built on.
+    panels
+        The scene's figure, as JSON.
+    status
+        ``complete``, ``partial`` or ``interrupted``.
+
+    Returns
+    -------
+    dict
+        The global attributes by their names.
+
+    Raises
+    ------
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> made = global_attributes(
+    ...     {"scene": "temperature", "engine": "exact"}, title="A box", command="atmosbox run temperature"
+    ... )
+    >>> made["Conventions"], made["atmosbox_parameters"]
+    ('CF-1.11', '{"scene": "temperature", "engine": "exact"}')
+    """
+    version = str(parameters.get("version", __version__))
+    engine = parameters.get("engine")
+    attributes: dict[str, Any] = {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "institution": "not stated; a simulation for teaching",
+        "source": f"atmosbox {version}, colliding hard spheres" + (f", {engine} engine" if engine else ""),
+        "history": history_line(command),
+        "references": references,
+        "comment": comment,
+        "license": "CC0-1.0",
+        "date_created": _moment(),
+        "product_version": version,
+        "atmosbox_format": FORMAT,
+        "atmosbox_status": status,
+        "atmosbox_parameters": json.dumps(dict(parameters), allow_nan=False),
+        "atmosbox_panels": panels,
+    }
+    return {name: value for name, value in attributes.items() if value != ""}
+
+
+def check_writable(path: AnyPath, force: bool = False) -> Path:
+    """Refuse a place where a file cannot be written, before a run is spent on it; write nothing.
+
+    Parameters
+    ----------
+    path
+        The file that is to be written.
+    force
+        Whether it may replace a file.
+
+    Returns
+    -------
+    pathlib.Path
+        The file to write: `path`, or what it points to if it is a symbolic link.
+
+    Raises
+    ------
+    FileError
+        If the folder is missing or may not be written to, if the name is too long or a folder's, or if there
+        is a file already and `force` is not given.
+    DiskFullError
+        If not even a small file has room.
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> check_writable("no/such/folder/run.nc")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The folder no/such/folder does not exist: type mkdir -p no/such/folder first.
+    """
+    target = Path(os.path.realpath(path) if os.path.islink(path) else path)
+    folder = target.parent
+    if os.path.isdir(target):
+        raise FileError(f"{target} is a folder: give a file in it, such as --out {target / 'run.nc'}.")
+    if len(os.fsencode(target.name)) > LONGEST_NAME:
+        raise FileError(f"The name {shown(target.name)} is too long: give a shorter one with --out.")
+    if not os.path.lexists(folder):
+        words = shlex.quote(str(folder))
+        raise FileError(f"The folder {words} does not exist: type mkdir -p {words} first.")
+    if not os.path.isdir(folder):
+        raise FileError(f"{folder} is a file, not a folder: give another place with --out.")
+    if os.path.exists(target) and not os.path.isfile(target):
+        raise FileError(f"{target} is a device, not a file: give another name with --out.")
+    if os.path.exists(target) and not force:
+        raise FileError(f"{target} exists already: add --force to replace it, or name another file by --out.")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise FileError(f"Nothing may be written to the folder {folder}: give another place with --out.")
+    if shutil.disk_usage(folder).free < SMALLEST_FILE:
+        raise _failure(OSError(errno.ENOSPC, ""), target)
+    _moment()
+    return target
+
+
+def _failure(error: OSError, path: Path) -> FileError:
+    """Return the refusal that a failure to write a file amounts to."""
+    if error.errno in NO_ROOM:
+        kept = ", which stays as it was" if path.exists() else ""
+        return DiskFullError(
+            f"The disk has no room for {path}{kept}: delete something, or give another --out."
+        )
+    return FileError(
+        f"{path} could not be written ({error.strerror or error}): give another place with --out."
+    )
+
+
+def _image(dataset: xr.Dataset) -> memoryview:
+    """Return the bytes of the netCDF file of a dataset.
+
+    The file is built in memory, because HDF5 reports a full disk as a lack of permission or as nothing in
+    particular, and keeps hold of the broken file.
+    """
+    if "atmosbox_parameters" not in dataset.attrs:
+        raise KeyError("a dataset without the attribute atmosbox_parameters could not be read again")
+    whole = dataset.copy()
+    for variable in whole.variables.values():
+        variable.encoding.setdefault("_FillValue", None)
+    return whole.to_netcdf(engine="netcdf4", format="NETCDF4")
+
+
+def _replace(path: Path, dataset: xr.Dataset) -> None:
+    """Put a dataset in the place of a file, whole or not at all."""
+    with contextlib.suppress(OSError):
+        for old in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
+            if time.time() - old.stat().st_mtime > LEFT_OVER:
+                old.unlink()
+    hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        image = _image(dataset)
+        with open(hidden, "wb") as file:
+            file.write(image)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(hidden, path)
+    except OSError as error:
+        raise _failure(error, path) from error
+    finally:
+        hidden.unlink(missing_ok=True)
+
+
+def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
+    """Write a dataset to a netCDF file that is there whole or not at all.
+
+    Parameters
+    ----------
+    dataset
+        What `atmosbox.diagnostics.dataset` made, with the attributes of `global_attributes`.
+    path
+        The file.
+    force
+        Whether it may replace a file.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written there, for one of the reasons of `check_writable`.
+    DiskFullError
+        If the disk is full; no part of the file is left behind.
+    KeyError
+        If the dataset lacks the attribute ``atmosbox_parameters``.
+
+    Examples
+    --------
+    >>> import tempfile, xarray
+    >>> attributes = global_attributes({"scene": "temperature"}, title="A box", command="a test")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read(write(xarray.Dataset(attrs=attributes), f"{folder}/run.nc")).title
+    'A box'
+    """
+    target = check_writable(path, force)
+    _replace(target, dataset)
+    return target
+
+
+def part_path(path: AnyPath) -> Path:
+    """Return where a run that is to be written to a file keeps what it has so far.
+
+    Examples
+    --------
+    >>> str(part_path("run.nc"))
+    'run.part.nc'
+    """
+    whole = Path(path)
+    return whole.with_name(f"{whole.stem}.part{whole.suffix}")
+
+
+class Checkpoint:
+    """The file of a run that is not finished: call it after every frame, it writes now and then.
+
+    It writes the whole dataset so far to `part`, at most every so many seconds and so seldom that writing
+    takes less than a twentieth of the run's time. The part of an earlier run that was killed is replaced.
+
+    Parameters
+    ----------
+    path
+        The file that the finished run will have.
+    every_seconds
+        The shortest time between two writings [s].
+    force
+        Whether the finished run may replace a file.
+    clock
+        What tells the time [s].
+
+    Attributes
+    ----------
+    path, part
+        The file of the finished run, and the one of the run so far.
+    stale
+        Whether an earlier run left a part there, which the first writing will replace.
+
+    Raises
+    ------
+    FileError
+        If the file could not be written there, for one of the reasons of `check_writable`.
+
+    Examples
+    --------
+    >>> import tempfile, xarray
+    >>> so_far = xarray.Dataset(attrs=global_attributes({}, title="Half a box", command="a test"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     checkpoint = Checkpoint(f"{folder}/run.nc", every_seconds=0.0)
+    ...     checkpoint(lambda: so_far), read(checkpoint.part).title, checkpoint.finish(so_far).name
+    (True, 'Half a box', 'run.nc')
+    """
+
+    def __init__(
+        self,
+        path: AnyPath,
+        every_seconds: float = 2.0,
+        *,
+        force: bool = False,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.path = check_writable(path, force)
+        self.part = part_path(self.path)
+        self.stale = check_writable(self.part, force=True).exists()
+        self._force = force
+        self._every = every_seconds
+        self._clock = clock
+        self._begun = self._written = clock()
+        self._spent = self._last = 0.0
+        self._saved = False
+
+    def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
+        """Write the run so far if it is time to, and return whether it was.
+
+        Parameters
+        ----------
+        make_dataset
+            Makes the dataset of the run so far; called only if it is to be written.
+
+        Raises
+        ------
+        DiskFullError
+            If the disk is full; what was written before is kept.
+        FileError
+            If the file cannot be written any more.
+        """
+        now = self._clock()
+        expected = self._spent + 1.5 * self._last  # the file has grown since
+        if now - self._written < self._every or expected > SHARE * (now - self._begun):
+            return False
+        self.save(make_dataset())
+        self._written = self._clock()
+        self._last = self._written - now
+        self._spent += self._last
+        return True
+
+    def save(self, dataset: xr.Dataset) -> Path:
+        """Write the run so far at once, for instance when it is interrupted, and return where it is."""
+        _replace(self.part, dataset)
+        self._saved = True
+        return self.part
+
+    def finish(self, dataset: xr.Dataset) -> Path:
+        """Write the finished run under its own name, remove the part, and return the file.
+
+        Raises
+        ------
+        DiskFullError
+            If the disk is full; the part that was written before is kept.
+        FileError
+            If a file of that name has appeared meanwhile; the finished run is kept as the part.
+        """
+        self.save(dataset)
+        if self.path.exists() and not self._force:
+            raise FileError(
+                f"{self.path} was made by another program during the run, which is whole in {self.part}: "
+                "move the one or the other to a new name."
+            )
+        try:
+            os.replace(self.part, self.path)
+        except OSError as error:
+            raise _failure(error, self.path) from error
+        return self.path
+
+    def abandon(self) -> None:
+        """Remove the part that this run has written, when nothing of it is worth keeping."""
+        if self._saved:
+            self.part.unlink(missing_ok=True)
+
+
+def read(path: AnyPath) -> xr.Dataset:
+    """Return the run in a file, in memory; the file is closed again.
+
+    Parameters
+    ----------
+    path
+        A file that atmosbox wrote.
+
+    Returns
+    -------
+    xarray.Dataset
+        The run.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, empty, damaged, no netCDF, of another program or of a later atmosbox.
+
+    Examples
+    --------
+    >>> read("no such file.nc")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: no such file.nc does not exist: check the name and the folder.
+    """
+    source = Path(path)
+    fix = "give a file that atmosbox run has written"
+    if os.path.isdir(source):
+        raise FileError(f"{source} is a folder: {fix}.")
+    if not os.path.exists(source):
+        part = part_path(source)
+        hint = f"a run that was stopped left {part}, give that" if os.path.exists(part) else ""
+        raise FileError(f"{source} does not exist: {hint or 'check the name and the folder'}.")
+    if not os.path.isfile(source) or not os.access(source, os.R_OK):
+        raise FileError(f"{source} may not be read: check what ls -l says of it, or {fix}.")
+    if source.stat().st_size == 0:
+        raise FileError(f"{source} is empty: {fix}.")
+    try:
+        with netCDF4.Dataset(source) as file:
+            attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+        if "atmosbox_parameters" not in attributes:
+            raise FileError(f"{source} was written by another program: {fix}.")
+        written = str(attributes.get("atmosbox_format", FORMAT))
+        if written != str(FORMAT):
+            raise FileError(
+                f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}: "
+                "type pip install --upgrade atmosbox."
+            )
+        return xr.load_dataset(source, engine="netcdf4", decode_times=False)
+    except FileError:
+        raise
+    except (OSError, RuntimeError, ValueError) as error:
+        raise FileError(f"{source} is no netCDF file, or a damaged one: {fix}.") from error
+
+
+def parameters(dataset: xr.Dataset) -> dict[str, Any]:
+    """Return everything that made a run, from which it can be repeated.
+
+    Parameters
+    ----------
+    dataset
+        A run.
+
+    Returns
+    -------
+    dict
+        ``scene``, ``settings``, ``engine`` and ``version``, as `global_attributes` was given them.
+
+    Raises
+    ------
+    FileError
+        If the dataset does not say, or says something that is not JSON.
+
+    Examples
+    --------
+    >>> made = global_attributes({"scene": "temperature"}, title="A box", command="a test")
+    >>> parameters(xr.Dataset(attrs=made))
+    {'scene': 'temperature'}
+    """
+    try:
+        found = json.loads(dataset.attrs["atmosbox_parameters"])
+    except (KeyError, TypeError, ValueError):
+        found = None
+    if not isinstance(found, dict):
+        name = dataset.encoding.get("source", "This dataset")
+        raise FileError(f"{name} does not say which run it holds: give a file that atmosbox run has written.")
+    return found

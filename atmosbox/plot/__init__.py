@@ -1,0 +1,16 @@
+"""The figure of a run: from the file to a page or a slide.
+
+Everything comes from the dataset itself: the panels that its scene asked for (attribute ``atmosbox_panels``),
+the variables they name, the headline numbers and the provenance. A figure can therefore be drawn wherever the
+file is, without the scene and without the engine, and drawing it twice gives the same bytes.
+
+Read in this order: `unit` (from SI to what a meteorologist reads), `curve` (from a line of a panel to
+numbers), `draw` and `disc` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
+`layout` (where), `file` (PNG, SVG, PDF).
+"""
+
+from atmosbox.plot.file import FORMATS, save
+from atmosbox.plot.layout import figure
+from atmosbox.plot.theme import THEMES
+
+__all__ = ["FORMATS", "THEMES", "figure", "save"]

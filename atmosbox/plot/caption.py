@@ -1,0 +1,198 @@
+"""What a figure says in numbers and in small type: misfits, and where it comes from."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.errors import FileError
+from atmosbox.panels import Panel
+from atmosbox.plot.curve import read
+from atmosbox.plot.unit import convert, of_difference, power_of_ten, spelled
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")
+
+
+def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[str]]:
+    """Return the sentences in numbers that each panel carries.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, with the attribute ``atmosbox_headlines``, a JSON list of names in order.
+    panels : tuple of Panel
+        The panels. If none of them names a headline, the first that shows curves carries them all.
+
+    Returns
+    -------
+    list of list of str
+        For each panel its sentences. What an interrupted run could not measure is left out.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset({"z": 1.25, "z_theory": 1.0}, attrs={"atmosbox_headlines": '["z"]'})
+    >>> headlines(dataset, (Panel("discs", "The box"),))
+    [['z − theory = +0.25']]
+    """
+    names = _stated(dataset, "atmosbox_headlines", list)
+    chosen = [list(panel.headlines) for panel in panels]
+    if panels and not any(chosen):
+        first = next((i for i, panel in enumerate(panels) if panel.kind != "discs"), 0)
+        chosen[first] = names
+    return [[text for name in each if (text := headline(dataset, name))] for each in chosen]
+
+
+def headline(dataset: xr.Dataset, name: str) -> str:
+    """Return a headline number as a sentence: its misfit where there is a theory, else its value.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run. The number may have NAME_se, its standard error, and NAME_theory beside it. It is called by
+        its attribute ``display_name``, else by ``long_name``, and shown in ``display_units``.
+    name : str
+        Name of the number.
+
+    Returns
+    -------
+    str
+        The sentence; empty if the run has not measured the number.
+
+    Raises
+    ------
+    FileError
+        If the number cannot be shown in its display units.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset({"t": ((), 204.53, {"units": "K", "display_name": "T(300 hPa)"}), "t_se": 0.05})
+    >>> headline(dataset, "t")
+    'T(300 hPa) = 204.53 ± 0.05 K'
+    >>> dataset["t_theory"] = ((), 204.41, {"units": "K", "display_name": "adiabat"})
+    >>> headline(dataset, "t")
+    'T(300 hPa) − adiabat = +0.12 ± 0.05 K'
+    """
+    value = _scalar(dataset, name)
+    if not math.isfinite(value):
+        return ""
+    attrs = read(dataset, name).attrs
+    unit = str(attrs.get("units", "1"))
+    shown = str(attrs.get("display_units", unit))
+    error = _scalar(dataset, f"{name}_se")
+    theory = _scalar(dataset, f"{name}_theory")
+    title = str(attrs.get("display_name") or attrs.get("long_name") or name.replace("_", " "))
+    compared = math.isfinite(theory) and theory != 0.0
+    if compared:
+        value -= theory
+        title = f"{title} − {read(dataset, f'{name}_theory').attrs.get('display_name', 'theory')}"
+        shown = of_difference(shown)
+    value = float(convert(value, unit, shown, name=name, difference=compared))
+    error = float(convert(error, unit, shown, name=name, difference=True))
+    return (
+        f"{title} = {number(value, error, signed=compared)} {'' if shown == '1' else spelled(shown)}".rstrip()
+    )
+
+
+def number(value: float, error: float = math.nan, *, signed: bool = False) -> str:
+    """Return a number with its standard error, in as many digits as the error allows.
+
+    Parameters
+    ----------
+    value, error : float
+        The number and its standard error, NaN for none.
+    signed : bool
+        Whether a plus is written.
+
+    Returns
+    -------
+    str
+        The number.
+
+    Examples
+    --------
+    >>> number(0.1234, 0.0512), number(-3.2e-15, signed=True), number(17.3, 1.26)
+    ('0.12 ± 0.05', '−3.2 × 10⁻¹⁵', '17.3 ± 1.3')
+    """
+    known = math.isfinite(error) and error > 0
+    largest = max(abs(value), error) if known else abs(value)
+    power = 0 if largest == 0 or 1e-3 <= largest < 1e6 else math.floor(math.log10(largest))
+    value, error = value / 10.0**power, error / 10.0**power
+    if known:
+        magnitude = math.floor(math.log10(error))
+        decimals = (1 if error < 2.95 * 10.0**magnitude else 0) - magnitude
+    elif power or not value:
+        decimals = 1 if power else 0
+    else:
+        decimals = 2 - math.floor(math.log10(abs(value)))
+    decimals = max(0, decimals)
+    text = f"{value:{'+' if signed else ''}.{decimals}f}".replace("-", "−")
+    if known:
+        text += f" ± {error:.{decimals}f}"
+    if power:
+        text = f"({text})" if known else text
+        text += f" × {power_of_ten(power)}"
+    return text
+
+
+def footer(dataset: xr.Dataset) -> str:
+    """Return the small type under a figure: version, scene, number of molecules, seed and engine.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, with the attribute ``atmosbox_parameters``.
+
+    Returns
+    -------
+    str
+        What is known of these, and whether the run is incomplete.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> parameters = '{"scene": "atmosphere", "version": "1.0", "settings": {"molecules": 4000, "seed": 7}}'
+    >>> footer(xr.Dataset(attrs={"atmosbox_parameters": parameters}))
+    'atmosbox 1.0 · atmosphere · 4000 molecules · seed 7'
+    """
+    parameters = _stated(dataset, "atmosbox_parameters", dict)
+    settings = parameters.get("settings", {})
+    count = next((settings[name] for name in _COUNTS if name in settings), dataset.sizes.get("molecule"))
+    seed, engine = settings.get("seed"), parameters.get("engine", settings.get("engine"))
+    status = dataset.attrs.get("atmosbox_status", "complete")
+    parts = [
+        f"atmosbox {parameters.get('version', dataset.attrs.get('product_version', ''))}".rstrip(),
+        str(parameters.get("scene", "")),
+        "" if count is None else f"{_grouped(count)} molecules",
+        "" if seed is None else f"seed {seed}",
+        "" if engine is None else f"{engine} engine",
+        "" if status == "complete" else f"{status} run",
+    ]
+    return " · ".join(part for part in parts if part)
+
+
+def _scalar(dataset: xr.Dataset, name: str) -> float:
+    """Return a single number of the file, NaN if it is not there."""
+    return float(read(dataset, name)) if name in dataset.variables else math.nan
+
+
+def _stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
+    """Return what an attribute of the file says as JSON, nothing if the file lacks it."""
+    text = dataset.attrs.get(name)
+    try:
+        found = kind() if text is None else json.loads(text)
+    except (TypeError, ValueError):
+        found = None
+    if not isinstance(found, kind):
+        raise FileError(f"The attribute {name} of the file cannot be read: it was not written by atmosbox.")
+    return found
+
+
+def _grouped(count: float) -> str:
+    """Return a whole number, from five digits on with thin spaces between the thousands."""
+    return f"{int(count):,}".replace(",", "\u2009") if count >= 10000 else f"{int(count)}"

@@ -1,0 +1,234 @@
+"""From a line of a panel to the numbers that are drawn, in the units that are shown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import FileError
+from atmosbox.panels import Line, Panel
+from atmosbox.plot.unit import convert, of_difference
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_AGAIN = "run the scene again with this version of atmosbox"
+
+
+class Curve(NamedTuple):
+    """A curve in the units of its panel: x, y and the standard error of the measured one, or None."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    error: NDArray[np.float64] | None
+
+
+def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a variable of the file, or say that the file lacks it.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    name : str
+        Name of a variable or coordinate; "heat_from_wall[z_low]" is the part of it at the label ``z_low``.
+
+    Returns
+    -------
+    xarray.DataArray
+        The variable.
+
+    Raises
+    ------
+    FileError
+        If the file has no such variable, or none of its values.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> float(read(xr.Dataset({"air_pressure": 101325.0}), "air_pressure"))
+    101325.0
+    """
+    name, _, label = name.rstrip("]").partition("[")
+    if name not in dataset.variables:
+        raise FileError(f"The file has no variable {name!r}, which its figure needs: {_AGAIN}.")
+    variable = dataset[name]
+    if variable.size == 0:
+        raise FileError(
+            f"The file has no values of {name!r}: the run was stopped before its first frame; run it again."
+        )
+    if not label:
+        return variable
+    for dimension in variable.dims:
+        if dimension in dataset.coords:
+            labels = [str(each) for each in np.char.decode(dataset[dimension].values.astype("S"))]
+            if label in labels:
+                return variable.isel({dimension: labels.index(label)})
+    raise FileError(
+        f"The variable {name!r} of the file has no part {label!r}, which its figure needs: {_AGAIN}."
+    )
+
+
+def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
+    """Return a line of a panel as numbers.
+
+    A single number beside a list of values is repeated along it. What a logarithmic axis cannot show is left
+    out (NaN).
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, in SI units.
+    panel : Panel
+        The panel, which says which units are shown.
+    line : Line
+        One of its lines.
+
+    Returns
+    -------
+    Curve
+        Arrays of one length, in the units of the panel.
+
+    Raises
+    ------
+    FileError
+        If a variable is missing, has more than one dimension or another length, or cannot be shown in the
+        panel's units.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset(
+    ...     {"air_temperature": ("elapsed_time", [273.15, 283.15], {"units": "K"})},
+    ...     coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
+    ... )
+    >>> line = Line("elapsed_time", "air_temperature", "air")
+    >>> curve(dataset, Panel("line", "Temperature", (line,), y_unit="degC"), line).y.tolist()
+    [0.0, 10.0]
+    """
+    measured_is_x = panel.kind == "profile"
+    along = _values(
+        dataset, line.y if measured_is_x else line.x, panel.y_unit if measured_is_x else panel.x_unit
+    )
+    name, unit = (line.x, panel.x_unit) if measured_is_x else (line.y, panel.y_unit)
+    measured = (
+        _values(dataset, name, unit) if line.minus is None else _misfit(dataset, name, line.minus, unit)
+    )
+    error = None if line.error is None else _values(dataset, line.error, unit, difference=True)
+    try:
+        along, measured = np.broadcast_arrays(np.atleast_1d(along), measured)
+        if error is not None:
+            error = np.broadcast_to(error, measured.shape).copy()
+    except ValueError as fault:
+        raise FileError(
+            f"The variables {', '.join(line.variables)} of the file differ in length and cannot be drawn "
+            f"together: {_AGAIN}."
+        ) from fault
+    x, y = (measured, along) if measured_is_x else (along, measured)
+    return Curve(_for_scale(x, panel.x_scale), _for_scale(y, panel.y_scale), error)
+
+
+def edges(dataset: xr.Dataset, panel: Panel, line: Line) -> NDArray[np.float64]:
+    """Return the bounds of the bins of a histogram.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run; the bounds are the variable that the attribute ``bounds`` of the bins' coordinate names.
+    panel : Panel
+        The histogram.
+    line : Line
+        Its measured line.
+
+    Returns
+    -------
+    ndarray of float, (bin + 1,)
+        The bounds, in the units of the panel. Without bounds in the file, they lie half-way between the
+        centres.
+
+    Raises
+    ------
+    FileError
+        If the bins or their bounds are missing or cannot be shown in the panel's units.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset(coords={"speed": ("speed", [50.0, 150.0, 250.0], {"units": "m s-1"})})
+    >>> line = Line("speed", "speed_probability_density", "measured")
+    >>> edges(dataset, Panel("histogram", "Speeds", (line,)), line).tolist()
+    [0.0, 100.0, 200.0, 300.0]
+    """
+    centre = read(dataset, line.x)
+    bounds = dataset.variables.get(str(centre.attrs.get("bounds", f"{line.x}_bnds")))
+    if bounds is not None:
+        both = convert(bounds.values, _unit(centre), panel.x_unit, name=line.x)
+        return np.append(both[:, 0], both[-1, 1])
+    middle = convert(centre.values, _unit(centre), panel.x_unit, name=line.x)
+    between = (middle[1:] + middle[:-1]) / 2
+    return np.concatenate(([2 * middle[0] - between[0]], between, [2 * middle[-1] - between[-1]]))
+
+
+def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
+    """Return the unit that an axis of a panel is read in.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    panel : Panel
+        A panel that has lines.
+    axis : {"x", "y"}
+        The axis.
+
+    Returns
+    -------
+    str
+        The panel's unit or, where it names none, the unit of the file; for misfits the unit of a difference.
+
+    Raises
+    ------
+    FileError
+        If the file lacks the variable.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset({"height": ("height", [0.0], {"units": "m"})})
+    >>> unit_of(dataset, Panel("profile", "Air", (Line("height", "height", "air"),)), "y")
+    'm'
+    """
+    first = panel.lines[0]
+    unit = panel.x_unit if axis == "x" else panel.y_unit
+    unit = unit or _unit(read(dataset, first.x if axis == "x" else first.y))
+    measured_axis = "x" if panel.kind == "profile" else "y"
+    return of_difference(unit) if axis == measured_axis and first.minus is not None else unit
+
+
+def _values(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = False) -> NDArray[np.float64]:
+    variable = read(dataset, name)
+    if variable.ndim > 1:
+        raise FileError(
+            f"The variable {name!r} of the file has the dimensions {', '.join(map(str, variable.dims))}, "
+            f"and a line has one: {_AGAIN}."
+        )
+    return convert(variable.values, _unit(variable), shown, name=name, difference=difference)
+
+
+def _misfit(dataset: xr.Dataset, name: str, minus: str, shown: str) -> NDArray[np.float64]:
+    """Return the difference of two variables, taken in the units of the first."""
+    first, second = read(dataset, name), read(dataset, minus)
+    unit = _unit(first)
+    difference = _values(dataset, name, unit) - convert(second.values, _unit(second), unit, name=minus)
+    return convert(difference, unit, shown, name=name, difference=True)
+
+
+def _unit(variable: xr.DataArray) -> str:
+    return str(variable.attrs.get("units", "1"))
+
+
+def _for_scale(values: NDArray[np.float64], scale: str) -> NDArray[np.float64]:
+    return np.where(values > 0, values, np.nan) if scale == "log" else values

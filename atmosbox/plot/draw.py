@@ -1,0 +1,185 @@
+"""The curves of a panel: what was measured, what was calculated, and what they are compared with."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+
+from atmosbox.panels import Line, Panel
+from atmosbox.plot.curve import Curve, curve, edges
+from atmosbox.plot.disc import draw_discs
+from atmosbox.plot.theme import (
+    DATA_COLOURS,
+    DATA_MARKERS,
+    ENVIRONMENT_COLOURS,
+    ENVIRONMENT_DASHES,
+    FAINT,
+    THEORY_COLOURS,
+    THEORY_DASHES,
+    Theme,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Entry = tuple[tuple[Artist, ...], str]
+
+# Up to so many values, a measured curve is drawn as points with bars; beyond, as a line with a band.
+_MOST_POINTS = 40
+_ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
+
+
+def draw(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
+    """Draw a panel, and set scales and limits of its axes.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    panel : Panel
+        What to draw.
+    dataset : xarray.Dataset
+        The run.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    list of tuple
+        The entries of the legend: the artists of a curve, and its label.
+
+    Raises
+    ------
+    FileError
+        If the file lacks a variable of the panel.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> panel = Panel("profile", "Pressure", (Line("p", "z", "air"),), x_unit="hPa")
+    >>> [label for _, label in draw(Figure().add_subplot(), panel, dataset, THEMES["notes"])]
+    ['air']
+    """
+    if panel.kind == "discs":
+        return draw_discs(axes, panel, dataset, theme)
+    axes.set_xscale(panel.x_scale)
+    axes.set_yscale(panel.y_scale)
+    axes.grid(visible=True)
+    seen: Counter[str] = Counter()
+    entries: list[Entry] = []
+    most = 0
+    for line in panel.lines:
+        index = seen[line.role]
+        seen[line.role] += 1
+        if panel.kind == "histogram" and line.role == "data":
+            artists = _steps(axes, panel, line, dataset, theme, index)
+        else:
+            values = curve(dataset, panel, line)
+            artists = _line(axes, panel, line, values, theme, index)
+            most = max(most, values.x.size)
+        entries.append((artists, line.label))
+    _set_limits(axes, panel, most)
+    return entries
+
+
+def _line(
+    axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int
+) -> tuple[Artist, ...]:
+    x, y, error = values
+    style = _style(line.role, theme, index) | {"zorder": _ORDER[line.role]}
+    measured = line.role == "data"
+    if x.size == 1 or (measured and x.size <= _MOST_POINTS):
+        if panel.kind != "profile" and measured:
+            axes.plot(x, y, alpha=0.4, **style)
+        return _points(axes, panel, values, style, index)
+    if measured and sum(other.role == "data" for other in panel.lines) > 1:
+        every = max(1, x.size // 8)
+        style |= {"marker": DATA_MARKERS[index % 4], "markevery": (every // 2 + index * every // 4, every)}
+    artists: list[Artist] = []
+    if error is not None:
+        alpha = 0.3 if measured else 0.15
+        fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER["band"]}
+        if panel.kind == "profile":
+            artists.append(axes.fill_betweenx(y, x - error, x + error, **fill))
+        else:
+            artists.append(axes.fill_between(x, y - error, y + error, **fill))
+    artists.extend(axes.plot(x, y, **style))
+    return tuple(artists)
+
+
+def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
+    """Draw values with bars of one standard error."""
+    along_x = panel.kind == "profile"
+    bars = axes.errorbar(
+        values.x,
+        values.y,
+        xerr=values.error if along_x else None,
+        yerr=None if along_x else values.error,
+        linestyle="none",
+        marker=DATA_MARKERS[index % len(DATA_MARKERS)],
+        capsize=0.0,
+        elinewidth=style["linewidth"],
+        color=style["color"],
+        zorder=style["zorder"],
+    )
+    return (cast(Artist, bars),)
+
+
+def _steps(
+    axes: Axes, panel: Panel, line: Line, dataset: xr.Dataset, theme: Theme, index: int
+) -> tuple[Artist, ...]:
+    """Draw a histogram, between the bounds of its bins."""
+    x, y, error = curve(dataset, panel, line)
+    colour = DATA_COLOURS[index % len(DATA_COLOURS)]
+    bounds = edges(dataset, panel, line)
+    area = axes.stairs(y, bounds, color=colour, alpha=0.25, fill=True, linewidth=0.0, zorder=_ORDER["band"])
+    steps = axes.stairs(y, bounds, color=colour, linewidth=theme.line, baseline=None, zorder=_ORDER["data"])
+    if error is not None:
+        axes.errorbar(x, y, error, linestyle="none", color=colour, capsize=0.0, zorder=_ORDER["data"])
+    return area, steps
+
+
+def _style(role: str, theme: Theme, index: int) -> dict[str, Any]:
+    """Return colour and dashes of the index-th curve of its role."""
+    if role == "theory":
+        return {
+            "color": THEORY_COLOURS[index % len(THEORY_COLOURS)],
+            "linestyle": (0.0, THEORY_DASHES[index % len(THEORY_DASHES)]),
+            "linewidth": theme.line * 1.1,
+        }
+    if role == "environment":
+        colour = ENVIRONMENT_COLOURS[index % len(ENVIRONMENT_COLOURS)]
+        return {"color": colour, "linestyle": (0.0, ENVIRONMENT_DASHES), "linewidth": theme.line}
+    if role == "reference":
+        return {"color": FAINT, "linestyle": "solid", "linewidth": theme.line / 2}
+    return {"color": DATA_COLOURS[index % len(DATA_COLOURS)], "linestyle": "solid", "linewidth": theme.line}
+
+
+def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
+    """Leave no idle room where a curve of many values runs from end to end, and let heights begin at zero."""
+    across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= _MOST_POINTS else 0.0)
+    axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
+    axes.autoscale_view()
+    if (
+        panel.kind == "line"
+        and panel.x_scale == "linear"
+        and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]
+    ):
+        axes.set_xlim(left=0.0)
+    if panel.kind == "histogram":
+        axes.set_ylim(bottom=0.0, top=axes.get_ylim()[1] * 1.05)
+    elif panel.kind == "profile" and panel.y_scale == "linear":
+        low, high = axes.dataLim.intervaly
+        if np.isfinite([low, high]).all() and 0.0 <= low < 0.2 * high:
+            axes.set_ylim(bottom=0.0)
+    if panel.x_invert:
+        axes.invert_xaxis()
+    if panel.y_invert:
+        axes.invert_yaxis()

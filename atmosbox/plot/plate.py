@@ -1,0 +1,202 @@
+"""A panel on the page: title, numbers and legend over it, clear of the data, and labels beside its axes."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+
+from atmosbox.panels import Panel
+from atmosbox.plot.draw import Entry
+from atmosbox.plot.theme import Theme
+from atmosbox.plot.tick import put_ticks
+from atmosbox.plot.unit import spelled
+
+_FIXED = "\u00a0"  # a space that no line breaks at
+
+
+@dataclass
+class Pen:
+    r"""Measures text as it will be drawn, and breaks it into lines.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure to write on, which has a canvas of Agg.
+
+    Examples
+    --------
+    >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
+    >>> drawing = Figure()
+    >>> _ = FigureCanvasAgg(drawing)
+    >>> Pen(drawing).wrap("lapse rate = 9.8 ± 0.1 K km⁻¹ (of the parcel)", 90.0, 8.0).split("\n")
+    ['lapse rate', '= 9.8 ± 0.1 K km⁻¹ (of the parcel)']
+    """
+
+    figure: Figure
+
+    def width(self, text: str, size: float, weight: str = "normal") -> float:
+        """Return the width of a line of text [pt]."""
+        renderer = self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+        font = FontProperties(size=size, weight=weight)
+        width, _, _ = renderer.get_text_width_height_descent(text, font, ismath=False)
+        return float(width) * 72 / self.figure.dpi
+
+    def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
+        """Return text in lines of at most a width [pt]; neither a unit nor what follows "=" is torn apart."""
+        text = re.sub(r"\([^()]{1,24}\)|− |= .*", lambda part: part[0].replace(" ", _FIXED), text)
+        lines: list[str] = []
+        for word in text.split(" "):
+            longer = f"{lines[-1]} {word}" if lines else word
+            if lines and self.width(longer, size, weight) <= width:
+                lines[-1] = longer
+            else:
+                lines.append(word)
+        return "\n".join(lines).replace(_FIXED, " ")
+
+    def height(self, artist: Artist) -> float:
+        """Return the height of something drawn [pt]."""
+        return float(artist.get_window_extent().height) * 72 / self.figure.dpi
+
+
+@dataclass
+class Plate:
+    """A panel on the page, written anew whenever the room that it has changes.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes, with the curves drawn.
+    panel : Panel
+        The panel.
+    theme : Theme
+        How large.
+    row, column : int
+        Where it stands.
+    entries : list
+        The entries of its legend.
+    sentences : list of str
+        The numbers that stand under its title.
+    labels : tuple
+        What the two axes show and in which unit: ((label, unit), (label, unit)). An empty label belongs to an
+        axis that is labelled in the panel below.
+    """
+
+    axes: Axes
+    panel: Panel
+    theme: Theme
+    row: int
+    column: int
+    entries: list[Entry]
+    sentences: list[str]
+    labels: tuple[tuple[str, str], tuple[str, str]]
+    left: float = 0.0  # where the text begins, relative to the axes [pt]
+    room: float = 0.0  # how wide the text may be [pt]
+    written: list[Artist] = field(default_factory=list)
+
+    def label(self, pen: Pen) -> float:
+        """Write ticks and labels for the room that the axes have, and return where the ink begins [pixel]."""
+        for artist in self.written:
+            artist.remove()
+        self.written = []
+        axes, panel, size = self.axes, self.panel, self.theme.text
+        width, height = self._size(pen)
+        (x_label, x_unit), (y_label, y_unit) = self.labels
+        log = panel.x_scale == "log"
+        power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
+        if x_label:
+            axes.set_xlabel(pen.wrap(f"{x_label} ({spelled(x_unit, power)})", width, size))
+        else:
+            axes.tick_params(axis="x", labelbottom=False)
+        log = panel.y_scale == "log"
+        power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
+        axes.set_ylabel(pen.wrap(f"{y_label} ({spelled(y_unit, power)})", height, size))
+        outer = axes.get_tightbbox() or axes.get_window_extent()
+        return float(outer.x0)
+
+    def write(self, pen: Pen, edge: float) -> float:
+        """Write the legend, and return how much room it and the sentences need above the axes [pt].
+
+        The texts begin at ``edge`` [pixel] and end where the axes end.
+        """
+        frame = self.axes.get_window_extent()
+        self.left = (edge - frame.x0) * 72 / pen.figure.dpi
+        self.room = (frame.x1 - edge) * 72 / pen.figure.dpi
+        gap = height = 0.45 * self.theme.text
+        if len(self.entries) > 1 or any(line.role != "data" for line in self.panel.lines):
+            height += pen.height(self._write_legend(pen, gap)) + gap
+        if self._subtitle(pen):
+            measured = self._write_text(self._subtitle(pen), 0.0, self.theme.text)
+            height += pen.height(measured) + gap
+            self.written.remove(measured)
+            measured.remove()
+        return height
+
+    def crown(self, pen: Pen, height: float) -> None:
+        """Write the title at a height over the axes [pt], and under it the sentences."""
+        title = pen.wrap(self.panel.title, self.room, self.theme.title, "bold")
+        self._write_text(title, height, self.theme.title, weight="bold", anchor="baseline")
+        if self._subtitle(pen):
+            below = height - 0.45 * self.theme.text
+            self._write_text(self._subtitle(pen), below, self.theme.text, anchor="top")
+
+    def _subtitle(self, pen: Pen) -> str:
+        lines = [self.panel.note, *self.sentences]
+        return "\n".join(pen.wrap(line, self.room, self.theme.text) for line in lines if line)
+
+    def _size(self, pen: Pen) -> tuple[float, float]:
+        """Return width and height of the axes [pt]."""
+        frame = self.axes.get_window_extent()
+        return frame.width * 72 / pen.figure.dpi, frame.height * 72 / pen.figure.dpi
+
+    def _write_legend(self, pen: Pen, gap: float) -> Artist:
+        """Put the legend on the upper edge of the axes, in as many columns as there is room for."""
+        size = self.theme.text
+        handle, between = 3.0 * size, 1.5 * size
+        width, height = self._size(pen)
+        labels = [pen.wrap(label, self.room - handle, size) for _, label in self.entries]
+        lengths = [max(pen.width(line, size) for line in label.split("\n")) for label in labels]
+        for columns in range(len(labels), 0, -1):
+            rows = -(-len(labels) // columns)
+            parts = [lengths[start : start + rows] for start in range(0, len(labels), rows)]
+            taken = sum(handle + max(part) + between for part in parts) - between
+            if len(parts) == columns and taken <= self.room:
+                break
+        legend = self.axes.legend(
+            [artists if len(artists) > 1 else artists[0] for artists, _ in self.entries],
+            labels,
+            loc="lower left",
+            bbox_to_anchor=(self.left / width, 1 + gap / height),
+            ncols=columns,
+            borderpad=0.0,
+            borderaxespad=0.0,
+            handlelength=2.4,
+            handletextpad=0.6,
+            columnspacing=1.5,
+            labelspacing=0.25,
+        )
+        self.written.append(legend)
+        return legend
+
+    def _write_text(
+        self, text: str, height: float, size: float, *, weight: str = "normal", anchor: str = "bottom"
+    ) -> Artist:
+        written = self.axes.annotate(
+            text,
+            (0.0, 1.0),
+            (self.left, height),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            ha="left",
+            va=anchor,
+            size=size,
+            weight=weight,
+            linespacing=1.2,
+            annotation_clip=False,
+        )
+        self.written.append(written)
+        return written

@@ -1,0 +1,162 @@
+"""How large, and in which colours: the two places a figure goes to, a page of notes and a slide."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib
+import matplotlib.style
+
+from atmosbox.errors import SettingError
+
+# Okabe and Ito's colours, which those who see no difference of red and green can tell apart.
+_BLACK, _ORANGE, _SKY, _GREEN, _YELLOW, _BLUE, _VERMILLION, _PURPLE = matplotlib.color_sequences["okabe_ito"]
+DARK = "#1a1a1a"
+FAINT = "#595959"
+
+# Each curve differs from its neighbours by colour and by a second cue, so that a grey print can be read.
+DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _ORANGE)
+DATA_MARKERS = ("o", "s", "^", "D")
+THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
+THEORY_DASHES = ((5.0, 2.0), (1.2, 1.2), (9.0, 2.0, 2.0, 2.0, 2.0, 2.0))
+ENVIRONMENT_COLOURS = (_GREEN, _ORANGE)
+ENVIRONMENT_DASHES = (7.0, 2.0, 1.5, 2.0)
+FIELD_COLOURS = "viridis"
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Sizes of one kind of figure; lengths in inches, type and lines in points.
+
+    Parameters
+    ----------
+    name : str
+        What users call it.
+    narrow, wide : tuple of float
+        Width and height of a figure with one panel and with several [inch].
+    text, title, small : float
+        Type of axes and legends, of the panels' titles, and of the footer [pt].
+    line, marker : float
+        Width of lines and size of markers [pt].
+    dots_per_inch : float
+        Resolution on a screen.
+    heading : bool
+        Whether the title of the run stands above the panels; on a page, the caption says it.
+    grows : bool
+        Whether the figure becomes higher where there is much to say over its panels, as a page allows.
+
+    Examples
+    --------
+    >>> width, height = THEMES["slides"].wide
+    >>> round(width / height, 3) == round(16 / 9, 3)
+    True
+    """
+
+    name: str
+    narrow: tuple[float, float]
+    wide: tuple[float, float]
+    text: float
+    title: float
+    small: float
+    line: float
+    marker: float
+    dots_per_inch: float
+    heading: bool
+    grows: bool
+
+
+THEMES = {
+    "notes": Theme(
+        "notes", (3.5, 3.5), (7.2, 4.5), 8.5, 9.5, 8.0, 1.2, 3.5, 150.0, heading=False, grows=True
+    ),
+    "slides": Theme(
+        "slides", (40 / 3, 7.5), (40 / 3, 7.5), 16.0, 18.0, 12.0, 2.4, 7.0, 96.0, heading=True, grows=False
+    ),
+}
+
+
+def find(name: str) -> Theme:
+    """Return the theme of that name.
+
+    Parameters
+    ----------
+    name : str
+        "notes" or "slides".
+
+    Returns
+    -------
+    Theme
+        Its sizes.
+
+    Raises
+    ------
+    SettingError
+        If there is no such theme.
+
+    Examples
+    --------
+    >>> find("slides").text > find("notes").text
+    True
+    """
+    if name not in THEMES:
+        raise SettingError("theme", name, "is no theme", f"give --theme {' or --theme '.join(THEMES)}")
+    return THEMES[name]
+
+
+def style(theme: Theme) -> AbstractContextManager[None]:
+    """Return a context in which matplotlib draws in a theme, whatever the user's own settings are.
+
+    Parameters
+    ----------
+    theme : Theme
+        The sizes.
+
+    Returns
+    -------
+    context manager
+        Within it matplotlib's settings are its own defaults and the theme's; after it they are the user's
+        again.
+
+    Examples
+    --------
+    >>> before = matplotlib.rcParams["font.size"]
+    >>> with style(THEMES["slides"]):
+    ...     matplotlib.rcParams["font.size"]
+    16.0
+    >>> bool(matplotlib.rcParams["font.size"] == before)
+    True
+    """
+    settings: dict[str, Any] = {
+        "font.size": theme.text,
+        "axes.titlesize": theme.title,
+        "axes.labelsize": theme.text,
+        "xtick.labelsize": theme.text,
+        "ytick.labelsize": theme.text,
+        "legend.fontsize": theme.text,
+        "legend.frameon": False,
+        "axes.linewidth": theme.line / 2,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.edgecolor": FAINT,
+        "axes.labelcolor": DARK,
+        "text.color": DARK,
+        "xtick.color": FAINT,
+        "ytick.color": FAINT,
+        "xtick.labelcolor": DARK,
+        "ytick.labelcolor": DARK,
+        "lines.linewidth": theme.line,
+        "lines.markersize": theme.marker,
+        "lines.scale_dashes": True,
+        "grid.color": "#d9d9d9",
+        "grid.linewidth": theme.line / 3,
+        "axes.axisbelow": True,
+        "axes.unicode_minus": True,
+        "figure.dpi": theme.dots_per_inch,
+        "savefig.dpi": 300,
+        "svg.hashsalt": "atmosbox",
+        "svg.fonttype": "path",
+        "pdf.fonttype": 42,
+    }
+    return matplotlib.style.context(["default", settings], after_reset=True)

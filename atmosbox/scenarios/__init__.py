@@ -1,0 +1,162 @@
+"""The one door to the scenarios: which there are, and how to open one.
+
+A scenario is a page of facts about one experiment: what a user may set, how its box is built, what theory
+says and what its figure shows. The scenarios of atmosbox stand in the folder ``scenarios/`` at the top of
+the checkout and are imported as ``atmosbox.scenarios.<module>``. A lecturer's own scenario is a module like
+them, opened by its path.
+
+An installed atmosbox has the modules of that folder here, beside this file. A checkout has them two folders
+up, so a checkout, installed or not, adds that folder to ``__path__``.
+"""
+
+import difflib
+import importlib
+import os
+import pkgutil
+import sys
+import traceback
+import zlib
+from pathlib import Path
+from types import ModuleType
+
+from atmosbox.errors import FileError, UnknownSceneError, shown
+
+__all__ = ["REQUIRED", "load", "names"]
+
+REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
+"""What every scenario module must define."""
+
+
+def _checkout_scenarios(here: Path) -> Path | None:
+    """Return the top-level ``scenarios/`` if ``here`` stands in a checkout of atmosbox."""
+    root = here.parent.parent
+    project = root / "pyproject.toml"
+    folder = root / "scenarios"
+    # Other people's pyproject.toml and scenarios/ may stand there after `pip install --target`.
+    if project.is_file() and folder.is_dir() and 'name = "atmosbox"' in project.read_text(encoding="utf-8"):
+        return folder
+    return None
+
+
+_checkout = _checkout_scenarios(Path(__file__).resolve().parent)
+if _checkout is not None:
+    __path__.append(str(_checkout))
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all scenarios that come with atmosbox.
+
+    They are found by looking into the folder; none is imported.
+
+    Returns
+    -------
+    tuple of str
+        The names in alphabetical order, as a user types them: with dashes.
+
+    Examples
+    --------
+    >>> "lifting-dry" in names()
+    True
+    """
+    found = {module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")}
+    return tuple(sorted(name.replace("_", "-") for name in found))
+
+
+def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
+    """Open a scenario: one of atmosbox by its name, or your own by the path of its file.
+
+    Parameters
+    ----------
+    name_or_path
+        A name from `names`, such as ``"lifting-dry"`` (``"lifting_dry"`` is the same), or the path of a
+        Python file: anything that ends in ``.py`` or contains a separator, such as ``"./my_scene.py"``. The
+        file is read anew at each call, and may run any code, as every Python program may.
+
+    Returns
+    -------
+    module
+        The scenario, with its `REQUIRED` attributes ``Settings``, ``build``, ``theory``, ``headlines`` and
+        ``panels``.
+
+    Raises
+    ------
+    UnknownSceneError
+        If no scenario has this name; the sentence offers the nearest ones.
+    FileError
+        If the file is missing or unreadable, fails on import, or is no scenario because it lacks a required
+        attribute.
+
+    Examples
+    --------
+    >>> scene = load("lifting-dry")
+    >>> scene.__name__
+    'atmosbox.scenarios.lifting_dry'
+    """
+    text = os.fspath(name_or_path)
+    if isinstance(name_or_path, os.PathLike) or text.endswith(".py") or "/" in text or os.sep in text:
+        return _load_file(Path(os.path.expanduser(text)))
+    name = text.replace("_", "-")
+    if name not in names():
+        raise _unknown(text)
+    return importlib.import_module(f"{__name__}.{name.replace('-', '_')}")
+
+
+def _unknown(text: str) -> UnknownSceneError:
+    """Return the error for a name that no scenario has, with the nearest ones that exist."""
+    near = difflib.get_close_matches(text.lower().replace("_", "-"), names(), n=3, cutoff=0.5)
+    if os.path.isfile(f"{text}.py"):
+        fix = f"to run your own file, give its path, ./{text}.py"
+    elif near:
+        fix = f"did you mean {' or '.join(near)}? `atmosbox list` shows all"
+    else:
+        fix = "`atmosbox list` shows all"
+    return UnknownSceneError(f"There is no scenario named {shown(text)}: {fix}.")
+
+
+def _load_file(path: Path) -> ModuleType:
+    """Run a user's own file as a module and check that it is a scenario."""
+    if os.path.isdir(path):
+        raise FileError(f"{path} is a folder: give the path of the scenario's .py file in it.")
+    if not os.path.exists(path):
+        raise FileError(
+            f"There is no file {path}: check its path, or take a scenario that `atmosbox list` shows."
+        )
+    try:
+        source = path.read_bytes()
+    except OSError as error:
+        raise FileError(f"{path} cannot be read ({error.strerror}): check its permissions.") from error
+
+    # A name of its own, so that no user's file can stand in for a module of Python or of another library; in
+    # sys.modules, because pydantic and dataclasses look a module up by its name.
+    location = str(path.resolve())
+    module = ModuleType(f"_atmosbox_scene_{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
+    module.__file__ = location
+    sys.modules[module.__name__] = module
+    try:
+        # Compiled from the text at hand: bytecode kept beside the file may be older than an edit just made.
+        exec(compile(source, location, "exec", dont_inherit=True), module.__dict__)
+    except (Exception, SystemExit) as error:
+        del sys.modules[module.__name__]
+        raise FileError(_why(path, location, error)) from error
+
+    missing = [attribute for attribute in REQUIRED if not hasattr(module, attribute)]
+    if missing:
+        del sys.modules[module.__name__]
+        raise FileError(
+            f"{path} is not a scenario, for it does not define {', '.join(missing)}: "
+            "write them as the scenarios of atmosbox do, such as scenarios/lifting_dry.py."
+        )
+    return module
+
+
+def _why(path: Path, location: str, error: BaseException) -> str:
+    """Return one sentence on why a user's file failed, with the line of that file."""
+    if isinstance(error, SyntaxError) and error.filename == location:
+        line, reason = error.lineno, error.msg
+    else:
+        frames = traceback.extract_tb(error.__traceback__)
+        line = next((frame.lineno for frame in reversed(frames) if frame.filename == location), None)
+        reason = " ".join(str(error).split())
+    place = f"{path}, line {line}," if line else f"{path}"
+    what = f"{type(error).__name__}: {reason}" if reason else type(error).__name__
+    return f"{place} cannot be run ({what}): correct it and run it again."

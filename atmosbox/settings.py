@@ -1,0 +1,567 @@
+r"""What a user may set: declared once, checked once, with a sentence for every refusal.
+
+A scene declares its settings as the fields of a class, and the command line, the settings file, the tables of
+``atmosbox info`` and the attributes of the output are all made from that declaration::
+
+    class Settings(SceneSettings):
+        molecules: int = setting(4000, "1", "number of simulated molecules", low=1, high=10_000_000)
+        temperature: float = setting(15.0, "degC", "temperature at the start", low=-100.0, high=500.0)
+        rotation: bool = setting(True, "", "whether molecules rotate")
+        start: str = setting("equilibrium", "", "the first frame", choices=("equilibrium", "bottom"))
+
+Values stay in the unit in which they are documented; ``settings.si`` has them in SI units.
+"""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import math
+import os
+import re
+import shlex
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any, Literal, Self, cast
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from atmosbox.errors import ConfigError, FileError, SettingError, UnknownSettingError, shown
+from atmosbox.units import parse_quantity, parse_whole, phrase, to_si, typed
+
+__all__ = [
+    "Headline",
+    "Parameter",
+    "SceneSettings",
+    "load_config",
+    "nearest",
+    "parse_set",
+    "setting",
+]
+
+Value = bool | int | float | str
+Kind = Literal["int", "float", "bool", "str"]
+
+_SWITCH = {
+    "on": True,
+    "true": True,
+    "yes": True,
+    "1": True,
+    "off": False,
+    "false": False,
+    "no": False,
+    "0": False,
+}
+_LARGEST_CONFIG = 1_000_000  # bytes
+
+
+@dataclass(frozen=True)
+class Headline:
+    """One number that a run is about, with its error bar and the answer of the textbook.
+
+    Parameters
+    ----------
+    name
+        Its name in the output.
+    value, standard_error
+        The measurement and its statistical error [unit].
+    theory
+        The closed-form answer [unit]; None where there is none.
+    tolerance
+        How far the model itself may be from the textbook, beyond the statistical error [unit].
+    reason
+        Why the tolerance is what it is.
+    unit
+        The SI unit of the numbers here.
+    display_unit
+        The unit in which a table shows them.
+    label
+        What a table calls it.
+
+    Examples
+    --------
+    With an error bar of 2 K, 3 K of misfit is no disagreement:
+
+    >>> warm = Headline("air_temperature", 291.0, 2.0, 288.0, 0.0, "an ideal gas", "K", "degC", "temperature")
+    >>> warm.misfit, warm.agrees
+    (3.0, True)
+    """
+
+    name: str
+    value: float
+    standard_error: float
+    theory: float | None
+    tolerance: float
+    reason: str
+    unit: str
+    display_unit: str
+    label: str
+
+    @property
+    def misfit(self) -> float | None:
+        """Measurement minus theory [unit]; None without a theory."""
+        return None if self.theory is None else self.value - self.theory
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether the misfit is within four standard errors and the tolerance; None without a theory.
+
+        A measurement or an error bar that is not a finite number agrees with nothing.
+        """
+        if self.misfit is None:
+            return None
+        allowed = 4.0 * self.standard_error + self.tolerance
+        return math.isfinite(allowed) and abs(self.misfit) <= allowed
+
+
+def nearest(name: str, names: Iterable[str]) -> str | None:
+    """Return the name that a user probably meant, or None.
+
+    Parameters
+    ----------
+    name
+        What was typed.
+    names
+        What could have been.
+
+    Examples
+    --------
+    >>> names = ["molecules", "temperature"]
+    >>> nearest("temprature", names), nearest("mol", names), nearest("x", names)
+    ('temperature', 'molecules', None)
+    """
+    plain = {_plain(candidate): candidate for candidate in names}
+    wanted = _plain(name)[:100]
+    if wanted in plain:
+        return plain[wanted]
+    begun = [candidate for candidate in plain if len(wanted) > 2 and candidate.startswith(wanted)]
+    close = begun if len(begun) == 1 else difflib.get_close_matches(wanted, plain, n=1)
+    return plain[close[0]] if close else None
+
+
+def _plain(name: str) -> str:
+    """Return a name as it is compared: without capitals, and with "_" for "-"."""
+    return name.strip().casefold().replace("-", "_")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One setting as it was declared.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    unit
+        The unit of a bare number, "1" for a pure number, empty for switches and words.
+    default
+        Its value unless it is set.
+    low, high
+        The lowest and highest value allowed, in `unit`; None where there is no limit.
+    choices
+        The words allowed; None for numbers, switches and free text.
+    help
+        What it is, in one line.
+    kind
+        The type of its value: "int", "float", "bool" or "str".
+    """
+
+    name: str
+    unit: str
+    default: Value
+    low: float | None
+    high: float | None
+    choices: tuple[str, ...] | None
+    help: str
+    kind: Kind
+
+    @property
+    def allowed(self) -> str:
+        """What may be set, in words: "-100 degC to 500 degC", "on or off", "equilibrium or bottom"."""
+        if self.kind == "bool":
+            return "on or off"
+        if self.kind == "str":
+            return " or ".join(self.choices) if self.choices else "any text"
+        low, high = (None if limit is None else phrase(limit, self.unit) for limit in (self.low, self.high))
+        if low and high:
+            return f"{low} to {high}"
+        if low or high:
+            return f"at least {low}" if low else f"at most {high}"
+        number = "any whole number" if self.kind == "int" else "any number"
+        return number if self.unit == "1" else f"{number} ({self.unit})"
+
+    def typed(self, value: Value | None = None) -> str:
+        """Return a value, or else the default, as it is typed after ``--set name=``."""
+        value = self.default if value is None else value
+        if isinstance(value, bool):
+            return "on" if value else "off"
+        return shlex.quote(value) if isinstance(value, str) else typed(value, self.unit)
+
+    def parse(self, value: object) -> Value:
+        """Return what a user gave for this setting, in its documented unit.
+
+        Parameters
+        ----------
+        value
+            A number, a switch or a text.
+
+        Raises
+        ------
+        UnitError
+            If a number or its unit cannot be understood.
+        SettingError
+            If the value is not allowed.
+
+        Examples
+        --------
+        >>> Parameter("height", "km", 2.0, 0.0, 12.0, None, "of the box", "float").parse("500 m")
+        0.5
+        """
+        if self.kind == "bool":
+            return self._switch(value)
+        if self.kind == "str":
+            return self._word(value)
+        parse = parse_whole if self.kind == "int" else parse_quantity
+        return parse(value, self.unit, self.name, low=self.low, high=self.high, example=self.typed())
+
+    def _switch(self, value: object) -> bool:
+        if isinstance(value, str) and value.strip().casefold() in _SWITCH:
+            return _SWITCH[value.strip().casefold()]
+        if isinstance(value, int) and value in (0, 1):
+            return bool(value)
+        raise self._refusal(value, "is neither on nor off", self.typed())
+
+    def _word(self, value: object) -> str:
+        text = value.strip() if isinstance(value, str) else ""
+        if self.choices is None:
+            if isinstance(value, str) and (text or not self.default):
+                return text
+            raise self._refusal(
+                value, "is empty" if isinstance(value, str) else "is not a text", self.typed()
+            )
+        for choice in self.choices:
+            if _plain(choice) == _plain(text):
+                return choice
+        example = nearest(text, self.choices) or self.typed()
+        raise self._refusal(value, f"is not one of {', '.join(self.choices)}", example)
+
+    def _refusal(self, value: object, problem: str, example: str) -> SettingError:
+        return SettingError(self.name, value, problem, f"give --set {self.name}={example}")
+
+
+def setting(
+    default: Value,
+    unit: str,
+    help: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    choices: tuple[str, ...] | None = None,
+) -> Any:
+    """Declare a setting of a scene.
+
+    Parameters
+    ----------
+    default
+        Its value unless the user sets it, in `unit`.
+    unit
+        The unit in which it is documented and a bare number is read; "1" for a pure number, empty for a
+        switch or a word.
+    help
+        What it is, in one line.
+    low, high
+        The lowest and highest value allowed, in `unit`.
+    choices
+        The words allowed.
+
+    Returns
+    -------
+    pydantic.fields.FieldInfo
+        The field; typed as Any, so that ``temperature: float = setting(...)`` is right for a type checker.
+
+    Examples
+    --------
+    >>> class Settings(SceneSettings):
+    ...     start: str = setting("mixed", "", "the first frame", choices=("mixed", "layered"))
+    >>> Settings.describe()[0].allowed
+    'mixed or layered'
+    """
+    extra: dict[str, Any] = {"unit": unit, "minimum": low, "maximum": high, "enum": choices}
+    return Field(
+        default, description=help, json_schema_extra={k: v for k, v in extra.items() if v is not None}
+    )
+
+
+class SceneSettings(BaseModel):
+    """The settings of a scene, checked and unchangeable; a scene derives its own from this.
+
+    Making one checks every value as :meth:`from_user` does.
+
+    Attributes
+    ----------
+    seed
+        Seed of the random numbers: the same seed repeats the same run.
+
+    Raises
+    ------
+    TypeError
+        When a scene's class is defined, if a field is not declared with :func:`setting`, its unit does not
+        exist, or its default is not one of its own allowed values.
+
+    Examples
+    --------
+    >>> class Settings(SceneSettings):
+    ...     temperature: float = setting(15.0, "degC", "temperature at the start", low=-100.0, high=500.0)
+    >>> settings = Settings.from_user({"temperature": "298.15 K"})
+    >>> settings.temperature, settings.si.temperature, settings.changed()
+    (25.0, 298.15, {'temperature': 25.0})
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    seed: int = setting(1, "1", "seed of the random numbers", low=0, high=2**63 - 1)
+
+    def __init__(self, /, **values: Any) -> None:
+        parameters = _parameters(type(self))
+        given: dict[str, Any] = {}
+        for spelled, value in values.items():
+            name = spelled.strip().replace("-", "_")
+            if name not in parameters:
+                raise _unknown(spelled, value, parameters)
+            if name in given:
+                raise SettingError(name, value, "is given twice", f"give --set {name} once")
+            given[name] = value
+        super().__init__(**{name: p.parse(given.get(name, p.default)) for name, p in parameters.items()})
+        self.check()
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Check a scene's declarations as soon as its class is defined."""
+        super().__pydantic_init_subclass__(**kwargs)
+        _parameters(cls)
+
+    @classmethod
+    def from_user(cls, values: Mapping[str, Any]) -> Self:
+        """Return the settings that a user asked for, with the defaults for the rest.
+
+        Parameters
+        ----------
+        values
+            Numbers, switches and texts by name; a name may be spelled with "-" for "_".
+
+        Raises
+        ------
+        UnknownSettingError
+            If the scene has no setting of a name.
+        UnitError
+            If a number or its unit cannot be understood.
+        SettingError
+            If a value is not allowed, or the values do not fit together.
+        """
+        return cls(**values)
+
+    @classmethod
+    def describe(cls) -> list[Parameter]:
+        """Return the settings as they were declared: the scene's own, then the seed."""
+        return list(_parameters(cls).values())
+
+    def check(self) -> None:
+        """Raise SettingError where the settings do not fit together; a scene may override this."""
+
+    @property
+    def si(self) -> SimpleNamespace:
+        """The same names with their values in SI units: degC in K, hPa in Pa, K/km in K m-1, % in 1."""
+        return SimpleNamespace(
+            **{
+                p.name: getattr(self, p.name) if p.unit in ("", "1") else to_si(getattr(self, p.name), p.unit)
+                for p in self.describe()
+            }
+        )
+
+    def as_dict(self) -> dict[str, Value]:
+        """Return the values in their documented units, ready for JSON and for :meth:`from_user`."""
+        return {p.name: getattr(self, p.name) for p in self.describe()}
+
+    def changed(self) -> dict[str, Value]:
+        """Return the values that differ from their defaults, in their documented units."""
+        return {p.name: getattr(self, p.name) for p in self.describe() if getattr(self, p.name) != p.default}
+
+
+@functools.cache
+def _parameters(cls: type[SceneSettings]) -> dict[str, Parameter]:
+    """Return a class's settings by name, each with its default checked."""
+    kinds: dict[Any, Kind] = {int: "int", float: "float", bool: "bool", str: "str"}
+    parameters: dict[str, Parameter] = {}
+    for name, field in sorted(cls.model_fields.items(), key=lambda item: item[0] == "seed"):
+        extra, kind = field.json_schema_extra, kinds.get(field.annotation)
+        where = f"The setting {name} of {cls.__qualname__}"
+        if not isinstance(extra, dict) or "unit" not in extra or field.description is None:
+            raise TypeError(f"{where} must be declared with setting(default, unit, help).")
+        if kind is None:
+            raise TypeError(f"{where} must be an int, a float, a bool or a str.")
+        unit, low, high, choices = (cast("Any", extra.get(k)) for k in ("unit", "minimum", "maximum", "enum"))
+        if bool(unit) != (kind in ("int", "float")):
+            raise TypeError(
+                f'{where} must have a unit if it is a number ("1" for a pure one), else the unit "".'
+            )
+        declared = Parameter(name, unit, field.default, low, high, choices, field.description, kind)
+        try:
+            if unit:
+                to_si(1.0, unit)
+            parameters[name] = replace(declared, default=declared.parse(field.default))
+        except SettingError as error:
+            raise TypeError(f"{where} has a unit or a default that it does not allow: {error}") from error
+    return parameters
+
+
+def _unknown(name: str, value: object, parameters: Mapping[str, Parameter]) -> UnknownSettingError:
+    """Return the error for a name that a scene does not have, with the nearest that it has."""
+    near = nearest(name, parameters)
+    if near is None:
+        fix = f"give one of {', '.join(parameters)}"
+    else:
+        usable = isinstance(value, str) and shown(value) == value
+        fix = f"give --set {near}={shlex.quote(str(value)) if usable else parameters[near].typed()}"
+    return UnknownSettingError(name, value, "is not a setting of this scene", fix)
+
+
+def parse_set(items: Iterable[str]) -> dict[str, str]:
+    """Return the settings of the command line's ``--set name=value``.
+
+    Parameters
+    ----------
+    items
+        The texts after each ``--set``.
+
+    Returns
+    -------
+    dict
+        The values as text, by name.
+
+    Raises
+    ------
+    SettingError
+        If a text is not a name, "=" and a value, or names a setting again.
+
+    Examples
+    --------
+    >>> parse_set(["temperature=25 degC", "pressure-top=300hPa"])
+    {'temperature': '25 degC', 'pressure_top': '300hPa'}
+    """
+    values: dict[str, str] = {}
+    for item in items:
+        name, equals, value = (part.strip() for part in item.partition("="))
+        name = name.replace("-", "_")
+        if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
+            value = value[1:-1].strip()
+        known = name if name.isascii() and name.isidentifier() else "name"
+        fix = f"give --set {known}=value, such as --set temperature=25degC"
+        if not equals:
+            raise SettingError(f"--set {item}", None, 'has no "=" between name and value', fix)
+        if not name or not value:
+            raise SettingError(f"--set {item}", None, f"has no {'value' if name else 'name'}", fix)
+        if name in values:
+            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
+        values[name] = value
+    return values
+
+
+def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Value]]:
+    r"""Return the scene and the settings that a TOML file names.
+
+    The file may hold the name of a scene and one table, and can run no code::
+
+        scene = "lifting-dry"
+
+        [settings]
+        temperature = "25degC"
+        molecules = 4000
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+
+    Returns
+    -------
+    scene : str or None
+        The name of the scene, None where the file names none.
+    settings : dict
+        The values as they were written, by name.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read.
+    ConfigError
+        If it is not TOML, or holds anything else; the sentence has the line where it is known.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "lift.toml")
+    ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
+    ...     load_config(path)
+    ('lifting-dry', {'temperature': '25degC'})
+    """
+    where = shown(os.fspath(path), longest=4096)
+    try:
+        with open(path, "rb") as file:
+            raw = file.read(_LARGEST_CONFIG + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a path"
+        raise FileError(f"{where} cannot be read ({reason}): give the path of a settings file.") from error
+    text, content = _toml(raw, where)
+
+    def refusal(key: str, problem: str, fix: str) -> ConfigError:
+        return ConfigError(f"{where}{_line(text, key)} has {shown(key)} {problem}: {fix}.")
+
+    for key in sorted(content.keys() - {"scene", "settings"}):
+        near = nearest(key, ("scene", "settings"))
+        fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
+        raise refusal(key, "outside the table [settings]", fix)
+    scene, settings = content.get("scene"), content.get("settings", {})
+    if scene is not None and not (isinstance(scene, str) and scene.strip()):
+        raise refusal("scene", "without a name", 'give the name of one, such as scene = "lifting-dry"')
+    if not isinstance(settings, dict):
+        raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
+    kinds = {dict: "as a table", list: "as an array", float: "as no finite number"}
+    for key, value in settings.items():
+        if not isinstance(value, Value) or (isinstance(value, float) and not math.isfinite(value)):
+            kind = kinds.get(type(value), "as a date or a time")
+            raise refusal(key, kind, 'give one number, true, false or a text in quotes, such as "25degC"')
+    return scene and scene.strip(), settings
+
+
+def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:
+    """Return a settings file's text and content, or raise ConfigError."""
+    if raw.startswith((b"\x89HDF", b"CDF")):
+        raise ConfigError(f"{where} is a netCDF file, not a settings file: give it with --from {where}.")
+    if len(raw) > _LARGEST_CONFIG or b"\0" in raw:
+        raise ConfigError(
+            f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8."
+        )
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise ConfigError(f"{where}, line {line} is not UTF-8 text: save the file as UTF-8.") from error
+    try:
+        return text, tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        found = re.fullmatch(r"(.+) \(at (?:line ([0-9]+)|end).*\)", str(error))
+        what = " is not TOML"
+        if found:
+            what = f", line {found[2] or text.count(chr(10)) + 1} is not TOML ({shown(found[1])})"
+        fix = 'write one name = value a line, with text in quotes, such as temperature = "25degC"'
+        raise ConfigError(f"{where}{what}: {fix}.") from error
+
+
+def _line(text: str, key: str) -> str:
+    """Return ", line 3" for the line on which a key first stands; empty where it is not plain to see."""
+    table = r"(?:settings[ \t]*\.[ \t]*)?"
+    found = re.search(rf"^[ \t\[]*{table}[\"']?{re.escape(key)}[\"' \t]*[=.\]]", text, re.MULTILINE)
+    return f", line {text.count(chr(10), 0, found.start()) + 1}" if found else ""

@@ -1,0 +1,162 @@
+"""The answers: what the textbook says, to lay beside what the box measures.
+
+Every function is a closed form, or the solution of one equation, with its source. None of it is used to move
+a molecule. Where an argument is called ``kT`` or ``diameter`` any consistent set of units will do, reduced or
+SI; where it is called ``temperature`` or ``pressure`` of the air, the units are K and Pa.
+
+=================== =====================================================================================
+file                what it answers
+=================== =====================================================================================
+equation_of_state   how much harder do spheres press than points
+entropy             what their crowding does to the free energy and to the adiabat
+disc                the same in two dimensions
+collision           how often do molecules meet, and how far do they fly between
+speed               how fast are they
+wall                what hits a wall and what leaves it; the heat between two walls in a very thin gas
+noise               how much does an honest measurement scatter
+barometric          how does a gas thin out with height
+hydrostatic         the same for spheres that take up room
+lifting             what becomes of a parcel that is lifted, squeezed or held at its temperature
+environment         the air around it: lapse rates, pressures and heights
+standard_atmosphere the same of the International Standard Atmosphere
+=================== =====================================================================================
+"""
+
+from atmosbox.theory.barometric import (
+    barometric_density,
+    barometric_pressure,
+    column_floor_ratio,
+    column_heat_capacity,
+    column_mean_height,
+    column_top_ratio,
+    column_weight,
+    scale_height,
+)
+from atmosbox.theory.collision import (
+    collision_rate,
+    collision_rate_between,
+    contact_value_between,
+    mean_free_path,
+    mean_free_time,
+)
+from atmosbox.theory.disc import (
+    collision_rate_discs,
+    compressibility_factor_discs,
+    contact_value_discs,
+    packing_fraction_discs,
+)
+from atmosbox.theory.entropy import excess_chemical_potential, excess_free_energy, hard_sphere_isentrope
+from atmosbox.theory.environment import (
+    DRY_AIR_GAS_CONSTANT,
+    environment_pressure,
+    environment_temperature,
+    height_of_pressure,
+    hypsometric_thickness,
+)
+from atmosbox.theory.equation_of_state import (
+    FREEZING_PACKING_FRACTION,
+    compressibility_factor,
+    contact_value,
+    gas_pressure,
+    inverse_compressibility,
+    packing_fraction,
+)
+from atmosbox.theory.hydrostatic import hydrostatic_column, hydrostatic_layers
+from atmosbox.theory.lifting import (
+    adiabatic_index,
+    adiabatic_temperature,
+    dry_adiabat_temperature,
+    dry_lapse_rate,
+    isothermal_work,
+    piston_pressure_ratio,
+)
+from atmosbox.theory.noise import (
+    collision_rate_noise,
+    compressibility_noise,
+    count_noise,
+    heat_noise,
+    temperature_noise,
+    wall_pressure_noise,
+)
+from atmosbox.theory.speed import (
+    constant_energy_kurtosis,
+    constant_energy_speed_factor,
+    maxwell_speed_cumulative,
+    maxwell_speed_density,
+    mean_speed,
+    most_probable_speed,
+    root_mean_square_speed,
+)
+from atmosbox.theory.standard_atmosphere import isa_height, isa_pressure, isa_temperature
+from atmosbox.theory.wall import (
+    FreeMolecularSlab,
+    emission_energy,
+    emission_energy_variance,
+    emission_normal_speed,
+    free_molecular_slab,
+    wall_flux,
+)
+
+__all__ = [
+    "DRY_AIR_GAS_CONSTANT",
+    "FREEZING_PACKING_FRACTION",
+    "FreeMolecularSlab",
+    "adiabatic_index",
+    "adiabatic_temperature",
+    "barometric_density",
+    "barometric_pressure",
+    "collision_rate",
+    "collision_rate_between",
+    "collision_rate_discs",
+    "collision_rate_noise",
+    "column_floor_ratio",
+    "column_heat_capacity",
+    "column_mean_height",
+    "column_top_ratio",
+    "column_weight",
+    "compressibility_factor",
+    "compressibility_factor_discs",
+    "compressibility_noise",
+    "constant_energy_kurtosis",
+    "constant_energy_speed_factor",
+    "contact_value",
+    "contact_value_between",
+    "contact_value_discs",
+    "count_noise",
+    "dry_adiabat_temperature",
+    "dry_lapse_rate",
+    "emission_energy",
+    "emission_energy_variance",
+    "emission_normal_speed",
+    "environment_pressure",
+    "environment_temperature",
+    "excess_chemical_potential",
+    "excess_free_energy",
+    "free_molecular_slab",
+    "gas_pressure",
+    "hard_sphere_isentrope",
+    "heat_noise",
+    "height_of_pressure",
+    "hydrostatic_column",
+    "hydrostatic_layers",
+    "hypsometric_thickness",
+    "inverse_compressibility",
+    "isa_height",
+    "isa_pressure",
+    "isa_temperature",
+    "isothermal_work",
+    "maxwell_speed_cumulative",
+    "maxwell_speed_density",
+    "mean_free_path",
+    "mean_free_time",
+    "mean_speed",
+    "most_probable_speed",
+    "packing_fraction",
+    "packing_fraction_discs",
+    "piston_pressure_ratio",
+    "root_mean_square_speed",
+    "scale_height",
+    "temperature_noise",
+    "wall_flux",
+    "wall_pressure_noise",
+]

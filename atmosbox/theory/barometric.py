@@ -1,0 +1,286 @@
+r"""A column of ideal gas in gravity: thinner above than below, and in equilibrium equally warm.
+
+A finite column of depth H is governed by one number, :math:`a = m g H / kT`, its depth in scale heights. The
+centres of spheres cannot come nearer to a wall than their radius: for them the column begins one radius above
+the floor and ends one below the ceiling.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.theory._array import FloatArray, as_floats
+
+
+def _depth_in_scale_heights(
+    depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike
+) -> FloatArray:
+    return as_floats(mass) * as_floats(gravity) * as_floats(depth) / as_floats(kT)
+
+
+def scale_height(kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
+    r"""Return the height over which an isothermal gas thins to 1/e, :math:`kT / mg`.
+
+    Parameters
+    ----------
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2], above zero.
+
+    Returns
+    -------
+    ndarray
+        Scale height [length].
+
+    Examples
+    --------
+    Air at 288.15 K, in metres:
+
+    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> round(float(scale_height(BOLTZMANN * 288.15, DRY_AIR.molecule_mass, 9.80665)))
+    8435
+    """
+    return as_floats(kT) / (as_floats(mass) * as_floats(gravity))
+
+
+def barometric_pressure(
+    height: ArrayLike, surface_pressure: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike
+) -> FloatArray:
+    r"""Return the pressure of an isothermal atmosphere, :math:`p_0\, e^{-mgz/kT}`.
+
+    Parameters
+    ----------
+    height
+        Height above the surface [length].
+    surface_pressure
+        Pressure at the surface [pressure].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2].
+
+    Returns
+    -------
+    ndarray
+        Pressure, in the unit of the surface pressure.
+
+    Examples
+    --------
+    Half of an isothermal atmosphere lies above ln 2 scale heights:
+
+    >>> round(float(barometric_pressure(np.log(2.0), 1000.0, 1.0, 1.0, 1.0)), 6)
+    500.0
+    """
+    pressure: FloatArray = as_floats(surface_pressure) * np.exp(
+        -_depth_in_scale_heights(height, kT, mass, gravity)
+    )
+    return pressure
+
+
+def column_floor_ratio(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
+    r"""Return the density at the floor of a closed column over its mean density, :math:`a / (1 - e^{-a})`.
+
+    Parameters
+    ----------
+    depth
+        Depth H of the column [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2]; zero is allowed.
+
+    Returns
+    -------
+    ndarray
+        Density at the floor over mean density [1].
+
+    Examples
+    --------
+    >>> round(float(column_floor_ratio(2.0, 1.0, 1.0, 1.0)), 4)
+    2.313
+    """
+    a = _depth_in_scale_heights(depth, kT, mass, gravity)
+    return np.divide(a, -np.expm1(-a), out=np.ones_like(a), where=a != 0.0)
+
+
+def column_top_ratio(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
+    r"""Return the density at the ceiling of a column over that at its floor, :math:`e^{-a}`.
+
+    Parameters
+    ----------
+    depth
+        Depth H of the column [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2]; zero is allowed.
+
+    Returns
+    -------
+    ndarray
+        Density at the ceiling over density at the floor [1].
+
+    Examples
+    --------
+    >>> round(float(column_top_ratio(2.0, 1.0, 1.0, 1.0)), 4)
+    0.1353
+    """
+    return barometric_pressure(depth, 1.0, kT, mass, gravity)
+
+
+def column_mean_height(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
+    r"""Return the mean height of the molecules of a closed column, :math:`H\, [1/a - 1/(e^a - 1)]`.
+
+    Parameters
+    ----------
+    depth
+        Depth H of the column [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2]; zero is allowed.
+
+    Returns
+    -------
+    ndarray
+        Mean height above the bottom of the column [length].
+
+    Examples
+    --------
+    Half way up without gravity, one scale height in a very deep column:
+
+    >>> float(column_mean_height(2.0, 1.0, 1.0, 0.0)), float(column_mean_height(1000.0, 1.0, 1.0, 1.0))
+    (1.0, 1.0)
+    """
+    a = _depth_in_scale_heights(depth, kT, mass, gravity)
+    flat = np.abs(a) < 0.05
+    steep = np.where(flat, 1.0, a)
+    series = 0.5 - a / 12.0 + a**3 / 720.0 - a**5 / 30240.0
+    closed = 1.0 / steep - np.exp(-steep) / -np.expm1(-steep)
+    mean: FloatArray = as_floats(depth) * np.where(flat, series, closed)
+    return mean
+
+
+def column_heat_capacity(
+    depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike, dof: float = 3
+) -> FloatArray:
+    r"""Return the heat capacity per molecule of a closed column, in units of k.
+
+    Heat a column and its molecules also rise: :math:`C/Nk = f/2 + 1 - a^2 e^a / (e^a - 1)^2`, the derivative
+    of :math:`(f/2) kT + m g \langle z \rangle`. It goes from that of a box at constant volume, :math:`f/2`,
+    to that at constant pressure, :math:`f/2 + 1`.
+
+    Parameters
+    ----------
+    depth
+        Depth H of the column [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2]; zero is allowed.
+    dof
+        Degrees of freedom f of one molecule [1].
+
+    Returns
+    -------
+    ndarray
+        Heat capacity per molecule over k [1].
+
+    Examples
+    --------
+    >>> [round(float(c), 4) for c in column_heat_capacity([0.0, 2.0, 50.0], 1.0, 1.0, 1.0)]
+    [1.5, 1.7759, 2.5]
+    """
+    a = _depth_in_scale_heights(depth, kT, mass, gravity)
+    capacity: FloatArray = dof / 2.0 + 1.0 - column_floor_ratio(depth, kT, mass, gravity) ** 2 * np.exp(-a)
+    return capacity
+
+
+def column_weight(molecules_per_area: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
+    r"""Return the weight of a column per area, :math:`N m g`.
+
+    The floor is pressed harder than the ceiling by just this: in every gas, dense or thin, in equilibrium or
+    in any steady state.
+
+    Parameters
+    ----------
+    molecules_per_area
+        Molecules above each unit of area [length^-2].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2].
+
+    Returns
+    -------
+    ndarray
+        Pressure on the floor less that on the ceiling [pressure].
+
+    Examples
+    --------
+    Above each square metre stand 2.15e29 molecules of air, ten tonnes:
+
+    >>> from atmosbox.units import DRY_AIR, STANDARD_GRAVITY
+    >>> weight = column_weight(2.15e29, DRY_AIR.molecule_mass, STANDARD_GRAVITY)
+    >>> print(f"{weight / 100.0:.0f} hPa")
+    1014 hPa
+    """
+    return as_floats(molecules_per_area) * as_floats(mass) * as_floats(gravity)
+
+
+def barometric_density(
+    height: ArrayLike,
+    molecules_per_area: float,
+    bottom: float,
+    top: float,
+    kT: float,
+    mass: float,
+    gravity: float,
+) -> FloatArray:
+    r"""Return the number density at each height of a closed isothermal column of ideal gas.
+
+    The barometric law, with the constant that makes it hold the given number of molecules.
+
+    Parameters
+    ----------
+    height
+        Heights [length]; outside the column the density is zero.
+    molecules_per_area
+        Molecules above each unit of area [length^-2].
+    bottom, top
+        Lowest and highest place of a molecule's centre [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a molecule [mass].
+    gravity
+        Acceleration of gravity [length time^-2]; zero is allowed.
+
+    Returns
+    -------
+    ndarray
+        Number density [length^-3].
+
+    Examples
+    --------
+    >>> barometric_density([0.0, 1.0, 2.0, 3.0], 10.0, 0.0, 2.0, 1.0, 1.0, 1.0).round(3)
+    array([11.565,  4.255,  1.565,  0.   ])
+    """
+    z, depth = as_floats(height), top - bottom
+    inside = (z >= bottom) & (z <= top)
+    floor = molecules_per_area / depth * column_floor_ratio(depth, kT, mass, gravity)
+    above = np.where(inside, z - bottom, 0.0)
+    density: FloatArray = np.where(inside, barometric_pressure(above, floor, kT, mass, gravity), 0.0)
+    return density

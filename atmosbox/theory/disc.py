@@ -1,0 +1,169 @@
+r"""Discs: the gas of a two-dimensional scene, all centres and velocities in one plane.
+
+The packing fraction is the share of the area covered, :math:`\eta = \pi n \sigma^2 / 4` with n molecules per
+area.
+"""
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.theory._array import FloatArray, as_floats
+
+DiscForm = Literal["henderson", "santos-lopez-yuste"]
+
+_CLOSE_PACKING = np.pi * np.sqrt(3.0) / 6.0
+_HIGHEST_PACKING: dict[str, float] = {"henderson": 1.0, "santos-lopez-yuste": _CLOSE_PACKING}
+
+
+def packing_fraction_discs(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray:
+    r"""Return the share of the area that discs cover, :math:`\eta = \pi n \sigma^2 / 4`.
+
+    Parameters
+    ----------
+    number_density
+        Molecules per area [length^-2].
+    diameter
+        Diameter of a disc [length].
+
+    Returns
+    -------
+    ndarray
+        Packing fraction [1].
+
+    Examples
+    --------
+    Discs in the closest packing cover nine tenths of the plane:
+
+    >>> round(float(packing_fraction_discs(2.0 / 3.0**0.5, 1.0)), 4)
+    0.9069
+    """
+    return np.pi / 4.0 * as_floats(number_density) * as_floats(diameter) ** 2
+
+
+def contact_value_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+    r"""Return the pair distribution of discs at contact, :math:`g(\sigma) = (Z - 1) / (2 \eta)`.
+
+    Parameters
+    ----------
+    packing_fraction
+        Share of the area covered [1].
+    form
+        Equation of state: ``"henderson"`` [1]_ or ``"santos-lopez-yuste"`` [2]_.
+
+    Returns
+    -------
+    ndarray
+        Pair distribution at contact [1].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+    .. [2] Santos, A., López de Haro, M., Yuste, S. B. (1995), J. Chem. Phys. 103, 4622.
+
+    Examples
+    --------
+    >>> round(float(contact_value_discs(0.3)), 4)
+    1.773
+    """
+    if form not in _HIGHEST_PACKING:
+        raise ValueError(f"form = {form!r} must be one of {', '.join(_HIGHEST_PACKING)}.")
+    eta = as_floats(packing_fraction)
+    if not np.all((eta >= 0.0) & (eta < _HIGHEST_PACKING[form])):
+        highest = _HIGHEST_PACKING[form]
+        raise ValueError(f"packing_fraction must lie in [0, {highest:.4g}) for the {form} equation of state.")
+    if form == "henderson":
+        return (1.0 - 7.0 * eta / 16.0) / (1.0 - eta) ** 2
+    bend = (2.0 * _CLOSE_PACKING - 1.0) / _CLOSE_PACKING**2
+    contact: FloatArray = (1.0 - bend * eta / 2.0) / (1.0 - 2.0 * eta + bend * eta**2)
+    return contact
+
+
+def compressibility_factor_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+    r"""Return how many times harder discs press than an ideal gas in two dimensions, :math:`Z = P / (n k T)`.
+
+    Parameters
+    ----------
+    packing_fraction
+        Share of the area covered [1].
+    form
+        ``"henderson"`` [1]_, :math:`Z = (1 + \eta^2/8) / (1 - \eta)^2`, or ``"santos-lopez-yuste"`` [2]_,
+        :math:`1/Z = 1 - 2\eta + (2\eta_{cp} - 1)(\eta/\eta_{cp})^2` with :math:`\eta_{cp} = \pi\sqrt{3}/6`.
+        They differ by 0.1 % at a tenth covered and by 2 % near freezing, at 0.70.
+
+    Returns
+    -------
+    ndarray
+        Compressibility factor [1].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+    .. [2] Santos, A., López de Haro, M., Yuste, S. B. (1995), J. Chem. Phys. 103, 4622.
+
+    Examples
+    --------
+    >>> round(float(compressibility_factor_discs(0.5)), 6)
+    4.125
+    """
+    return 1.0 + 2.0 * as_floats(packing_fraction) * contact_value_discs(packing_fraction, form)
+
+
+def collision_rate_discs(
+    number_density: ArrayLike,
+    diameter: ArrayLike,
+    kT: ArrayLike,
+    mass: ArrayLike,
+    form: DiscForm = "henderson",
+) -> FloatArray:
+    r"""Return how often one disc is hit, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}`.
+
+    Parameters
+    ----------
+    number_density
+        Molecules per area [length^-2].
+    diameter
+        Diameter of a disc [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a disc [mass].
+    form
+        Equation of state that gives the contact value, as in :func:`compressibility_factor_discs`.
+
+    Returns
+    -------
+    ndarray
+        Collisions per disc and time [time^-1]; N discs have half of N times this many.
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+
+    Examples
+    --------
+    A thin gas of discs: the rate is that of points times the width of the strip a disc sweeps.
+
+    >>> round(float(collision_rate_discs(1e-6, 1.0, 1.0, 1.0) * 1e6), 4)
+    3.5449
+    """
+    contact = contact_value_discs(packing_fraction_discs(number_density, diameter), form)
+    sweep = 2.0 * as_floats(number_density) * as_floats(diameter)
+    rate: FloatArray = sweep * contact * np.sqrt(np.pi * as_floats(kT) / as_floats(mass))
+    return rate

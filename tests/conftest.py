@@ -1,0 +1,36 @@
+"""The tiers of the suite, and what all tests share.
+
+unmarked
+    Everything that guards the code, a few minutes in all: ``python -m pytest``. Each physical law is held to
+    the accuracy that its own sampling allows, with fixed seeds.
+``@pytest.mark.validate``
+    Long statistical tests that narrow the error bars further. They are left out unless asked for:
+    ``--validate`` runs them with the rest, ``-m validate`` alone, and a test named by its node id
+    (``file.py::test_name``) runs in any case.
+
+Timings are never tests; they live in ``benchmarks/``. Every warning is an error.
+"""
+
+import os
+
+from hypothesis import settings
+
+os.environ.setdefault("MPLBACKEND", "agg")
+
+# A kernel's first call compiles it, which no deadline should judge; and two runs of the suite test the same.
+settings.register_profile("atmosbox", deadline=None, derandomize=True)
+settings.load_profile("atmosbox")
+
+
+def pytest_addoption(parser):
+    parser.addoption("--validate", action="store_true", help="also run the long statistical tests")
+
+
+def pytest_collection_modifyitems(config, items):
+    named = any("::" in argument for argument in config.args)
+    if config.getoption("--validate") or config.getoption("-m") or named:
+        return
+    left_out = [item for item in items if item.get_closest_marker("validate")]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]

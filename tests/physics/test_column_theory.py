@@ -1,0 +1,161 @@
+"""Columns in gravity: the barometric law, and spheres that carry each other's weight."""
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+from scipy import integrate
+
+from atmosbox import theory
+
+
+@pytest.mark.parametrize(
+    ("depth", "mean", "floor", "top", "capacity"),
+    [
+        (0.1, 0.491668, 1.050833, 0.904837, 1.500833),
+        (0.5, 0.458506, 1.270747, 0.606531, 1.520575),
+        (1, 0.418023, 1.581977, 0.367879, 1.579326),
+        (2, 0.343482, 2.313035, 0.135335, 1.775938),
+        (5, 0.193216, 5.033918, 0.006738, 2.329258),
+        (20, 0.05, 20.0, 2.1e-9, 2.499999),
+    ],
+)
+def test_a_finite_column_has_the_tabulated_profile(depth, mean, floor, top, capacity):
+    column = depth, 1.0, 1.0, 1.0  # depth in scale heights
+    assert theory.column_mean_height(*column) / depth == pytest.approx(mean, abs=5e-7)
+    assert theory.column_floor_ratio(*column) == pytest.approx(floor, abs=5e-7)
+    assert theory.column_top_ratio(*column) == pytest.approx(top, abs=min(5e-7, 0.03 * top))
+    assert theory.column_heat_capacity(*column) == pytest.approx(capacity, abs=5e-7)
+
+
+def test_the_heat_capacity_of_a_column_is_the_slope_of_its_energy():
+    def energy(kT):
+        return 2.5 * kT + 0.8 * 1.1 * theory.column_mean_height(4.0, kT, 0.8, 1.1)
+
+    slope = (energy(1.5 + 1e-5) - energy(1.5 - 1e-5)) / 2e-5
+    assert theory.column_heat_capacity(4.0, 1.5, 0.8, 1.1, dof=5) == pytest.approx(slope, rel=1e-9)
+
+
+def test_a_column_without_gravity_is_a_box():
+    assert float(theory.column_mean_height(4.0, 1.0, 1.0, 0.0)) == 2.0
+    assert float(theory.column_floor_ratio(4.0, 1.0, 1.0, 0.0)) == 1.0
+    assert float(theory.column_heat_capacity(4.0, 1.0, 1.0, 0.0)) == 1.5
+
+
+def test_the_mean_height_has_no_seam_where_the_series_begins():
+    near = theory.column_mean_height(1.0, 1.0, 1.0, np.array([0.05 - 1e-9, 0.05 + 1e-9]))
+    assert near[0] - near[1] == pytest.approx(2e-9 / 12.0, rel=1e-2)
+    assert float(theory.column_mean_height(1.0, 1.0, 1.0, 1e4)) == pytest.approx(1e-4, rel=1e-12)
+
+
+def test_a_barometric_column_holds_its_molecules_and_carries_their_weight():
+    column = {"bottom": 0.5, "top": 9.5, "kT": 1.3, "mass": 0.9, "gravity": 0.7}
+    assert theory.scale_height(1.3, 0.9, 0.7) == pytest.approx(1.3 / 0.63, rel=1e-15)
+    count = integrate.quad(lambda z: float(theory.barometric_density(z, 20.0, **column)), 0.5, 9.5)[0]
+    assert count == pytest.approx(20.0, rel=1e-10)
+    floor, ceiling = theory.gas_pressure(theory.barometric_density([0.5, 9.5], 20.0, **column), 1.3)
+    assert floor - ceiling == pytest.approx(theory.column_weight(20.0, 0.9, 0.7), rel=1e-14)
+    aloft = theory.barometric_pressure(9.0, floor, 1.3, 0.9, 0.7)
+    assert aloft == pytest.approx(ceiling, rel=1e-14)
+
+
+DENSE = {
+    "molecules_per_area": 3.0,
+    "bottom": 0.5,
+    "top": 11.5,
+    "kT": 1.2,
+    "mass": 1.5,
+    "gravity": 0.2,
+    "diameter": 1.0,
+}
+
+
+@pytest.mark.parametrize("form", ["kolafa", "carnahan-starling"])
+def test_a_dense_column_is_in_hydrostatic_balance(form):
+    heights = np.linspace(0.5, 11.5, 12)
+    density = theory.hydrostatic_column(heights, **DENSE, form=form)
+
+    def balance(_height, n):
+        stiffness = theory.inverse_compressibility(theory.packing_fraction(n, 1.0), form)
+        return -n * 1.5 * 0.2 / (1.2 * stiffness)
+
+    fall = integrate.solve_ivp(
+        balance, (0.5, 11.5), density[:1], t_eval=heights, method="DOP853", rtol=1e-12, atol=1e-14
+    )
+    assert density[0] > 2.0 * density[-1]  # it is a column worth the name
+    assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
+
+
+@pytest.mark.parametrize("form", ["kolafa", "carnahan-starling"])
+def test_a_dense_column_holds_its_molecules_and_carries_their_weight(form):
+    nodes, weights = leggauss(64)
+    inside = theory.hydrostatic_column(6.0 + 5.5 * nodes, **DENSE, form=form)
+    assert 5.5 * weights @ inside == pytest.approx(3.0, rel=1e-11)
+    ends = theory.hydrostatic_column([0.5, 11.5], **DENSE, form=form)
+    floor, ceiling = theory.gas_pressure(ends, 1.2, 1.0, form)
+    assert floor - ceiling == pytest.approx(theory.column_weight(3.0, 1.5, 0.2), rel=1e-12)
+
+
+def test_layers_of_a_column_hold_what_their_profile_says():
+    edges = np.array([0.0, 0.4, 2.0, 5.0, 9.0, 12.0])
+    layers = theory.hydrostatic_layers(edges, **DENSE)
+    assert layers[0] == 0.0
+    assert layers @ np.diff(edges) == pytest.approx(3.0, rel=1e-12)
+    nodes, weights = leggauss(40)
+    middle = theory.hydrostatic_column(3.5 + 1.5 * nodes, **DENSE) @ weights / 2.0
+    assert layers[2] == pytest.approx(middle, rel=1e-12)
+    # The last layer is partly above the highest place of a centre.
+    top = theory.hydrostatic_column(10.25 + 1.25 * nodes, **DENSE) @ weights / 2.0 * 2.5 / 3.0
+    assert layers[4] == pytest.approx(top, rel=1e-12)
+
+
+def test_a_column_of_tiny_spheres_is_barometric():
+    heights = np.linspace(0.0, 12.0, 25)
+    tiny = theory.hydrostatic_column(heights, **(DENSE | {"diameter": 1e-4}))
+    points = theory.hydrostatic_column(heights, **(DENSE | {"diameter": 0.0}))
+    assert np.count_nonzero(points == 0.0) == 2  # below the bottom and above the top
+    assert np.allclose(tiny, points, rtol=1e-11, atol=0.0)
+
+
+@pytest.mark.parametrize("gravity", [0.0, 1e-12])
+def test_a_dense_column_without_gravity_is_uniform(gravity):
+    density = theory.hydrostatic_column([0.5, 6.0, 11.5], **(DENSE | {"gravity": gravity}))
+    assert np.allclose(density, 3.0 / 11.0, rtol=1e-11, atol=0.0)
+
+
+def test_a_dense_column_has_no_seam_where_it_becomes_shallow():
+    # The depth of 0.01 scale heights at which the method changes, from both sides.
+    gravity = 0.01 * 1.2 / (1.5 * 11.0) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
+    floor = [float(theory.hydrostatic_column(0.5, **(DENSE | {"gravity": g}))) for g in gravity]
+    assert floor[0] == pytest.approx(floor[1], rel=1e-11)
+
+
+def test_a_very_deep_column_ends_in_vacuum_without_a_warning():
+    deep = DENSE | {"gravity": 0.1, "top": 1e5}
+    density = theory.hydrostatic_column([0.5, 20.0, 9e4], **deep)
+    assert density[0] > density[1] > density[2] == 0.0
+
+
+def test_a_column_that_would_freeze_is_refused():
+    with pytest.raises(ValueError, match="molecules_per_area = 12 is more than a gas can hold"):
+        theory.hydrostatic_column(1.0, **(DENSE | {"molecules_per_area": 12.0}))
+    with pytest.raises(ValueError, match="freeze"):
+        theory.hydrostatic_column(1.0, **(DENSE | {"gravity": 100.0}))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        ({"kT": 0.0}, "kT = 0.0 must be a finite number above 0"),
+        ({"mass": np.nan}, "mass = nan must be a finite number above 0"),
+        ({"gravity": -1.0}, "gravity = -1.0 must be a finite number of at least 0"),
+        ({"top": 0.5}, "top = 0.5 must lie above bottom = 0.5"),
+    ],
+)
+def test_columns_that_make_no_sense_are_refused(wrong, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        theory.hydrostatic_column(1.0, **(DENSE | wrong))
+
+
+def test_layers_must_rise():
+    with pytest.raises(ValueError, match="edges must be at least two heights, each above the one before"):
+        theory.hydrostatic_layers([0.0, 2.0, 1.0], **DENSE)

@@ -1,0 +1,128 @@
+"""Adiabats, pistons and the air around a parcel: textbook values, and the laws that tie them together."""
+
+import numpy as np
+import pytest
+from scipy import integrate
+
+from atmosbox import theory
+from atmosbox.units import BOLTZMANN, DRY_AIR, STANDARD_GRAVITY
+
+
+def test_the_dry_adiabat_from_1000_to_500_hectopascal():
+    assert theory.dry_adiabat_temperature(500.0, 1.0, 1000.0) == pytest.approx(0.820335, abs=5e-7)
+    assert theory.dry_adiabat_temperature(500.0, 1.0, 1000.0, dof=3) == pytest.approx(0.757858, abs=5e-7)
+
+
+def test_the_dry_adiabat_is_metpys():
+    from metpy.calc import dry_lapse
+    from metpy.units import units
+
+    pressure = np.array([1000.0, 850.0, 500.0, 300.0, 100.0])
+    expected = dry_lapse(pressure * units.hPa, 293.15 * units.kelvin).to("kelvin").magnitude
+    assert np.allclose(theory.dry_adiabat_temperature(pressure, 293.15, 1000.0), expected, rtol=1e-12)
+
+
+def test_the_adiabats_in_volume_and_in_pressure_are_one():
+    for dof in (2, 3, 5):
+        temperature = theory.adiabatic_temperature(3.0, 1.0, 1.0, dof)
+        assert theory.dry_adiabat_temperature(temperature / 3.0, 1.0, 1.0, dof) == pytest.approx(temperature)
+        gamma = theory.adiabatic_index(dof)
+        assert temperature / 3.0 == pytest.approx(3.0**-gamma, rel=1e-14)
+    assert np.allclose(theory.adiabatic_index([2, 3, 5]), [2.0, 5.0 / 3.0, 1.4], rtol=1e-15)
+
+
+def test_the_dry_adiabatic_lapse_rate():
+    # 9.80665 / 1004.666, MetPy's heat capacity; ours differs by its molar mass, 28.9647 g/mol for 28.9655.
+    assert 1000.0 * theory.dry_lapse_rate(9.80665, 1004.666 / 3.5) == pytest.approx(9.7611, abs=5e-5)
+    assert 1000.0 * theory.dry_lapse_rate() == pytest.approx(9.7608, abs=5e-5)
+    specific = BOLTZMANN / DRY_AIR.molecule_mass
+    molecule = DRY_AIR.molecule_mass * STANDARD_GRAVITY / (3.5 * BOLTZMANN)
+    assert theory.dry_lapse_rate(STANDARD_GRAVITY, specific) == pytest.approx(molecule, rel=1e-14)
+    assert theory.dry_lapse_rate(1.0, 1.0, dof=3) == pytest.approx(0.4, rel=1e-15)
+
+
+def test_a_parcel_lifted_through_air_of_its_own_temperature_follows_the_dry_lapse_rate():
+    rate = theory.dry_lapse_rate()
+    pressure = theory.environment_pressure(3000.0, 290.0, 1e5, rate)
+    parcel = theory.dry_adiabat_temperature(pressure, 290.0, 1e5)
+    assert parcel == pytest.approx(theory.environment_temperature(3000.0, 290.0, rate), rel=1e-13)
+
+
+def test_isothermal_work_is_the_integral_of_the_pressure():
+    work = integrate.quad(lambda volume: 200.0 * 1.5 / volume, 2.0, 7.0)[0]
+    assert theory.isothermal_work(200, 1.5, 2.0, 7.0) == pytest.approx(work, rel=1e-12)
+    assert theory.isothermal_work(200, 1.5, 7.0, 2.0) == pytest.approx(-work, rel=1e-12)
+
+
+@pytest.mark.parametrize("s", [-1.0, -0.1, 0.0, 0.3, 2.0])
+def test_the_pressure_on_a_moving_piston_is_that_of_the_molecules_that_catch_it(s):
+    # kT = 1/2 and mass 1, so that the most probable speed is 1: 2 n m (v - u)^2 over v > u, over n kT.
+    pressed = integrate.quad(lambda v: 2.0 * (v - s) ** 2 * np.exp(-(v**2)) / np.sqrt(np.pi), s, np.inf)[0]
+    assert theory.piston_pressure_ratio(s, 0.5, 1.0) == pytest.approx(pressed / 0.5, rel=1e-9)
+
+
+def test_a_slow_piston_loses_four_over_root_pi_of_its_speed():
+    loss = 1.0 - theory.piston_pressure_ratio(1e-6, 0.5, 1.0)
+    assert loss == pytest.approx(4e-6 / np.sqrt(np.pi), rel=1e-5)
+    assert 1.0 - theory.piston_pressure_ratio(0.0044, 0.5, 1.0) == pytest.approx(0.010, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("height", "hectopascal"),
+    [(0, 1013.25), (1000, 898.746), (5000, 540.199), (11000, 226.320), (20000, 54.749)],
+)
+def test_the_standard_atmosphere_has_its_tabulated_pressure(height, hectopascal):
+    # A table that says 226.321 is the US standard of 1976, whose air weighs 28.9644 g/mol, not 28.96442.
+    assert theory.isa_pressure(height) / 100.0 == pytest.approx(hectopascal, abs=5e-4)
+    assert theory.isa_height(theory.isa_pressure(height)) == pytest.approx(height, abs=1e-8)
+
+
+def test_the_us_standard_atmosphere_of_1976_differs_by_its_air():
+    lighter = 8314.32 / 28.9644
+    pressure = theory.environment_pressure(11000.0, 288.15, 101325.0, 6.5e-3, 9.80665, lighter)
+    assert pressure / 100.0 == pytest.approx(226.321, abs=5e-4)
+
+
+def test_the_standard_atmosphere_above_the_tropopause():
+    heights = np.array([-2000.0, 11000.0, 15000.0, 32000.0, 47000.0, 51000.0, 71000.0, 80000.0])
+    temperatures = [301.15, 216.65, 216.65, 228.65, 270.65, 270.65, 214.65, 196.65]
+    assert np.allclose(theory.isa_temperature(heights), temperatures, rtol=1e-14)
+    pressures = theory.isa_pressure(heights)
+    # ISO 2533 and the US standard share these to four digits.
+    assert np.allclose(pressures[3:7], [868.02, 110.91, 66.939, 3.9564], rtol=5e-5)
+    assert np.allclose(theory.isa_height(pressures), heights, rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("lapse_rate", [9.8e-3, 6.5e-3, 1e-9, 0.0, -5e-3])
+def test_height_and_pressure_of_an_environment_are_inverse(lapse_rate):
+    heights = np.array([-100.0, 0.0, 10.0, 3000.0, 9000.0])
+    pressures = theory.environment_pressure(heights, 290.0, 1e5, lapse_rate)
+    back = theory.height_of_pressure(pressures, 290.0, 1e5, lapse_rate)
+    assert np.allclose(back, heights, rtol=1e-12, atol=1e-9)
+
+
+def test_a_vanishing_lapse_rate_is_isothermal():
+    exact = theory.environment_pressure(8000.0, 280.0, 1e5, 0.0)
+    assert theory.environment_pressure(8000.0, 280.0, 1e5, 1e-13) == pytest.approx(exact, rel=1e-11)
+    kT, mass = BOLTZMANN * 280.0, DRY_AIR.molecule_mass
+    barometric = theory.barometric_pressure(8000.0, 1e5, kT, mass, STANDARD_GRAVITY)
+    assert exact == pytest.approx(barometric, rel=1e-13)
+    assert theory.hypsometric_thickness(1e5, exact, 280.0) == pytest.approx(8000.0, rel=1e-13)
+
+
+def test_the_environment_is_in_hydrostatic_balance():
+    rise = theory.environment_pressure(np.array([4999.0, 5001.0]), 288.15, 101325.0, 6.5e-3)
+    temperature = theory.environment_temperature(5000.0, 288.15, 6.5e-3)
+    density = theory.environment_pressure(5000.0, 288.15, 101325.0, 6.5e-3) / (
+        theory.DRY_AIR_GAS_CONSTANT * temperature
+    )
+    assert -np.diff(rise)[0] / 2.0 == pytest.approx(density * STANDARD_GRAVITY, rel=1e-7)
+
+
+def test_heights_above_the_atmosphere_are_refused():
+    with pytest.raises(ValueError, match="absolute zero"):
+        theory.environment_pressure(50000.0, 288.15, 101325.0, 6.5e-3)
+    with pytest.raises(ValueError, match="height must lie between -2000 m and 80000 m"):
+        theory.isa_temperature([0.0, 90000.0])
+    with pytest.raises(ValueError, match=r"pressure must lie between 0\.886 Pa and 127774 Pa"):
+        theory.isa_height(0.0)

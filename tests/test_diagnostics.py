@@ -1,0 +1,258 @@
+"""The declarations of the variables, and the dataset that is made of them."""
+
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from atmosbox.diagnostics import VARIABLES, dataset, headline_variables, variable
+from atmosbox.errors import EngineError
+
+TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
+
+
+def headline(name="lapse_rate", value=9.7, **fields):
+    """Return a headline as a scene states it."""
+    stated = {
+        "standard_error": 0.1,
+        "theory": 9.8,
+        "tolerance": 0.4,
+        "unit": "K km-1",
+        "reason": "a finite rise",
+    }
+    return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
+
+
+@pytest.mark.parametrize("name", VARIABLES)
+def test_every_declared_variable_has_words_and_a_unit(name):
+    declared = VARIABLES[name]
+    assert declared.name == name
+    assert declared.long_name
+    assert bool(declared.units) == (declared.dtype != "U" and not declared.flags)
+
+
+@pytest.mark.parametrize("name", VARIABLES)
+def test_the_dimensions_of_every_variable_are_declared(name):
+    assert set(VARIABLES[name].dims) <= {"elapsed_time", "height", "speed", "wall", "molecule", "axis"}
+
+
+def test_every_standard_name_is_in_the_table_of_cf():
+    cf = pytest.importorskip("compliance_checker.cf.util")
+    table = cf.StandardNameTable()
+    used = {declared.standard_name for declared in VARIABLES.values()} - {None}
+    assert len(used) >= 5
+    for name in used:
+        assert name in table
+
+
+def test_an_error_bar_has_the_standard_name_of_its_parent_with_the_modifier_of_cf():
+    assert variable("air_pressure_se").standard_name == "air_pressure standard_error"
+    assert variable("number_density_se").standard_name is None
+
+
+def test_a_number_of_samples_is_what_cf_calls_the_number_of_observations():
+    assert variable("number_density_count").standard_name == "number_of_observations"
+    assert variable("number_density_count").units == "1"
+
+
+def test_an_answer_of_theory_is_the_same_quantity_and_a_tolerance_is_not():
+    assert variable("air_pressure_theory").standard_name == "air_pressure"
+    assert variable("air_pressure_tolerance").standard_name is None
+    assert variable("air_pressure_tolerance").units == "Pa"
+
+
+def test_no_companion_keeps_the_books_or_is_an_average():
+    for name in ("kinetic_energy_se", "air_pressure_theory"):
+        assert not variable(name).ledger
+        assert variable(name).cell_methods is None
+
+
+@pytest.mark.parametrize(
+    ("name", "metadata"),
+    [
+        ("air_temperature", "temperature: on_scale"),
+        ("air_temperature_theory", "temperature: on_scale"),
+        ("air_temperature_se", "temperature: difference"),
+        ("air_temperature_tolerance", "temperature: difference"),
+        ("air_temperature_count", None),
+        ("air_pressure", None),
+        ("disc_mass", None),
+    ],
+)
+def test_every_temperature_says_whether_it_is_a_difference(name, metadata):
+    assert variable(name).units_metadata == metadata
+
+
+def test_a_variable_that_is_not_declared_is_refused():
+    with pytest.raises(KeyError, match="air_temprature"):
+        dataset({"air_temprature": [1.0, 2.0, 3.0]}, TIMES, {})
+
+
+def test_an_error_bar_of_nothing_is_refused():
+    with pytest.raises(KeyError, match="nothing_se"):
+        variable("nothing_se")
+
+
+def test_a_measurement_names_its_companions():
+    names = ["air_temperature", "air_temperature_theory", "air_temperature_se", "air_temperature_count"]
+    run = dataset({name: [1.0, 2.0, 3.0] for name in names}, TIMES, {})
+    named = run.air_temperature.attrs["ancillary_variables"].split()
+    assert sorted(named) == sorted(names[1:])
+    assert all("ancillary_variables" not in run[name].attrs for name in named)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_ledger_that_is_not_finite_stops_the_run(value):
+    with pytest.raises(EngineError, match=r"kinetic_energy is not finite at \[1\]"):
+        dataset({"kinetic_energy": [1.0, value, 2.0]}, TIMES, {})
+
+
+def test_a_count_that_is_not_finite_stops_the_run():
+    with pytest.raises(EngineError, match="collision_count"):
+        dataset({"collision_count": [1.0, np.nan, 2.0]}, TIMES, {})
+
+
+def test_a_measurement_of_nothing_is_nan_and_has_a_fill_value():
+    run = dataset({"air_temperature": [300.0, np.nan, 301.0]}, TIMES, {})
+    assert np.isnan(run.air_temperature.values[1])
+    assert np.isnan(run.air_temperature.encoding["_FillValue"])
+
+
+def test_coordinates_bounds_and_ledgers_have_no_fill_value():
+    coords = TIMES | {"elapsed_time_bnds": [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]}
+    run = dataset({"kinetic_energy": [1.0, 2.0, 3.0], "collision_count": [0, 1, 2]}, coords, {})
+    for name in ("elapsed_time", "elapsed_time_bnds", "kinetic_energy", "collision_count"):
+        assert run[name].encoding["_FillValue"] is None
+    assert run.elapsed_time.attrs["bounds"] == "elapsed_time_bnds"
+    assert run.elapsed_time_bnds.attrs == {}
+    assert "elapsed_time_bnds" not in run.coords
+
+
+def test_time_is_a_float_in_the_unit_of_the_scene_and_no_date():
+    run = dataset(
+        {"air_temperature": [1.0, 2.0, 3.0]}, {"elapsed_time": [0.001, 0.002, 0.003]}, {}, time_unit="ps"
+    )
+    assert run.elapsed_time.dtype == float
+    assert run.elapsed_time.attrs["units"] == "ps"
+    assert "standard_name" not in run.elapsed_time.attrs
+    with pytest.raises(ValueError, match="minutes"):
+        dataset({}, TIMES, {}, time_unit="minutes")
+
+
+@pytest.mark.parametrize("times", [[1.0, 1.0, 2.0], [3.0, 2.0, 1.0]])
+def test_a_coordinate_must_rise(times):
+    with pytest.raises(ValueError, match="elapsed_time does not rise"):
+        dataset({"air_temperature": [1.0, 2.0, 3.0]}, {"elapsed_time": times}, {})
+
+
+def test_only_a_coordinate_can_be_given_as_one():
+    with pytest.raises(KeyError, match="no coordinate"):
+        dataset({}, {**TIMES, "air_temperature": [1.0, 2.0, 3.0]}, {})
+
+
+def test_a_dimension_without_a_coordinate_is_refused():
+    with pytest.raises(KeyError, match="height"):
+        dataset({"layer_pressure": [1.0, 2.0]}, {}, {})
+    with pytest.raises(KeyError, match="wall"):
+        dataset({"heat_from_wall": np.zeros((3, 2))}, TIMES, {})
+
+
+def test_an_array_of_another_shape_is_refused():
+    with pytest.raises(ValueError, match="heat_from_wall has the shape"):
+        dataset({"heat_from_wall": [1.0, 2.0, 3.0]}, TIMES, {})
+    with pytest.raises(ValueError, match="elapsed_time"):
+        dataset({"air_temperature": [1.0, 2.0]}, TIMES, {})
+
+
+def test_a_wall_is_found_by_its_name():
+    run = dataset({"heat_from_wall": np.arange(18.0).reshape(3, 6)}, TIMES, {})
+    assert run.heat_from_wall.sel(wall="z_high").values.tolist() == [5.0, 11.0, 17.0]
+
+
+def test_two_walls_can_be_named():
+    run = dataset({"heat_from_wall": np.zeros((3, 2))}, {**TIMES, "wall": ["z_low", "z_high"]}, {})
+    assert run.wall.values.tolist() == ["z_low", "z_high"]
+
+
+def test_species_are_flags_with_meanings():
+    run = dataset({"species": [0, 1, 0]}, {}, {})
+    assert run.species.dtype == np.int8
+    assert run.species.attrs["flag_values"].tolist() == [0, 1]
+    assert run.species.attrs["flag_meanings"] == "dry_air water"
+
+
+@pytest.mark.parametrize(
+    ("frames", "molecules", "chunks"),
+    [(1000, 800, (100, 800, 3)), (7, 800, (7, 800, 3)), (1000, 100_000, (100, 3333, 3)), (0, 0, (1, 1, 3))],
+)
+def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_megabytes(
+    frames, molecules, chunks
+):
+    assert variable("molecule_position").encoding((frames, molecules, 3)) == {
+        "dtype": "f4",
+        "_FillValue": pytest.approx(np.nan, nan_ok=True),
+        "zlib": True,
+        "complevel": 4,
+        "shuffle": True,
+        "chunksizes": chunks,
+    }
+
+
+def test_a_headline_becomes_four_numbers_in_si():
+    held = headline_variables(headline())
+    assert {name: pytest.approx(float(number.values)) for name, number in held.items()} == {
+        "lapse_rate": 9.7e-3,
+        "lapse_rate_se": 1e-4,
+        "lapse_rate_theory": 9.8e-3,
+        "lapse_rate_tolerance": 4e-4,
+    }
+    assert held["lapse_rate"].attrs["units"] == "K m-1"
+    assert held["lapse_rate"].attrs["display_units"] == "K km-1"
+    assert held["lapse_rate"].attrs["comment"] == "a finite rise"
+    assert held["lapse_rate"].attrs["units_metadata"] == "temperature: difference"
+
+
+def test_the_error_of_a_temperature_in_degrees_celsius_is_not_shifted_by_273():
+    held = headline_variables(
+        headline("final", 20.0, unit="degC", standard_error=0.5, theory=21.0, tolerance=2.0)
+    )
+    assert [float(number.values) for number in held.values()] == [293.15, 0.5, 294.15, 2.0]
+    assert held["final"].attrs["units_metadata"] == "temperature: on_scale"
+    assert held["final_se"].attrs["units_metadata"] == "temperature: difference"
+
+
+def test_whether_a_headline_in_kelvin_is_a_difference_is_left_open():
+    held = headline_variables(headline("misfit", 0.3, unit="K"))
+    assert held["misfit"].attrs["units_metadata"] == "temperature: unknown"
+    assert held["misfit_tolerance"].attrs["units_metadata"] == "temperature: difference"
+
+
+def test_what_a_headline_does_not_state_is_not_in_the_file():
+    held = headline_variables(
+        headline(value=None, theory=None, tolerance=None, standard_error=None, reason=None)
+    )
+    assert list(held) == ["lapse_rate"]
+    assert np.isnan(held["lapse_rate"].values)
+    assert "comment" not in held["lapse_rate"].attrs
+
+
+def test_the_headlines_are_listed_in_the_order_of_the_scene():
+    run = dataset({}, {}, {"title": "A box"}, [headline("second"), headline("first", standard_error=None)])
+    assert json.loads(run.attrs["atmosbox_headlines"]) == ["second", "first"]
+    assert run.second.attrs["ancillary_variables"] == "second_se second_theory second_tolerance"
+    assert run.attrs["title"] == "A box"
+
+
+def test_a_headline_may_not_hide_a_variable():
+    with pytest.raises(ValueError, match="air_temperature"):
+        dataset({"air_temperature": [1.0, 2.0, 3.0]}, TIMES, {}, [headline("air_temperature")])
+    with pytest.raises(ValueError, match="lapse_rate"):
+        dataset({}, {}, {}, [headline(), headline()])
+
+
+def test_the_arrays_of_the_caller_are_left_alone():
+    given = np.array([1.0, 2.0, 3.0])
+    run = dataset({"air_temperature": given}, TIMES, {})
+    run.air_temperature[0] = 99.0
+    assert given[0] == 1.0

@@ -1,0 +1,125 @@
+import copy
+import pickle
+
+import pytest
+
+from atmosbox import errors
+from atmosbox.errors import (
+    AtmosboxError,
+    ConfigError,
+    DiskFullError,
+    EngineError,
+    FileError,
+    PackingError,
+    PhysicsError,
+    SettingError,
+    UnitError,
+    UnknownSceneError,
+    UnknownSettingError,
+    shown,
+)
+
+TREE = [
+    # error, builtin that it also is, exit status
+    (AtmosboxError, Exception, 1),
+    (SettingError, ValueError, 2),
+    (UnknownSettingError, SettingError, 2),
+    (UnitError, SettingError, 2),
+    (PackingError, SettingError, 2),
+    (UnknownSceneError, LookupError, 2),
+    (ConfigError, ValueError, 2),
+    (FileError, OSError, 2),
+    (DiskFullError, FileError, 1),
+    (EngineError, RuntimeError, 1),
+    (PhysicsError, ArithmeticError, 3),
+]
+
+
+def made(error):
+    if issubclass(error, SettingError):
+        return error(
+            "temperature",
+            "-5 K",
+            "is below the lowest allowed, 1 K to 2000 K",
+            "give --set temperature=25degC",
+        )
+    return error("The disk is full.")
+
+
+@pytest.mark.parametrize(("error", "builtin", "status"), TREE)
+def test_every_error_is_an_atmosbox_error_and_a_builtin_with_a_status(error, builtin, status):
+    assert issubclass(error, AtmosboxError)
+    assert issubclass(error, builtin)
+    assert error.exit_code == status
+
+
+def test_the_tree_here_and_in_the_docstring_is_complete():
+    defined = {name for name in errors.__all__ if name.endswith("Error")}
+    assert {error.__name__ for error, _, _ in TREE} == defined
+    drawn = {word for word in errors.__doc__.split() if word.endswith("Error")}
+    assert defined <= drawn
+
+
+@pytest.mark.parametrize("error", [error for error, _, _ in TREE])
+def test_the_text_of_an_error_is_its_sentence(error):
+    expected = "The disk is full."
+    if issubclass(error, SettingError):
+        expected = (
+            "temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=25degC."
+        )
+    assert str(made(error)) == expected
+
+
+@pytest.mark.parametrize("error", [error for error, _, _ in TREE])
+def test_errors_survive_the_way_back_from_another_process(error):
+    original = made(error)
+    for twin in (pickle.loads(pickle.dumps(original)), copy.copy(original)):
+        assert type(twin) is error
+        assert str(twin) == str(original)
+        assert vars(twin) == vars(original)
+
+
+def test_a_setting_error_keeps_its_parts():
+    error = made(UnitError)
+    assert (error.setting, error.value, error.fix) == ("temperature", "-5 K", "give --set temperature=25degC")
+
+
+def test_a_setting_error_without_a_value_starts_with_the_setting_alone():
+    assert str(SettingError("--set x", None, "has no value", "give --set x=1")) == (
+        "--set x has no value: give --set x=1."
+    )
+
+
+class Stranger:
+    def __repr__(self):
+        raise RuntimeError
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ("25 degC", "25 degC"),
+        ("25°C", "25°C"),
+        ("", '""'),
+        (" 25", '" 25"'),
+        ("a\nb\x1b[31m\u202e", "a\\nb\\x1b[31m\\u202e"),
+        ("\ud800", "\\ud800"),
+        ("x" * 61, '"' + "x" * 60 + '..."'),
+        (True, "True"),
+        (2**63, "9223372036854775808"),
+        (10**60, "about 1e60"),
+        (10**400, "about 1e400"),
+        (10**400 - 1, "about 1e399"),
+        (-(10**4000), "about -1e4000"),
+        (float("nan"), "nan"),
+        ([1, 2], "[1, 2]"),
+        (Stranger(), "a Stranger"),
+    ],
+)
+def test_any_value_is_shown_on_one_short_printable_line(value, text):
+    assert shown(value) == text
+
+
+def test_a_number_too_long_to_be_written_out_is_shown():
+    assert shown(10**5000) == "about 1e5000"
+    assert shown([10**5000]) == "a list"

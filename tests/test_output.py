@@ -1,0 +1,638 @@
+"""Files: complete or absent, CF throughout, and read again as they were written."""
+
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+from atmosbox import output
+from atmosbox.diagnostics import VARIABLES, dataset
+from atmosbox.errors import DiskFullError, FileError, SettingError
+
+CHECKER = """
+import sys
+from compliance_checker.runner import CheckSuite, ComplianceChecker
+CheckSuite.load_all_available_checkers()
+passed, failed = ComplianceChecker.run_checker(sys.argv[1], ["cf:1.11"], 0, "strict", output_filename="-")
+sys.exit(failed or not passed)
+"""
+
+CHILD = """
+import os, sys, time
+import numpy as np
+from atmosbox.diagnostics import dataset
+from atmosbox.output import Checkpoint, global_attributes
+
+def run_so_far(frames):
+    times = np.arange(1.0, frames + 1)
+    attrs = global_attributes({"scene": "temperature"}, title="A box", command="a test", status="partial")
+    return dataset({"air_temperature": 300.0 + times}, {"elapsed_time": times}, attrs)
+"""
+
+
+def attributes(**extra):
+    parameters = {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
+    words = {"title": "Lifted air", "comment": "No ice, pas de glace à 25 °C.", "references": "doi:10.1000/1"}
+    return output.global_attributes(parameters, command=["atmosbox", "run", "lifting-dry"], **words) | extra
+
+
+def headline(name, value, unit, **fields):
+    stated = {
+        "standard_error": 0.1,
+        "theory": 9.8,
+        "tolerance": 0.4,
+        "label": "a number",
+        "reason": "finite speed",
+    }
+    return SimpleNamespace(**{"name": name, "value": value, "unit": unit, **stated, **fields})
+
+
+def times(count, step=0.001):
+    """Return frames a picosecond long, in nanoseconds."""
+    edges = step * np.arange(count + 1.0)
+    return {"elapsed_time": edges[1:], "elapsed_time_bnds": np.stack([edges[:-1], edges[1:]], axis=1)}
+
+
+def bins(name, count, width):
+    edges = width * np.arange(count + 1.0)
+    middle = (edges[1:] + edges[:-1]) / 2
+    return {name: middle, f"{name}_bnds": np.stack([edges[:-1], edges[1:]], axis=1)}
+
+
+def filled(names, coords, companions=("_se", "_count", "_theory", "_tolerance"), **sizes):
+    """Return an array for every variable named, and for its companions where it is measured."""
+    random = np.random.default_rng(1)
+    sizes = {"wall": 6, "axis": 3} | {name: len(values) for name, values in coords.items()} | sizes
+    frames = {}
+    for name in names:
+        shape = [sizes[dim] for dim in VARIABLES[name].dims]
+        measured = not VARIABLES[name].ledger and VARIABLES[name].dtype == "f8"
+        for suffix in ("", *companions) if measured else ("",):
+            frames[name + suffix] = (
+                random.integers(0, 2, shape) if VARIABLES[name].flags else random.random(shape)
+            )
+    return frames
+
+
+ALWAYS = [
+    *("air_temperature", "air_pressure", "wall_temperature", "kinetic_energy", "rotational_energy"),
+    *("potential_energy", "heat_from_wall", "work_by_piston", "ledger_residual", "collision_count"),
+    "wall_hit_count",
+]
+
+
+def lifting():
+    coords = times(50)
+    names = [
+        *ALWAYS,
+        *(name for name in VARIABLES if name.startswith(("parcel", "environment", "piston", "adiabat"))),
+    ]
+    frames = filled(names, coords, companions=("_se", "_theory"))
+    frames["parcel_temperature"][3] = np.nan
+    stated = [
+        headline("lapse_rate", 9.7, "K km-1"),
+        headline("final_temperature", 20.0, "degC"),
+        headline("misfit", 0.2, "K", reason=None),
+        headline("final_pressure", 300.0, "hPa", theory=None, tolerance=None),
+        headline("cloud_base", None, "km", standard_error=None, theory=None, tolerance=None),
+        headline("compressibility_factor", 1.001, "1"),
+    ]
+    return dataset(frames, coords, attributes(), stated)
+
+
+def column():
+    coords = times(4, 0.5) | bins("height", 20, 500.0)
+    names = [*ALWAYS, "number_density", "air_density", "layer_temperature", "layer_pressure"]
+    frames = filled(names, coords)
+    frames["layer_temperature"][-1] = np.nan
+    return dataset(frames, coords, attributes(), time_unit="s")
+
+
+def speeds():
+    coords = times(4) | bins("speed", 40, 50.0)
+    return dataset(filled([*ALWAYS, "speed_probability_density"], coords), coords, attributes())
+
+
+def discs():
+    coords = times(30, 0.25)
+    names = [name for name in VARIABLES if name.startswith(("disc", "kinetic_energy_", "momentum", "trail"))]
+    return dataset(filled([*ALWAYS, *names], coords, molecule=16), coords, attributes(), time_unit="ps")
+
+
+def molecules():
+    coords = times(130) | {"molecule": np.arange(40)}
+    frames = filled([*ALWAYS, "molecule_position", "molecule_speed", "species"], coords)
+    frames["molecule_position"][5, 7] = np.nan
+    return dataset(frames, coords, attributes())
+
+
+SCENES = [lifting, column, speeds, discs, molecules]
+
+
+def child(code, *arguments, **options):
+    """Start a Python that runs this code after the definitions of CHILD."""
+    command = [sys.executable, "-W", "error", "-c", CHILD + code, *map(str, arguments)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, **options)
+
+
+def failing(number):
+    def fail(*_arguments, **_options):
+        raise OSError(number, os.strerror(number))
+
+    return fail
+
+
+def interrupted(*_arguments, **_options):
+    raise KeyboardInterrupt
+
+
+def check_cf(path):
+    done = subprocess.run([sys.executable, "-c", CHECKER, str(path)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+# What is in a file
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_file_passes_the_strict_check_of_cf(tmp_path, scene):
+    check_cf(output.write(scene(), tmp_path / "run.nc"))
+
+
+def test_the_strict_check_finds_a_unit_that_is_wrong(tmp_path):
+    run = speeds()
+    run.air_pressure.attrs["units"] = "m"
+    with pytest.raises(AssertionError, match="air_pressure"):
+        check_cf(output.write(run, tmp_path / "run.nc"))
+
+
+def test_every_declared_variable_is_in_a_file_that_is_checked():
+    assert set().union(*(scene().variables for scene in SCENES)) >= set(VARIABLES)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_a_file_is_read_as_it_was_written(tmp_path, scene):
+    run = scene()
+    found = output.read(output.write(run, tmp_path / "run.nc"))
+    assert found.identical(run)
+    with xr.open_dataset(tmp_path / "run.nc", engine="netcdf4") as opened:
+        assert opened.identical(run)
+        assert opened.elapsed_time.dtype == float
+
+
+def test_steps_below_a_nanosecond_stay_apart(tmp_path):
+    with xr.open_dataset(output.write(lifting(), tmp_path / "run.nc"), engine="netcdf4") as opened:
+        assert np.unique(opened.elapsed_time).size == 50
+
+
+def test_a_file_that_is_read_changed_and_written_again_still_passes(tmp_path):
+    run = output.read(output.write(molecules(), tmp_path / "run.nc"))
+    run.attrs["history"] += "\n" + output.history_line("atmosbox plot run.nc")
+    path = output.write(run.isel(elapsed_time=slice(0, 10)), tmp_path / "again.nc")
+    check_cf(path)
+    assert output.read(path).attrs["history"].count("\n") == 1
+
+
+def test_writing_leaves_the_dataset_alone(tmp_path):
+    run, untouched = molecules(), molecules()
+    output.write(run, tmp_path / "run.nc")
+    assert run.identical(untouched)
+    for name, entry in untouched.variables.items():
+        assert repr(run[name].encoding) == repr(entry.encoding)
+
+
+def test_the_paths_of_molecules_are_packed(tmp_path):
+    with netCDF4.Dataset(output.write(molecules(), tmp_path / "run.nc")) as file:
+        path = file["molecule_position"]
+        assert path.dtype == np.float32
+        assert path.chunking() == [100, 40, 3]
+        assert path.filters()["zlib"]
+        assert path.filters()["shuffle"]
+        assert path.filters()["complevel"] == 4
+
+
+def test_a_run_without_frames_can_be_written(tmp_path):
+    empty = dataset({"air_temperature": []}, {"elapsed_time": []}, attributes())
+    assert output.read(output.write(empty, tmp_path / "run.nc")).sizes["elapsed_time"] == 0
+
+
+def test_the_attributes_name_all_that_a_reader_asks_for():
+    found = attributes()
+    asked = "title institution source history references comment license date_created product_version"
+    assert all(found[name] for name in asked.split())
+    assert found["Conventions"] == "CF-1.11"
+    assert found["atmosbox_format"] == output.FORMAT
+    assert found["atmosbox_status"] == "complete"
+    assert "exact" in found["source"]
+
+
+def test_the_parameters_come_back_from_the_file(tmp_path):
+    found = output.parameters(output.read(output.write(lifting(), tmp_path / "run.nc")))
+    assert found == {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
+
+
+def test_parameters_that_json_cannot_hold_are_refused():
+    with pytest.raises(ValueError, match="JSON"):
+        output.global_attributes({"temperature": float("nan")}, title="A box", command="a test")
+
+
+def test_the_history_has_the_time_and_the_command_as_typed(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    words = ["atmosbox", "run", "lifting-dry", "--set", "temperature=25 degC"]
+    line = "2023-11-14T22:13:20Z: atmosbox run lifting-dry --set 'temperature=25 degC'"
+    assert output.history_line(words) == line
+    assert output.history_line("atmosbox list") == "2023-11-14T22:13:20Z: atmosbox list"
+    assert attributes()["date_created"] == "2023-11-14T22:13:20Z"
+
+
+def test_without_a_set_date_the_time_is_now(monkeypatch):
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    assert output.history_line("x")[:10] in {
+        time.strftime("%Y-%m-%d", time.gmtime(time.time() + s)) for s in (-9, 0)
+    }
+
+
+@pytest.mark.parametrize("epoch", ["yesterday", "1e9", "9" * 30])
+def test_a_set_date_that_is_none_is_refused(monkeypatch, epoch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+    with pytest.raises(SettingError, match="SOURCE_DATE_EPOCH"):
+        output.history_line("x")
+
+
+def test_the_same_run_with_a_set_date_is_the_same_file(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    one = output.write(molecules(), tmp_path / "one.nc").read_bytes()
+    assert output.write(molecules(), tmp_path / "two.nc").read_bytes() == one
+
+
+def test_a_dataset_that_could_not_be_read_again_is_not_written(tmp_path):
+    with pytest.raises(KeyError, match="atmosbox_parameters"):
+        output.write(xr.Dataset(), tmp_path / "run.nc")
+    assert not list(tmp_path.iterdir())
+
+
+# Where a file may be written
+
+
+def test_a_file_is_replaced_only_by_force(tmp_path):
+    path = output.write(lifting(), tmp_path / "run.nc")
+    before = path.read_bytes()
+    with pytest.raises(FileError, match=r"exists already.*--force.*--out"):
+        output.write(column(), path)
+    assert path.read_bytes() == before
+    output.write(column(), path, force=True)
+    assert "height" in output.read(path).dims
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, force):
+    (tmp_path / "file").write_text("text")
+    for place, words in [
+        (tmp_path, "is a folder: give a file in it"),
+        (tmp_path / "no" / "run.nc", f"type mkdir -p {tmp_path}/no first"),
+        (tmp_path / "two words" / "run.nc", f"type mkdir -p '{tmp_path}/two words' first"),
+        (tmp_path / "file" / "run.nc", "is a file, not a folder"),
+        (tmp_path / ("x" * 240 + ".nc"), "too long"),
+        (tmp_path / ("x" * 2000), "too long"),
+        (tmp_path / ("x" * 2000) / "run.nc", "does not exist"),
+        ("/dev/null", "is a device"),
+    ]:
+        for attempt in (
+            output.check_writable,
+            lambda path, force: output.write(lifting(), path, force=force),
+        ):
+            with pytest.raises(FileError, match=words) as refusal:
+                attempt(place, force=force)
+            assert str(refusal.value).endswith(".")
+            assert refusal.value.exit_code == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(FileError, match="Nothing may be written"):
+        output.check_writable(tmp_path / "run.nc")
+
+
+def test_a_disk_without_room_is_noticed_before_the_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(output.shutil, "disk_usage", lambda _: SimpleNamespace(free=4096))
+    with pytest.raises(DiskFullError, match="no room"):
+        output.check_writable(tmp_path / "run.nc")
+
+
+def test_the_check_before_a_run_writes_nothing(tmp_path):
+    assert output.check_writable(tmp_path / "run.nc") == tmp_path / "run.nc"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_name_without_a_folder_is_a_file_here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert output.write(lifting(), "run.nc") == Path("run.nc")
+    assert output.read("run.nc").title == "Lifted air"
+
+
+def test_a_symbolic_link_keeps_pointing_to_the_file(tmp_path):
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "run.nc").symlink_to(tmp_path / "disk" / "real.nc")
+    output.write(lifting(), tmp_path / "run.nc")
+    assert (tmp_path / "run.nc").is_symlink()
+    assert output.read(tmp_path / "disk" / "real.nc").title == "Lifted air"
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
+@pytest.mark.parametrize("place", [(os, "fsync"), (xr.Dataset, "to_netcdf"), (os, "replace")])
+def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch, place, number):
+    path = output.write(lifting(), tmp_path / "run.nc")
+    before = path.read_bytes()
+    monkeypatch.setattr(*place, failing(number))
+    with pytest.raises(DiskFullError, match=r"no room.*stays as it was") as refusal:
+        output.write(column(), path, force=True)
+    assert refusal.value.exit_code == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+    assert path.read_bytes() == before
+
+
+def test_another_failure_of_the_disk_is_told_in_a_sentence(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "fsync", failing(errno.EIO))
+    with pytest.raises(FileError, match="could not be written") as refusal:
+        output.write(column(), tmp_path / "run.nc")
+    assert not isinstance(refusal.value, DiskFullError)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_outgrows_what_the_system_grants_is_a_full_disk(tmp_path):
+    code = """
+from atmosbox.errors import DiskFullError
+from atmosbox.output import write
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+try:
+    write(run_so_far(5), sys.argv[1])
+except DiskFullError as error:
+    sys.stdout.write(str(error))
+"""
+    with child(code, tmp_path / "run.nc") as process:
+        said, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert said.startswith("The disk has no room for")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (xr.Dataset, "to_netcdf")])
+def test_an_interrupt_leaves_no_half_of_a_file(tmp_path, monkeypatch, place):
+    monkeypatch.setattr(*place, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        output.write(lifting(), tmp_path / "run.nc")
+    assert not list(tmp_path.iterdir())
+
+
+# A run that is not finished
+
+
+def test_a_checkpoint_keeps_the_run_so_far_and_the_finished_run_takes_its_place(tmp_path):
+    checkpoint = output.Checkpoint(tmp_path / "run.nc", every_seconds=0.0)
+    assert checkpoint(lifting)
+    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
+    assert output.read(checkpoint.part).identical(lifting().assign_attrs(output.read(checkpoint.part).attrs))
+    assert checkpoint.finish(column()) == tmp_path / "run.nc"
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+    assert "height" in output.read(tmp_path / "run.nc").dims
+
+
+def test_a_checkpoint_refuses_a_bad_place_before_the_run(tmp_path):
+    output.write(lifting(), tmp_path / "run.nc")
+    with pytest.raises(FileError, match="--force"):
+        output.Checkpoint(tmp_path / "run.nc")
+    assert output.Checkpoint(tmp_path / "run.nc", force=True).finish(column()) == tmp_path / "run.nc"
+
+
+def test_a_checkpoint_waits_and_takes_less_than_a_twentieth_of_the_time(tmp_path, monkeypatch):
+    clock = SimpleNamespace(now=100.0, writing=0.0, written=[])
+    checkpoint = output.Checkpoint(tmp_path / "run.nc", every_seconds=2.0, clock=lambda: clock.now)
+
+    def slow(_path, _dataset):
+        cost = 0.002 * (clock.now - 100.0)  # the file grows with the run
+        clock.written.append(clock.now - 100.0)
+        clock.now += cost
+        clock.writing += cost
+
+    monkeypatch.setattr(output, "_replace", slow)
+    while clock.now < 1100.0:
+        clock.now += 0.01
+        checkpoint(lambda: None)
+    gaps = np.diff(clock.written)
+    assert clock.written[0] == pytest.approx(2.0, abs=0.02)
+    assert gaps.min() >= 2.0
+    assert 0.02 * 1000.0 < clock.writing < 0.05 * 1000.0
+    assert 1000.0 - clock.written[-1] < 100.0
+
+
+def test_a_dataset_is_made_only_when_it_is_written(tmp_path):
+    checkpoint = output.Checkpoint(tmp_path / "run.nc", every_seconds=3600.0)
+    assert not checkpoint(pytest.fail)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_full_disk_during_the_run_keeps_the_part(tmp_path, monkeypatch):
+    checkpoint = output.Checkpoint(tmp_path / "run.nc")
+    checkpoint.save(lifting())
+    monkeypatch.setattr(os, "fsync", failing(errno.ENOSPC))
+    with pytest.raises(DiskFullError, match=r"run\.part\.nc, which stays as it was"):
+        checkpoint.finish(column())
+    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
+    assert "parcel_height" in output.read(checkpoint.part)
+
+
+def test_a_file_that_appears_during_the_run_is_not_overwritten(tmp_path):
+    checkpoint = output.Checkpoint(tmp_path / "run.nc")
+    (tmp_path / "run.nc").write_text("another's")
+    with pytest.raises(FileError, match=r"run\.part\.nc"):
+        checkpoint.finish(column())
+    assert (tmp_path / "run.nc").read_text() == "another's"
+    assert "height" in output.read(checkpoint.part).dims
+
+
+def test_a_finished_run_that_cannot_take_its_name_stays_in_its_part(tmp_path):
+    checkpoint = output.Checkpoint(tmp_path / "run.nc", force=True)
+    (tmp_path / "run.nc").mkdir()
+    with pytest.raises(FileError, match="could not be written"):
+        checkpoint.finish(column())
+    assert "height" in output.read(checkpoint.part).dims
+
+
+def test_an_abandoned_run_leaves_nothing_of_its_own(tmp_path):
+    checkpoint = output.Checkpoint(tmp_path / "run.nc")
+    checkpoint.save(lifting())
+    checkpoint.abandon()
+    checkpoint.abandon()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_part_of_an_earlier_run_is_told_of_and_kept_until_it_is_replaced(tmp_path):
+    output.Checkpoint(tmp_path / "run.nc").save(lifting())
+    checkpoint = output.Checkpoint(tmp_path / "run.nc")
+    assert checkpoint.stale
+    checkpoint.abandon()
+    assert "parcel_height" in output.read(checkpoint.part)
+    checkpoint.save(column())
+    assert "height" in output.read(checkpoint.part).dims
+
+
+@pytest.mark.parametrize(
+    ("name", "part"), [("a.b.nc", "a.b.part.nc"), ("run", "run.part"), ("d/x.nc", "d/x.part.nc")]
+)
+def test_the_part_has_the_name_of_the_file(name, part):
+    assert str(output.part_path(name)) == part.replace("/", os.sep)
+
+
+def test_a_run_killed_while_it_writes_leaves_the_frames_before(tmp_path):
+    code = """
+checkpoint = Checkpoint(sys.argv[1], every_seconds=0.0)
+for frames in (3, 4):
+    checkpoint.save(run_so_far(frames))
+
+def hang(_file):
+    print("writing", flush=True)
+    time.sleep(60)
+
+os.fsync = hang
+checkpoint.save(run_so_far(5))
+"""
+    path = tmp_path / "run.nc"
+    with child(code, path) as process:
+        assert process.stdout.readline() == "writing\n"
+        process.send_signal(signal.SIGKILL)
+    assert process.returncode == -signal.SIGKILL
+    found = output.read(tmp_path / "run.part.nc")
+    assert found.sizes["elapsed_time"] == 4
+    assert found.attrs["atmosbox_status"] == "partial"
+    with pytest.raises(
+        FileError, match=r"run\.nc does not exist: a run that was stopped left .*run\.part\.nc"
+    ):
+        output.read(path)
+
+    (left,) = tmp_path.glob(".*.tmp")
+    output.Checkpoint(path).save(lifting())
+    assert left.exists()  # it could be another run's that is still going
+    os.utime(left, (0, 0))
+    output.Checkpoint(path).finish(lifting())
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_a_run_killed_at_any_moment_leaves_a_file_that_opens(tmp_path):
+    code = """
+checkpoint = Checkpoint(sys.argv[1])
+for frames in range(1, 10_000):
+    checkpoint.save(run_so_far(frames))
+    print(frames, flush=True)
+"""
+    for frames in (1, 4, 9):
+        with child(code, tmp_path / f"{frames}.nc") as process:
+            while int(process.stdout.readline()) < frames:
+                pass
+            time.sleep(0.003 * frames)
+            process.kill()
+        found = output.read(tmp_path / f"{frames}.part.nc")
+        assert found.sizes["elapsed_time"] >= frames
+        assert found.air_temperature.values[-1] == 300.0 + found.sizes["elapsed_time"]
+
+
+# What may be read
+
+
+def foreign(path):
+    xr.Dataset({"t": ("time", [1.0, 2.0], {"units": "days since 0000-00-00"})}).to_netcdf(
+        path, engine="netcdf4"
+    )
+
+
+def classic(path):
+    with netCDF4.Dataset(path, "w", format="NETCDF3_CLASSIC") as file:
+        file.title = "another program's"
+
+
+def newer(path):
+    output.write(lifting().assign_attrs(atmosbox_format=output.FORMAT + 1), path)
+
+
+def strange(path):
+    output.write(lifting().assign_attrs(atmosbox_format="two"), path)
+
+
+def truncated(path):
+    whole = output.write(molecules(), path).read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+
+
+def missing(_path):
+    pass
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (missing, "does not exist: check the name"),
+        (lambda path: path.mkdir(), "is a folder"),
+        (lambda path: path.touch(), "is empty"),
+        (lambda path: path.write_text("temperature, pressure\n"), "is no netCDF file, or a damaged one"),
+        (
+            lambda path: path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500)),
+            "is no netCDF file, or a damaged one",
+        ),
+        (truncated, "is no netCDF file, or a damaged one"),
+        (foreign, "was written by another program"),
+        (classic, "was written by another program"),
+        (newer, "format 2.*pip install --upgrade atmosbox"),
+        (strange, "format two"),
+        (lambda path: os.mkfifo(path), "may not be read"),
+    ],
+)
+def test_a_file_that_is_not_a_run_is_refused_in_one_sentence(tmp_path, make, words):
+    path = tmp_path / "run.nc"
+    make(path)
+    with pytest.raises(FileError, match=words) as refusal:
+        output.read(path)
+    assert str(refusal.value).startswith(str(path))
+    assert str(refusal.value).endswith(".")
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["x" * 2000, "", ".", "no/folder/run.nc", "http://127.0.0.1:1/run.nc"])
+def test_a_name_that_no_file_has_is_refused(name):
+    with pytest.raises(FileError, match=r"does not exist|is a folder"):
+        output.read(name)
+
+
+def test_a_file_that_may_not_be_read_is_refused(tmp_path, monkeypatch):
+    path = output.write(lifting(), tmp_path / "run.nc")
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(FileError, match="may not be read"):
+        output.read(path)
+
+
+def test_a_file_that_was_read_is_closed_and_can_be_replaced(tmp_path):
+    path = output.write(lifting(), tmp_path / "run.nc")
+    found = output.read(path)
+    output.write(column(), path, force=True)
+    assert found.identical(output.read(path)) is False
+    assert not [
+        name for name in os.listdir("/proc/self/fd") if os.path.realpath(f"/proc/self/fd/{name}") == str(path)
+    ]
+
+
+@pytest.mark.parametrize("text", [None, "", "{", "[1, 2]", json.dumps("words"), 7])
+def test_parameters_that_are_damaged_are_refused(text):
+    attrs = {} if text is None else {"atmosbox_parameters": text}
+    with pytest.raises(FileError, match="does not say which run it holds"):
+        output.parameters(xr.Dataset(attrs=attrs))

@@ -1,0 +1,119 @@
+"""What a scene's figure shows, written into a file and read again."""
+
+import json
+from dataclasses import FrozenInstanceError
+
+import pytest
+
+from atmosbox.panels import DISC_VARIABLES, KINDS, ROLES, Line, Panel, from_json, to_json
+
+AIR = Line("elapsed_time", "air_temperature", "air", error="air_temperature_se")
+WALL = Line("elapsed_time", "wall_temperature[z_low]", "wall", "theory")
+MISFIT = Line("parcel_temperature", "parcel_pressure", "parcel", minus="adiabat_temperature")
+
+FIGURE = (
+    Panel("line", "Temperature", (AIR, WALL), "time", "temperature", "ns", "degC", headlines=("mean",)),
+    Panel("profile", "Misfit − in K", (MISFIT,), y_unit="hPa", y_scale="log", y_invert=True, note="A note."),
+    Panel("histogram", "Speeds", (Line("speed", "speed_probability_density", "measured"),), x_invert=True),
+    Panel("discs", "The box", x_unit="nm"),
+)
+
+
+def test_what_is_written_is_read_again_unchanged():
+    assert from_json(to_json(FIGURE)) == FIGURE
+
+
+def test_a_figure_without_panels_is_one_too():
+    assert from_json(to_json(())) == ()
+
+
+def test_the_text_in_the_file_is_plain_ascii():
+    assert to_json(FIGURE).isascii()
+
+
+def test_every_kind_and_every_role_survives():
+    for kind in KINDS:
+        for role in ROLES:
+            lines = () if kind == "discs" else (Line("x", "y", "a curve", role),)
+            assert from_json(to_json([Panel(kind, "A panel", lines)])) == (Panel(kind, "A panel", lines),)
+
+
+def test_panels_and_lines_cannot_be_changed():
+    with pytest.raises(FrozenInstanceError):
+        AIR.role = "theory"
+    with pytest.raises(FrozenInstanceError):
+        FIGURE[0].title = "Another"
+
+
+def test_a_panel_names_each_of_its_variables_once():
+    assert FIGURE[0].variables == (
+        "elapsed_time",
+        "air_temperature",
+        "air_temperature_se",
+        "wall_temperature[z_low]",
+    )
+    assert FIGURE[1].variables == ("parcel_temperature", "parcel_pressure", "adiabat_temperature")
+    assert FIGURE[3].variables == DISC_VARIABLES
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Line("", "y", "a curve"), "the x of a line is ''"),
+        (lambda: Line("x", "y", " "), "the label of a line"),
+        (lambda: Line("x", 3, "a curve"), "the y of a line is 3"),
+        (lambda: Line("x", "y", "a curve", "measured"), "one of data, theory, environment, reference"),
+        (lambda: Line("x", "y", "a curve", error=""), "the error of a line"),
+        (lambda: Line("x", "y", "a curve", minus=1), "the minus of a line"),
+        (lambda: Panel("pie", "A panel", (AIR,)), "one of line, profile, histogram, discs"),
+        (lambda: Panel("line", "", (AIR,)), "the title of a panel"),
+        (lambda: Panel("line", "A panel"), "needs at least one line"),
+        (lambda: Panel("discs", "A panel", (AIR,)), "has no lines"),
+        (lambda: Panel("line", "A panel", [AIR]), "lines of the panel 'A panel' is no tuple of Line"),
+        (lambda: Panel("line", "A panel", (AIR,), headlines=(1,)), "headlines of the panel"),
+        (lambda: Panel("line", "A panel", (AIR,), x_label=None), "x_label of the panel 'A panel' is no text"),
+        (lambda: Panel("line", "A panel", (AIR,), y_scale="cubic"), "one of linear, log"),
+        (lambda: Panel("line", "A panel", (AIR,), y_invert=1), "neither true nor false"),
+    ],
+)
+def test_a_panel_that_cannot_be_drawn_is_refused_where_it_is_written(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "no JSON text"),
+        ("{", "no JSON text"),
+        (None, "no JSON text"),
+        ("[]", "not in the form that atmosbox writes"),
+        ('{"format": 1}', "not in the form that atmosbox writes"),
+        ('{"format": 0, "panels": []}', "format 0, and this version of atmosbox reads format 1"),
+        ('{"panels": []}', "format None"),
+        ('{"format": 1, "panels": [3]}', "a panel is written as int"),
+        ('{"format": 1, "panels": [{"kind": "discs"}]}', "a panel lacks the field 'title'"),
+        ('{"format": 1, "panels": [{"kind": "discs", "title": "A", "hue": 1}]}', "unknown field 'hue'"),
+        ('{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": "xy"}]}', "lines of a panel"),
+        (
+            '{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": ["xy"]}]}',
+            "a line is written as str",
+        ),
+        (
+            '{"format": 1, "panels": [{"kind": "line", "title": "A", "lines": [{"x": "a"}]}]}',
+            "lacks the field 'y'",
+        ),
+        ('{"format": 1, "panels": [{"kind": "pie", "title": "A"}]}', "must be one of"),
+        ('{"format": 1, "panels": [{"kind": [], "title": "A"}]}', "must be one of"),
+    ],
+)
+def test_foreign_or_old_text_is_refused_in_a_sentence(text, words):
+    with pytest.raises(ValueError, match=words) as refusal:
+        from_json(text)
+    assert str(refusal.value).endswith(".")
+
+
+def test_every_field_that_is_left_out_has_its_default():
+    record = {"kind": "line", "title": "A", "lines": [{"x": "a", "y": "b", "label": "c"}]}
+    text = json.dumps({"format": 1, "panels": [record]})
+    assert from_json(text) == (Panel("line", "A", (Line("a", "b", "c"),)),)

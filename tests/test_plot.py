@@ -1,0 +1,871 @@
+"""The figures: drawn from the dataset alone, the same bytes twice, legible on a page and on a wall."""
+
+import errno
+import json
+import os
+import subprocess
+import sys
+from itertools import combinations
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.container import ErrorbarContainer
+from matplotlib.patches import StepPatch
+
+from atmosbox import plot
+from atmosbox.errors import DiskFullError, FileError, SettingError
+from atmosbox.panels import Line, Panel, to_json
+from atmosbox.plot import caption, tick, unit
+
+K_B = 1.380649e-23  # J/K
+AIR = 28.9647e-3 / 6.02214076e23  # kg
+G = 9.80665  # m/s2
+
+TIME = Line("elapsed_time", "air_temperature", "thermometer", error="air_temperature_se")
+
+
+def variable(dims, values, units, **attrs):
+    return (dims, np.asarray(values), {"units": units, **attrs})
+
+
+def finished(scene, title, molecules, panels, variables, coords=None):
+    """Return a dataset with the provenance that a run has."""
+    names = [name for name in variables if f"{name}_tolerance" in variables]
+    parameters = {
+        "scene": scene,
+        "version": "0.1.0",
+        "engine": "exact",
+        "settings": {"molecules": molecules, "seed": 1},
+    }
+    return xr.Dataset(
+        variables,
+        coords=coords or {},
+        attrs={
+            "title": title,
+            "atmosbox_panels": to_json(panels),
+            "atmosbox_headlines": json.dumps(names),
+            "atmosbox_parameters": json.dumps(parameters),
+            "atmosbox_status": "complete",
+        },
+    )
+
+
+def headline(name, value, se, theory, units, title, against="theory", **attrs):
+    return {
+        name: variable((), value, units, display_name=title, **attrs),
+        f"{name}_se": variable((), se, units),
+        f"{name}_theory": variable((), theory, units, display_name=against),
+        f"{name}_tolerance": variable((), 4 * se, units),
+    }
+
+
+def noise(rng, size, correlation=0.8):
+    """Return correlated noise of unit variance, as a thermometer of few molecules shows."""
+    steps = rng.normal(size=size) * np.sqrt(1 - correlation**2)
+    out = np.zeros(size)
+    for i in range(1, size):
+        out[i] = correlation * out[i - 1] + steps[i]
+    return out
+
+
+def temperature():
+    rng = np.random.default_rng(1)
+    time = np.arange(1, 301) * 0.02
+    warming = 300.0 + (250.0 - 300.0) * np.exp(-time / 0.3)
+    air = warming + 8.8 * noise(rng, 300)
+    edges = np.linspace(0, 1400, 36)
+    speed = (edges[1:] + edges[:-1]) / 2
+    maxwell = (
+        4
+        * np.pi
+        * (AIR / (2 * np.pi * K_B * 300)) ** 1.5
+        * speed**2
+        * np.exp(-AIR * speed**2 / (2 * K_B * 300))
+    )
+    counts = rng.poisson(maxwell * 40 * 12000)
+    panels = [
+        Panel(
+            "line",
+            "Temperature of the air",
+            (
+                TIME,
+                Line(
+                    "elapsed_time",
+                    "wall_temperature",
+                    "wall, with scatter",
+                    "theory",
+                    error="air_temperature_noise",
+                ),
+            ),
+            x_label="elapsed time",
+            y_label="air temperature",
+            y_unit="degC",
+            headlines=("mean_temperature",),
+        ),
+        Panel(
+            "line",
+            "Pressure on the walls",
+            (
+                Line("elapsed_time", "air_pressure", "blows on the walls", error="air_pressure_se"),
+                Line("elapsed_time", "air_pressure_theory", "n k T Z", "theory"),
+            ),
+            x_label="elapsed time",
+            y_label="air pressure",
+            y_unit="hPa",
+            headlines=("mean_pressure",),
+        ),
+        Panel(
+            "histogram",
+            "Speeds of the molecules",
+            (
+                Line("speed", "speed_probability_density", "measured", error="speed_probability_density_se"),
+                Line("speed", "speed_probability_density_theory", "Maxwell", "theory"),
+            ),
+            x_label="speed",
+            y_label="probability density",
+        ),
+    ]
+    per_frame = "elapsed_time"
+    variables = {
+        "air_temperature": variable(per_frame, air, "K"),
+        "air_temperature_se": variable(per_frame, np.full(300, 4.0), "K"),
+        "air_temperature_noise": variable((), 8.8, "K"),
+        "wall_temperature": variable((), 300.0, "K"),
+        "air_pressure": variable(per_frame, 1e5 * air / 300 + 2500 * rng.normal(size=300), "Pa"),
+        "air_pressure_se": variable(per_frame, np.full(300, 2500.0), "Pa"),
+        "air_pressure_theory": variable(per_frame, 1e5 * warming / 300, "Pa"),
+        "speed_probability_density": variable("speed", counts / 480000, "s m-1"),
+        "speed_probability_density_se": variable("speed", np.sqrt(counts + 1) / 480000, "s m-1"),
+        "speed_probability_density_theory": variable("speed", maxwell, "s m-1"),
+        "speed_bnds": (("speed", "bounds"), np.stack((edges[:-1], edges[1:]), axis=1)),
+        **headline("mean_temperature", 300.42, 0.53, 300.0, "K", "mean T", "wall", display_units="degC"),
+        **headline("mean_pressure", 100210.0, 160.0, 100000.0, "Pa", "p", "n k T Z", display_units="hPa"),
+    }
+    coords = {
+        "elapsed_time": variable("elapsed_time", time, "ns", long_name="elapsed time"),
+        "speed": variable("speed", speed, "m s-1", bounds="speed_bnds"),
+    }
+    return finished("temperature", "Temperature is the motion of molecules", 800, panels, variables, coords)
+
+
+def atmosphere():
+    rng = np.random.default_rng(2)
+    height = np.arange(500.0, 20000.0, 1000.0)
+    scale = K_B * 288.15 / (AIR * G)
+    barometric = 2.5e25 * np.exp(-height / scale)
+    hydrostatic = barometric * (1 - 0.04 * np.exp(-height / scale))
+    pressure = barometric * K_B * 288.15
+    share = 0.01 * np.exp(height / 2 / scale)
+    isothermal = Line("air_temperature_theory", "height", "isothermal", "theory")
+    panels = [
+        Panel(
+            "profile",
+            "Number density",
+            (
+                Line("number_density", "height", "measured", error="number_density_se"),
+                Line("number_density_barometric", "height", "barometric", "theory"),
+                Line("number_density_theory", "height", "hydrostatic with Z", "theory"),
+            ),
+            x_label="number density",
+            y_label="height",
+            y_unit="km",
+            x_scale="log",
+            headlines=("scale_height",),
+        ),
+        Panel(
+            "profile",
+            "Pressure",
+            (
+                Line("layer_pressure", "height", "measured", error="layer_pressure_se"),
+                Line("layer_pressure_theory", "height", "barometric", "theory"),
+            ),
+            x_label="pressure",
+            y_label="height",
+            x_unit="hPa",
+            y_unit="km",
+            x_scale="log",
+        ),
+        Panel(
+            "profile",
+            "Temperature",
+            (Line("layer_temperature", "height", "measured", error="layer_temperature_se"), isothermal),
+            x_label="temperature",
+            y_label="height",
+            x_unit="degC",
+            y_unit="km",
+            headlines=("lapse_rate",),
+        ),
+    ]
+    kick = rng.normal(size=(3, height.size)) * share
+    variables = {
+        "number_density": variable("height", hydrostatic * (1 + kick[0]), "m-3"),
+        "number_density_se": variable("height", hydrostatic * share, "m-3"),
+        "number_density_barometric": variable("height", barometric, "m-3"),
+        "number_density_theory": variable("height", hydrostatic, "m-3"),
+        "layer_pressure": variable("height", pressure * (1 + kick[1]), "Pa"),
+        "layer_pressure_se": variable("height", pressure * share, "Pa"),
+        "layer_pressure_theory": variable("height", pressure, "Pa"),
+        "layer_temperature": variable("height", 288.15 * (1 + kick[2]), "K"),
+        "layer_temperature_se": variable("height", 288.15 * share, "K"),
+        "air_temperature_theory": variable((), 288.15, "K"),
+        **headline("scale_height", 8452.0, 31.0, scale, "m", "H", "k T / m g", display_units="km"),
+        **headline("lapse_rate", 0.0002, 0.0003, 0.0, "K m-1", "lapse rate", "0", display_units="K km-1"),
+    }
+    coords = {"height": variable("height", height, "m", long_name="height")}
+    return finished("atmosphere", "An atmosphere at rest", 20000, panels, variables, coords)
+
+
+def elastic_collisions(molecules=70, frames=240):
+    """Return a small flat gas, half of it heavy, moved in steps in which approaching pairs swap momentum."""
+    rng = np.random.default_rng(3)
+    box, dt = 20e-9, 0.4e-12
+    side = int(np.ceil(np.sqrt(molecules)))
+    places = (
+        (np.indices((side, side)).reshape(2, -1).T[rng.permutation(side**2)[:molecules]] + 0.5) * box / side
+    )
+    heavy = np.arange(molecules) % 2 == 1
+    mass, diameter = np.where(heavy, 4 * AIR, AIR), np.where(heavy, 1.1e-9, 0.6e-9)
+    velocity = np.where(heavy, 100.0, 600.0)[:, None] * rng.normal(size=(molecules, 2))
+    first, second = np.triu_indices(molecules, 1)
+    reach, total = (diameter[first] + diameter[second]) / 2, mass[first] + mass[second]
+    position_of, velocity_of = [], []
+    for _ in range(frames):
+        places = places + velocity * dt
+        for pair in np.flatnonzero(np.linalg.norm(places[first] - places[second], axis=1) < reach):
+            i, j = first[pair], second[pair]
+            along = (places[j] - places[i]) / np.linalg.norm(places[j] - places[i])
+            closing = (velocity[j] - velocity[i]) @ along
+            if closing < 0:
+                velocity[i] += 2 * mass[j] / total[pair] * closing * along
+                velocity[j] -= 2 * mass[i] / total[pair] * closing * along
+        out = (places < diameter[:, None] / 2) & (velocity < 0) | (places > box - diameter[:, None] / 2) & (
+            velocity > 0
+        )
+        velocity = np.where(out, -velocity, velocity)
+        position_of.append(np.clip(places, diameter[:, None] / 2, box - diameter[:, None] / 2))
+        velocity_of.append(velocity.copy())
+    depth = np.full((frames, molecules, 1), 1e-9)
+    energy = 0.5 * mass * np.sum(np.square(velocity_of), axis=2)
+    panels = [
+        Panel("discs", "Discs that collide without loss"),
+        Panel(
+            "line",
+            "The energy is shared",
+            (
+                Line("elapsed_time", "kinetic_energy_light", "light half"),
+                Line("elapsed_time", "kinetic_energy_heavy", "heavy half"),
+                Line("elapsed_time", "kinetic_energy_theory", "equal shares", "theory"),
+            ),
+            x_label="elapsed time",
+            y_label="mean kinetic energy",
+        ),
+        Panel(
+            "line",
+            "Energy and momentum are kept",
+            (
+                Line("elapsed_time", "energy_change", "energy"),
+                Line("elapsed_time", "momentum_change", "momentum"),
+            ),
+            x_label="elapsed time",
+            y_label="relative change",
+            headlines=("energy_drift",),
+        ),
+    ]
+    walk = np.cumsum(rng.normal(size=(2, frames)) * 1.1e-16, axis=1)
+    per_disc = ("elapsed_time", "molecule", "axis")
+    variables = {
+        "disc_position": variable(per_disc, np.concatenate((position_of, depth), axis=2), "m"),
+        "disc_velocity": variable(per_disc, np.concatenate((velocity_of, 0 * depth), axis=2), "m s-1"),
+        "disc_diameter": variable("molecule", diameter, "m"),
+        "disc_mass": variable("molecule", mass, "kg"),
+        "box_length": variable((), box, "m"),
+        "kinetic_energy_light": variable("elapsed_time", energy[:, ~heavy].mean(axis=1), "J"),
+        "kinetic_energy_heavy": variable("elapsed_time", energy[:, heavy].mean(axis=1), "J"),
+        "kinetic_energy_theory": variable((), energy.mean(), "J"),
+        "energy_change": variable("elapsed_time", walk[0], "1"),
+        "momentum_change": variable("elapsed_time", walk[1], "1"),
+        **headline("energy_drift", 6.2e-16, 0.0, 0.0, "1", "largest change of energy"),
+    }
+    coords = {"elapsed_time": variable("elapsed_time", (1 + np.arange(frames)) * 0.4, "ps")}
+    return finished("elastic-collisions", "Elastic collisions", molecules, panels, variables, coords)
+
+
+def lifting_dry():
+    rng = np.random.default_rng(4)
+    pressure = np.geomspace(1000e2, 300e2, 220)
+    adiabat = 288.15 * (pressure / 1000e2) ** (2 / 7)
+    parcel = adiabat + 0.4 * np.log(1000e2 / pressure) + 0.35 * noise(rng, 220, 0.9)
+    height = (288.15 - adiabat) / 9.7611e-3
+    environment = 288.15 - 6.5e-3 * height
+    both = (
+        Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
+        Line("environment_temperature", "parcel_pressure", "environment", "environment"),
+        Line("adiabat_temperature", "parcel_pressure", "dry adiabat", "theory"),
+    )
+    over_height = tuple(Line(line.x, "parcel_height", line.label, line.role, line.error) for line in both)
+    misfit = Line(
+        "parcel_temperature",
+        "parcel_pressure",
+        "parcel",
+        error="parcel_temperature_se",
+        minus="adiabat_temperature",
+    )
+    zero = Line(
+        "adiabat_temperature", "parcel_pressure", "dry adiabat", "theory", minus="adiabat_temperature"
+    )
+    log_pressure = {"y_label": "pressure", "y_unit": "hPa", "y_scale": "log", "y_invert": True}
+    panels = [
+        Panel("profile", "Temperature and pressure", both, "temperature", x_unit="degC", **log_pressure),
+        Panel("profile", "Temperature and height", over_height, "temperature", "height", "degC", "km"),
+        Panel(
+            "profile",
+            "Misfit to the adiabat",
+            (misfit, zero),
+            "parcel minus adiabat",
+            x_unit="K",
+            headlines=("top_temperature", "mean_lapse_rate"),
+            **log_pressure,
+        ),
+    ]
+    variables = {
+        "parcel_pressure": variable("elapsed_time", pressure, "Pa"),
+        "parcel_height": variable("elapsed_time", height, "m"),
+        "parcel_temperature": variable("elapsed_time", parcel, "K"),
+        "parcel_temperature_se": variable("elapsed_time", np.full(220, 0.35), "K"),
+        "environment_temperature": variable("elapsed_time", environment, "K"),
+        "adiabat_temperature": variable("elapsed_time", adiabat, "K"),
+        **headline("top_temperature", 204.40, 0.053, 204.28, "K", "T(300 hPa)", "adiabat"),
+        **headline(
+            "mean_lapse_rate",
+            9.72e-3,
+            0.03e-3,
+            9.7611e-3,
+            "K m-1",
+            "lapse rate",
+            "g/cp",
+            display_units="K km-1",
+        ),
+    }
+    coords = {"elapsed_time": variable("elapsed_time", np.arange(220.0), "ns", long_name="elapsed time")}
+    return finished("lifting-dry", "Why rising air cools", 10000, panels, variables, coords)
+
+
+SCENES = {
+    "temperature": temperature,
+    "atmosphere": atmosphere,
+    "elastic-collisions": elastic_collisions,
+    "lifting-dry": lifting_dry,
+}
+
+TEMPERATURE = Panel("line", "Temperature", (TIME,), "time", "temperature", y_unit="degC")
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return {name: make() for name, make in SCENES.items()}
+
+
+@pytest.fixture(scope="module")
+def drawings(runs):
+    made = {(name, theme): plot.figure(run, theme) for name, run in runs.items() for theme in plot.THEMES}
+    for drawing in made.values():
+        drawing.draw_without_rendering()  # legends take their place when they are drawn
+    return made
+
+
+each_drawing = pytest.mark.parametrize(("scene", "theme"), [(s, t) for s in SCENES for t in plot.THEMES])
+
+
+def small(values, panel=TEMPERATURE, **variables):
+    """Return the shortest run that has a figure."""
+    values = np.asarray(values, dtype=float)
+    held = {
+        "air_temperature": variable("elapsed_time", values, "K"),
+        "air_temperature_se": variable("elapsed_time", np.full(values.shape, 2.0), "K"),
+    }
+    coords = {"elapsed_time": variable("elapsed_time", np.arange(values.size, dtype=float), "ns")}
+    return finished("temperature", "A box", 10, [panel], held | variables, coords)
+
+
+def all_axes(drawing):
+    return [axes for outer in drawing.axes for axes in (outer, *outer.child_axes)]
+
+
+def tick_texts(axis):
+    """Return the numbers that are seen on an axis."""
+    low, high = sorted(axis.get_view_interval())
+    room = 1e-9 * (high - low)
+    drawn = [tick for tick in axis.get_major_ticks() if low - room <= tick.get_loc() <= high + room]
+    labels = [label for tick in drawn for label in (tick.label1, tick.label2) if label.get_visible()]
+    return [label for label in labels if label.get_text()]
+
+
+def texts(drawing):
+    """Return all text that is seen in a figure."""
+    found = list(drawing.texts)
+    for axes in all_axes(drawing):
+        found += [axes.xaxis.label, axes.yaxis.label, *axes.texts]
+        found += tick_texts(axes.xaxis) + tick_texts(axes.yaxis)
+        found += axes.get_legend().get_texts() if axes.get_legend() else []
+    return [text for text in found if text.get_text()]
+
+
+def written(drawing):
+    return [text.get_text().replace("\n", " ") for text in texts(drawing)]
+
+
+# What stands where
+
+
+@each_drawing
+def test_no_text_meets_another_or_leaves_the_figure(drawings, scene, theme):
+    drawing = drawings[scene, theme]
+    boxes = [(text.get_text(), text.get_window_extent()) for text in texts(drawing)]
+    page = drawing.bbox
+    for text, box in boxes:
+        assert page.x0 <= box.x0 <= box.x1 <= page.x1, text
+        assert page.y0 <= box.y0 <= box.y1 <= page.y1, text
+    for (text, box), (other, other_box) in combinations(boxes, 2):
+        across = min(box.x1, other_box.x1) - max(box.x0, other_box.x0)
+        up = min(box.y1, other_box.y1) - max(box.y0, other_box.y0)
+        assert min(across, up) < 2.0, f"{text!r} meets {other!r}"
+
+
+@each_drawing
+def test_titles_and_legends_keep_clear_of_the_data(drawings, scene, theme):
+    drawing = drawings[scene, theme]
+    frames = [axes.get_window_extent() for axes in drawing.axes]
+    for axes in drawing.axes:
+        legend = axes.get_legend()
+        for artist in [*axes.texts, *([legend] if legend else [])]:
+            box = artist.get_window_extent()
+            assert not any(frame.x0 < box.x1 and box.x0 < frame.x1 and frame.y0 < box.y1 - 1
+                           and box.y0 + 1 < frame.y1 for frame in frames)  # fmt: skip
+
+
+@each_drawing
+def test_every_axis_has_a_label_with_its_unit_and_two_numbers_or_more(drawings, scene, theme):
+    for axes in all_axes(drawings[scene, theme]):
+        is_bar = axes not in drawings[scene, theme].axes
+        for axis in (axes.xaxis, axes.yaxis):
+            label = axis.get_label_text()
+            if label:
+                assert label.replace("\n", " ").rpartition(" (")[2].endswith(")")
+                assert len(tick_texts(axis)) >= 2
+            else:
+                below = [o for o in axes.get_shared_x_axes().get_siblings(axes) if o.get_xlabel()]
+                assert axis is axes.xaxis
+                assert is_bar or below
+                assert not tick_texts(axis)
+
+
+@each_drawing
+def test_type_is_large_enough_to_read(drawings, scene, theme):
+    least = {"notes": 8.0, "slides": 12.0}[theme]
+    assert min(text.get_fontsize() for text in texts(drawings[scene, theme])) >= least
+
+
+def test_slides_are_sixteen_to_nine_and_notes_fit_a_page(drawings):
+    for (_, theme), drawing in drawings.items():
+        width, height = drawing.get_size_inches()
+        if theme == "slides":
+            assert width / height == pytest.approx(16 / 9)
+        else:
+            assert width < 7.5
+
+
+def test_one_panel_alone_has_the_width_of_a_column():
+    assert plot.figure(small([280.0, 290.0])).get_figwidth() == 3.5
+
+
+def test_the_title_of_the_run_stands_on_slides_only(drawings):
+    assert "Why rising air cools" in written(drawings["lifting-dry", "slides"])
+    assert "Why rising air cools" not in written(drawings["lifting-dry", "notes"])
+
+
+def test_long_titles_notes_and_labels_are_broken_into_lines_that_fit():
+    long = "a sentence that goes on and on for much longer than any panel is wide, as people write them "
+    line = Line("elapsed_time", "air_temperature", long, error="air_temperature_se")
+    drawing = plot.figure(small([280.0, 290.0], Panel("line", long, (line, line), long, long, note=long)))
+    for text in texts(drawing):
+        box = text.get_window_extent()
+        assert drawing.bbox.x0 <= box.x0
+        assert box.x1 <= drawing.bbox.x1
+
+
+def test_panels_over_each_other_share_the_axis_of_time(drawings):
+    first, second = drawings["temperature", "notes"].axes[:2]
+    assert first.get_xlim() == second.get_xlim()
+    assert (first.get_xlabel(), second.get_xlabel()) == ("", "elapsed time (ns)")
+
+
+# What is drawn
+
+
+def lines_of(axes):
+    return [line for line in axes.lines if len(line.get_xdata()) > 1 and line.get_linestyle() != "None"]
+
+
+def test_theory_is_dashed_and_dark_and_data_solid_with_a_band(drawings):
+    axes = drawings["lifting-dry", "notes"].axes[0]
+    parcel, environment, adiabat = lines_of(axes)
+    assert not parcel.is_dashed()
+    assert adiabat.is_dashed()
+    assert environment.is_dashed()
+    assert max(to_rgb(adiabat.get_color())) < 0.2
+    (band,) = [artist for artist in axes.collections if isinstance(artist, PolyCollection)]
+    assert to_rgb(band.get_facecolor()[0][:3]) == pytest.approx(to_rgb(parcel.get_color()))
+
+
+def test_the_colours_are_those_of_okabe_and_ito(drawings):
+    palette = matplotlib.color_sequences["okabe_ito"]
+    for axes in drawings["elastic-collisions", "notes"].axes[1:]:
+        for line in (line for line in lines_of(axes) if not line.is_dashed()):
+            assert any(to_rgb(line.get_color()) == pytest.approx(colour) for colour in palette)
+
+
+@each_drawing
+def test_curves_differ_by_more_than_their_colour(drawings, scene, theme):
+    for axes in drawings[scene, theme].axes:
+        looks = [(line.get_marker(), str(line._unscaled_dash_pattern)) for line in lines_of(axes)]
+        assert len(set(looks)) == len(looks)
+
+
+def test_a_band_is_one_standard_error_wide(runs, drawings):
+    (band,) = drawings["lifting-dry", "notes"].axes[2].collections
+    misfit = runs["lifting-dry"].parcel_temperature - runs["lifting-dry"].adiabat_temperature
+    x = band.get_paths()[0].vertices[:, 0]
+    assert [x.min(), x.max()] == pytest.approx([float(misfit.min()) - 0.35, float(misfit.max()) + 0.35])
+
+
+def test_few_values_are_points_with_bars_and_no_line(runs, drawings):
+    axes = drawings["atmosphere", "notes"].axes[2]
+    (bars,) = [each for each in axes.containers if isinstance(each, ErrorbarContainer)]
+    assert bars.has_xerr
+    assert bars[0].get_xdata() == pytest.approx(runs["atmosphere"].layer_temperature - 273.15)
+    assert bars[0].get_ydata() == pytest.approx(runs["atmosphere"].height / 1000)
+
+
+def test_theory_may_have_a_band_of_the_scatter_to_expect(drawings):
+    bands = [a for a in drawings["temperature", "notes"].axes[0].collections if isinstance(a, PolyCollection)]
+    y = bands[1].get_paths()[0].vertices[:, 1]
+    assert [y.min(), y.max()] == pytest.approx([26.85 - 8.8, 26.85 + 8.8])
+
+
+def test_pressure_falls_upward_on_a_logarithmic_axis_with_plain_numbers(drawings):
+    axes = drawings["lifting-dry", "notes"].axes[0]
+    assert axes.get_yscale() == "log"
+    low, high = axes.get_ylim()
+    assert low > 1000.0 > 300.0 > high
+    numbers = [text.get_text() for text in tick_texts(axes.yaxis)]
+    assert {"1000", "850", "700", "500", "400", "300"} <= set(numbers)
+
+
+def test_height_begins_at_the_ground_and_time_at_zero(drawings):
+    assert drawings["atmosphere", "notes"].axes[0].get_ylim()[0] == 0.0
+    assert drawings["temperature", "notes"].axes[0].get_xlim()[0] == 0.0
+
+
+def test_the_axis_of_a_small_quantity_says_its_power_of_ten_in_the_label(drawings):
+    axes = drawings["elastic-collisions", "notes"].axes[2]
+    assert axes.get_ylabel().replace("\n", " ") == "relative change (10⁻¹⁵)"
+    assert all(abs(float(text.get_text().replace("−", "-"))) < 10 for text in tick_texts(axes.yaxis))
+
+
+def test_a_histogram_is_drawn_between_the_bounds_of_its_bins(runs, drawings):
+    axes = drawings["temperature", "notes"].axes[2]
+    steps = [patch for patch in axes.patches if isinstance(patch, StepPatch)]
+    assert steps[0].get_data().edges == pytest.approx(np.linspace(0, 1400, 36))
+    assert steps[0].get_data().values == pytest.approx(runs["temperature"].speed_probability_density)
+
+
+def test_discs_are_true_to_size_in_their_box_and_coloured_by_speed(runs, drawings):
+    run, axes = runs["elastic-collisions"], drawings["elastic-collisions", "notes"].axes[0]
+    (discs,) = [artist for artist in axes.collections if isinstance(artist, EllipseCollection)]
+    assert axes.get_aspect() == 1.0
+    assert axes.get_xlim() == axes.get_ylim() == pytest.approx((0.0, 20.0))
+    assert discs.get_widths() == pytest.approx(run.disc_diameter * 1e9)
+    assert discs.get_offsets() == pytest.approx(run.disc_position[-1, :, :2] * 1e9)
+    assert np.asarray(discs.get_array()) == pytest.approx(np.linalg.norm(run.disc_velocity[-1], axis=1))
+    assert discs.get_cmap().name in ("viridis", "cividis")
+
+
+def test_heavy_discs_have_a_thicker_rim(runs, drawings):
+    run, axes = runs["elastic-collisions"], drawings["elastic-collisions", "notes"].axes[0]
+    (discs,) = [artist for artist in axes.collections if isinstance(artist, EllipseCollection)]
+    rims, heavy = np.asarray(discs.get_linewidths()), run.disc_mass.values > 2 * AIR
+    assert rims[heavy].min() > rims[~heavy].max()
+    assert "heavy: 4 × the mass" in written(drawings["elastic-collisions", "notes"])
+
+
+def test_the_trails_of_discs_end_at_the_discs_and_fade_backwards(runs, drawings):
+    axes = drawings["elastic-collisions", "notes"].axes[0]
+    (trails,) = [artist for artist in axes.collections if isinstance(artist, LineCollection)]
+    ends = np.array([segment[-1] for segment in trails.get_segments()])[-70:]
+    assert ends == pytest.approx(runs["elastic-collisions"].disc_position[-1, :, :2].values * 1e9)
+    alpha = trails.get_colors()[:, 3]
+    assert np.all(np.diff(alpha) >= 0)
+    assert alpha[0] < alpha[-1]
+
+
+def test_discs_that_leap_between_frames_have_no_trails(runs):
+    run = runs["elastic-collisions"].isel(elapsed_time=slice(0, None, 60))
+    collections = plot.figure(run).axes[0].collections
+    assert not any(isinstance(artist, LineCollection) for artist in collections)
+
+
+def test_a_box_of_unknown_length_is_as_large_as_the_room_that_discs_have_taken(runs):
+    axes = plot.figure(runs["elastic-collisions"].drop_vars("box_length")).axes[0]
+    assert axes.get_xlim() == pytest.approx((0.0, 20.0), abs=0.5)
+
+
+def test_a_part_of_a_variable_can_be_drawn():
+    line = Line("elapsed_time", "heat[z_high]", "ceiling")
+    heat = variable(("elapsed_time", "wall"), [[1.0, 2.0], [3.0, 4.0]], "J")
+    run = small([280.0, 290.0], Panel("line", "Heat", (line,), "time", "heat"), heat=heat)
+    for labels in (["z_low", "z_high"], np.array([b"z_low", b"z_high"])):
+        axes = plot.figure(run.assign_coords(wall=labels)).axes[0]
+        assert axes.lines[0].get_ydata().tolist() == [2.0, 4.0]
+
+
+def test_two_single_numbers_are_a_point():
+    panel = Panel("profile", "Cloud base", (Line("base_t", "base_p", "cloud base"),), "T", "p", "degC", "hPa")
+    base = {"base_t": variable((), 288.15, "K"), "base_p": variable((), 9e4, "Pa")}
+    assert plot.figure(small([280.0], panel, **base)).axes[0].lines[0].get_xydata().tolist() == [
+        [15.0, 900.0]
+    ]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [[300.0], [300.0, np.nan, 302.0], [np.nan, np.nan], [300.0] * 100, list(np.geomspace(1, 1e9, 50))],
+)
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_gaps_single_frames_and_constants_can_be_drawn(tmp_path, values, scale):
+    panel = Panel("line", "Temperature", (TIME,), "time", "temperature", y_scale=scale)
+    assert plot.save(small(values, panel), tmp_path / "figure.png").stat().st_size > 1000
+
+
+# What is said
+
+
+def test_misfits_are_written_in_numbers(drawings):
+    said = "\n".join(text.replace("\n", " ") for text in written(drawings["lifting-dry", "notes"]))
+    assert "T(300 hPa) − adiabat = +0.12 ± 0.05 K" in said
+    assert "lapse rate − g/cp = −0.04 ± 0.03 K km⁻¹" in said
+
+
+def test_a_headline_is_called_by_its_long_name_and_shown_in_its_units(runs):
+    run = xr.Dataset(
+        headline("h", 8400.0, 31.0, 8430.0, "m", "", long_name="scale height", display_units="km")
+    )
+    assert caption.headline(run, "h") == "scale height − theory = −0.03 ± 0.03 km"
+
+
+def test_headlines_that_no_panel_claims_stand_in_the_first_with_curves(runs):
+    panels = (Panel("discs", "The box"), TEMPERATURE)
+    first, second = caption.headlines(runs["temperature"], panels)
+    assert first == []
+    assert second == ["mean T − wall = +0.4 ± 0.5 K", "p − n k T Z = +2.1 ± 1.6 hPa"]
+
+
+def test_what_was_not_measured_is_not_said():
+    run = small([280.0, 290.0], **headline("mean", np.nan, np.nan, 280.0, "K", "mean"))
+    assert caption.headline(run, "mean") == ""
+    assert caption.headline(run, "nowhere") == ""
+
+
+def test_the_footer_says_where_the_figure_comes_from(drawings):
+    said = "atmosbox 0.1.0 · lifting-dry · 10\u2009000 molecules · seed 1 · exact engine"
+    assert any(text.startswith(said) for text in written(drawings["lifting-dry", "notes"]))
+
+
+def test_an_interrupted_run_says_so(runs):
+    run = runs["atmosphere"].assign_attrs(atmosbox_status="interrupted")
+    assert caption.footer(run).endswith("interrupted run")
+
+
+def test_numbers_have_the_digits_that_their_error_allows():
+    assert caption.number(1234.5678, 0.234) == "1234.57 ± 0.23"
+    assert caption.number(0.0, 0.0) == "0"
+    assert caption.number(-1.5e-9, 3e-10, signed=True) == "(−1.5 ± 0.3) × 10⁻⁹"
+
+
+def test_a_difference_of_temperatures_in_celsius_is_in_kelvin():
+    assert unit.of_difference("degC") == "K"
+    assert float(unit.convert(5.0, "K", "degC", difference=True)) == 5.0
+    assert float(unit.convert(5.0, "ns", "ps")) == pytest.approx(5000.0)
+
+
+@pytest.mark.parametrize("decades", [0.05, 0.3, 1.0, 2.5, 8.0, 30.0])
+@pytest.mark.parametrize("low", [1e-20, 0.07, 3.0, 1e24])
+def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart(low, decades):
+    high = low * 10**decades
+    ticks = np.array(tick.log_ticks(low, high, 0.08))
+    assert 2 <= ticks.size <= 14
+    assert low * (1 - 1e-9) <= ticks.min() <= ticks.max() <= high * (1 + 1e-9)
+    assert np.diff(np.log10(ticks)).min() >= 0.03 * decades
+
+
+# The file
+
+
+def test_the_same_run_gives_the_same_bytes_in_another_process(tmp_path, runs):
+    stored = tmp_path / "run.nc"
+    runs["elastic-collisions"].to_netcdf(stored)
+    code = (
+        "import sys, xarray\nfrom atmosbox import plot\n"
+        "run = xarray.load_dataset(sys.argv[1], decode_times=False)\n"
+        "for path in sys.argv[2:]: plot.save(run, path)"
+    )
+    run = xr.load_dataset(stored, decode_times=False)
+    first = [plot.save(run, tmp_path / f"first.{suffix}") for suffix in plot.FORMATS]
+    second = [path.with_stem("second") for path in first]
+    environment = os.environ | {"PYTHONHASHSEED": "7", "MPLBACKEND": "svg", "TZ": "Asia/Tokyo"}
+    command = [sys.executable, "-c", code, str(stored), *map(str, second)]
+    subprocess.run(command, check=True, env=environment, cwd=Path(__file__).resolve().parents[1])
+    for one, other in zip(first, second, strict=True):
+        assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize("suffix", plot.FORMATS)
+def test_the_users_own_matplotlib_settings_neither_change_a_figure_nor_are_changed(tmp_path, suffix):
+    run = small([280.0, 290.0])
+    first = plot.save(run, tmp_path / f"first.{suffix}")
+    with matplotlib.rc_context(
+        {"font.size": 30.0, "lines.linewidth": 9.0, "svg.hashsalt": "x", "savefig.dpi": 50}
+    ):
+        before = dict(matplotlib.rcParams)
+        second = plot.save(run, tmp_path / f"second.{suffix}")
+        assert dict(matplotlib.rcParams) == before
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_drawing_does_not_change_the_run(runs):
+    for run in runs.values():
+        copy = run.copy(deep=True)
+        plot.figure(run)
+        xr.testing.assert_identical(run, copy)
+
+
+def test_each_format_is_what_it_says(tmp_path):
+    run = small([280.0, 290.0])
+    png = plot.save(run, tmp_path / "figure.png").read_bytes()
+    assert png.startswith(b"\x89PNG")
+    assert int.from_bytes(png[16:20], "big") == 3.5 * 300
+    svg = plot.save(run, tmp_path / "figure.SVG").read_text(encoding="utf-8")
+    assert "<svg" in svg
+    assert "dc:date" not in svg
+    pdf = plot.save(run, tmp_path / "figure", "pdf")
+    assert pdf.name == "figure.pdf"
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert b"/CIDFontType2" in pdf.read_bytes()  # TrueType, whose text can be searched
+    assert b"CreationDate" not in pdf.read_bytes()
+
+
+def test_a_figure_carries_the_settings_of_its_run(tmp_path):
+    svg = plot.save(small([280.0, 290.0]), tmp_path / "figure.svg").read_text(encoding="utf-8")
+    assert "&quot;seed&quot;: 1" in svg or '"seed": 1' in svg
+
+
+def test_a_file_is_replaced_only_by_force(tmp_path):
+    path = tmp_path / "figure.png"
+    path.write_text("precious")
+    with pytest.raises(FileError, match=r"exists already: add --force to replace it"):
+        plot.save(small([280.0, 290.0]), path)
+    assert path.read_text() == "precious"
+    assert plot.save(small([280.0, 290.0]), path, force=True) == path
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("name", "format", "words"),
+    [
+        ("figure.gif", None, "format = gif is unknown: give a file name or --format of png, svg or pdf"),
+        ("figure", None, "format is not given: give a file name or --format of png, svg or pdf"),
+        ("figure", "jpg", "png, svg or pdf"),
+        ("figure.png", "pdf", "format = pdf does not go with the file name figure.png"),
+    ],
+)
+def test_an_unknown_format_is_refused_with_those_that_are_known(tmp_path, name, format, words):
+    with pytest.raises(SettingError, match=words):
+        plot.save(small([280.0]), tmp_path / name, format)
+
+
+def test_an_unknown_theme_is_refused_with_those_that_are_known(tmp_path):
+    with pytest.raises(SettingError, match="give --theme notes or --theme slides"):
+        plot.figure(small([280.0]), "poster")
+    with pytest.raises(SettingError, match="theme = poster"):
+        plot.save(small([280.0]), tmp_path / "figure.png", theme="poster")
+
+
+def test_a_folder_that_is_missing_or_in_the_way_is_named(tmp_path):
+    with pytest.raises(FileError, match="does not exist"):
+        plot.save(small([280.0]), tmp_path / "nowhere" / "figure.png")
+    (tmp_path / "folder.png").mkdir()
+    with pytest.raises(FileError, match="is a folder"):
+        plot.save(small([280.0]), tmp_path / "folder.png", force=True)
+
+
+@pytest.mark.parametrize(
+    ("number", "kind", "words"),
+    [(errno.ENOSPC, DiskFullError, "disk is full"), (errno.EACCES, FileError, "cannot be")],
+)
+def test_a_figure_that_cannot_be_written_leaves_nothing_behind(tmp_path, monkeypatch, number, kind, words):
+    def refuse(*_):
+        raise OSError(number, os.strerror(number))
+
+    path = tmp_path / "figure.png"
+    path.write_text("precious")
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(kind, match=words):
+        plot.save(small([280.0]), path, force=True)
+    assert [each.name for each in tmp_path.iterdir()] == ["figure.png"]
+    assert path.read_text() == "precious"
+
+
+def broken(**changes):
+    run = small([280.0, 290.0])
+    return run.assign_attrs(changes)
+
+
+@pytest.mark.parametrize(
+    ("run", "words"),
+    [
+        (xr.Dataset(), "it was not written by atmosbox run"),
+        (broken(atmosbox_panels="[]"), "not in the form that atmosbox writes"),
+        (broken(atmosbox_panels='{"format": 9, "panels": []}'), "reads format 1"),
+        (broken(atmosbox_panels=to_json(())), "its scene names no panels"),
+        (broken(atmosbox_headlines="{"), "atmosbox_headlines of the file cannot be read"),
+        (broken(atmosbox_parameters="[]"), "atmosbox_parameters of the file cannot be read"),
+        (small([280.0]).drop_vars("air_temperature"), "has no variable 'air_temperature'"),
+        (small([]), "stopped before its first frame"),
+        (
+            small([280.0], air_temperature=variable((), [[1.0]][0][0], "Pa")),
+            "in 'Pa', which cannot be drawn in 'degC'",
+        ),
+        (
+            small([280.0], air_temperature=variable(("elapsed_time", "axis"), [[1.0]], "K")),
+            "and a line has one",
+        ),
+        (small([280.0, 290.0], air_temperature=variable("height", np.ones(3), "K")), "differ in length"),
+        (
+            small([280.0], Panel("line", "A", (Line("elapsed_time", "air_temperature[up]", "a"),))),
+            "no part 'up'",
+        ),
+    ],
+)
+def test_a_file_that_cannot_be_drawn_is_refused_in_a_sentence(run, words):
+    with pytest.raises(FileError, match=words.replace("[", r"\[")) as refusal:
+        plot.figure(run)
+    assert str(refusal.value).endswith(".")
+
+
+def test_drawing_needs_no_window_and_no_pyplot():
+    code = "import sys; import atmosbox.plot; assert 'matplotlib.pyplot' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).resolve().parents[1])

@@ -1,0 +1,285 @@
+"""The scenarios are found however atmosbox is installed, and a lecturer's own file is as good as they are.
+
+Nothing here needs a network: the wheels are built by the build backend directly and unpacked where an
+installer would put them, in environments that borrow the libraries of this one.
+"""
+
+import os
+import subprocess
+import sys
+import tarfile
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from atmosbox import scenarios
+from atmosbox.errors import FileError, UnknownSceneError
+
+ROOT = Path(__file__).resolve().parents[1]
+
+BUILD = "import sys; from hatchling import build; print(getattr(build, sys.argv[1])(sys.argv[2]))"
+
+LOOK = """
+import atmosbox, atmosbox.scenarios
+print(atmosbox.__file__)
+assert "lifting-dry" in atmosbox.scenarios.names()
+module = atmosbox.scenarios.load("lifting-dry")
+assert module.__name__ == "atmosbox.scenarios.lifting_dry"
+assert all(hasattr(module, name) for name in atmosbox.scenarios.REQUIRED)
+print(module.__file__)
+"""
+
+OWN_SCENE = """
+from dataclasses import dataclass
+
+@dataclass
+class Settings:
+    molecules: int = 100
+
+def build(settings): ...
+def theory(dataset): ...
+
+headlines = ()
+panels = ()
+"""
+
+
+def build(tree, folder, hook):
+    """Build a wheel, an editable wheel or an sdist of a source tree into a folder, and return its path."""
+    folder.mkdir()
+    command = [sys.executable, "-c", BUILD, f"build_{hook}", str(folder)]
+    run = subprocess.run(command, cwd=tree, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    return folder / run.stdout.split()[-1]
+
+
+def new_environment(folder, wheel=None):
+    """Make an environment with the libraries of this one, install a wheel into it, return its Python."""
+    venv.EnvBuilder(with_pip=False, symlinks=os.name != "nt").create(folder)
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    where = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    site = Path(
+        subprocess.run([python, "-c", where], capture_output=True, text=True, check=True).stdout.strip()
+    )
+    libraries = [path for path in sys.path if path.endswith(("site-packages", "dist-packages"))]
+    (site / "zz_libraries.pth").write_text("\n".join(libraries), encoding="utf-8")
+    if wheel is not None:
+        with zipfile.ZipFile(wheel) as archive:
+            archive.extractall(site)
+    return python
+
+
+def look(python, cwd, **variables):
+    """Return where a fresh Python started in a folder finds atmosbox and the scenario of dry lifting."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | variables
+    run = subprocess.run(
+        [python, "-c", LOOK], cwd=cwd, env=environment, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    return [Path(line).resolve() for line in run.stdout.splitlines()]
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    return build(ROOT, tmp_path_factory.mktemp("wheel") / "dist", "wheel")
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory):
+    return build(ROOT, tmp_path_factory.mktemp("sdist") / "dist", "sdist")
+
+
+@pytest.fixture
+def classroom(tmp_path):
+    """Return a user's folder that has a folder ``scenarios`` and a ``lifting_dry.py`` of its own."""
+    folder = tmp_path / "classroom"
+    for name in ("scenarios/__init__.py", "scenarios/lifting_dry.py", "lifting_dry.py"):
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("raise RuntimeError('the file of a user was imported')", encoding="utf-8")
+    return folder
+
+
+def test_an_installed_wheel_finds_its_scenarios(tmp_path, classroom, wheel):
+    places = look(new_environment(tmp_path / "env", wheel), classroom)
+    assert all(place.is_relative_to(tmp_path / "env") for place in places)
+
+
+def test_a_wheel_built_from_the_sdist_finds_its_scenarios(tmp_path, classroom, sdist):
+    with tarfile.open(sdist) as archive:
+        archive.extractall(tmp_path / "source", filter="data")
+    (tree,) = (tmp_path / "source").iterdir()
+    wheel = build(tree, tmp_path / "dist", "wheel")
+    places = look(new_environment(tmp_path / "env", wheel), classroom)
+    assert all(place.is_relative_to(tmp_path / "env") for place in places)
+
+
+def test_an_editable_install_finds_the_scenarios_of_the_checkout(tmp_path, classroom):
+    wheel = build(ROOT, tmp_path / "dist", "editable")
+    places = look(new_environment(tmp_path / "env", wheel), classroom)
+    assert places == [ROOT / "atmosbox/__init__.py", ROOT / "scenarios/lifting_dry.py"]
+
+
+def test_an_uninstalled_checkout_finds_its_scenarios(tmp_path, classroom):
+    python = new_environment(tmp_path / "env")
+    expected = [ROOT / "atmosbox/__init__.py", ROOT / "scenarios/lifting_dry.py"]
+    assert look(python, ROOT) == expected
+    assert look(python, classroom, PYTHONPATH=str(ROOT)) == expected
+
+
+def test_the_wheel_holds_the_package_the_scenarios_and_nothing_else(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        found = archive.namelist()
+    assert len(found) == len(set(found))
+    assert {name.split("/")[0] for name in found if ".dist-info/" not in name} == {"atmosbox"}
+    own = {path.name for path in ROOT.glob("scenarios/*.py")}
+    assert {Path(name).name for name in found if name.startswith("atmosbox/scenarios/")} == {
+        "__init__.py",
+        *own,
+    }
+    assert "atmosbox/py.typed" in found
+
+
+def test_the_sdist_holds_all_that_a_reader_or_a_packager_needs(sdist):
+    with tarfile.open(sdist) as archive:
+        found = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+    assert {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "CITATION.cff", ".ci/run"} <= found
+    for folder in ("atmosbox", "scenarios", "tests", "docs", "benchmarks"):
+        modules = {path.relative_to(ROOT).as_posix() for path in (ROOT / folder).glob("**/*.py")}
+        assert modules <= found
+
+
+def test_a_wheel_does_not_look_into_the_project_of_somebody_else(tmp_path, wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path)  # as `pip install --target .` does
+    (tmp_path / "pyproject.toml").write_text('[project]\nname = "theirs"\n', encoding="utf-8")
+    (tmp_path / "scenarios").mkdir()
+    (tmp_path / "scenarios" / "theirs.py").write_text("", encoding="utf-8")
+    code = "import atmosbox.scenarios; print(*atmosbox.scenarios.names())"
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert "lifting-dry" in run.stdout.split()
+    assert "theirs" not in run.stdout.split()
+
+
+def test_names_are_sorted_and_typed_with_dashes():
+    found = scenarios.names()
+    assert list(found) == sorted(set(found))
+    assert not [name for name in found if "_" in name]
+
+
+@pytest.mark.parametrize("name", scenarios.names())
+def test_every_scenario_defines_what_a_scenario_must(name):
+    module = scenarios.load(name)
+    assert [attribute for attribute in scenarios.REQUIRED if not hasattr(module, attribute)] == []
+    assert module.__doc__
+
+
+def test_a_scenario_may_be_named_with_underscores():
+    assert scenarios.load("lifting_dry") is scenarios.load("lifting-dry")
+
+
+@pytest.mark.parametrize("name", ["lifting-dri", "Lifting-Dry", "lifting"])
+def test_an_unknown_scenario_offers_the_nearest_ones(name):
+    with pytest.raises(UnknownSceneError, match=f"{name}.*lifting-dry.*atmosbox list"):
+        scenarios.load(name)
+
+
+@pytest.mark.parametrize("name", ["", "zzzz", "os", "__init__", "-", "a\0b", "x" * 10_000, "two\nlines"])
+def test_a_hopeless_name_is_pointed_to_the_list(name):
+    with pytest.raises(UnknownSceneError, match="atmosbox list") as caught:
+        scenarios.load(name)
+    assert len(str(caught.value).splitlines()) == 1
+    assert len(str(caught.value)) < 200
+
+
+def test_the_bare_name_of_an_own_file_is_answered_with_its_path(tmp_path, monkeypatch):
+    (tmp_path / "my_scene.py").write_text(OWN_SCENE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UnknownSceneError, match=r"\./my_scene\.py"):
+        scenarios.load("my_scene")
+
+
+@pytest.mark.parametrize("spell", [str, Path])
+def test_an_own_file_is_loaded_by_its_path(tmp_path, spell):
+    path = tmp_path / "my_scene.py"
+    path.write_text(OWN_SCENE, encoding="utf-8")
+    module = scenarios.load(spell(path))
+    assert module.Settings().molecules == 100
+    assert module.__file__ == str(path)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_own_file_in_the_current_folder_is_loaded_by_its_file_name(tmp_path, monkeypatch):
+    (tmp_path / "my_scene.py").write_text(OWN_SCENE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert scenarios.load("my_scene.py").Settings().molecules == 100
+
+
+def test_an_own_file_may_have_the_name_of_a_library_without_replacing_it(tmp_path):
+    path = tmp_path / "json.py"
+    path.write_text(OWN_SCENE, encoding="utf-8")
+    scenarios.load(path)
+    assert hasattr(sys.modules.get("json", __import__("json")), "loads")
+
+
+def test_an_edited_own_file_is_read_anew(tmp_path):
+    path = tmp_path / "my_scene.py"
+    for molecules in (100, 200, 300):
+        path.write_text(OWN_SCENE.replace("100", str(molecules)), encoding="utf-8")
+        assert scenarios.load(path).Settings().molecules == molecules
+
+
+def test_a_missing_own_file_is_refused(tmp_path):
+    with pytest.raises(FileError, match=r"no file .*nowhere\.py.*atmosbox list"):
+        scenarios.load(tmp_path / "nowhere.py")
+
+
+def test_a_folder_is_no_scenario(tmp_path):
+    with pytest.raises(FileError, match="is a folder"):
+        scenarios.load(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("source", "sentence"),
+    [
+        ("x = 1\ny = (\n", r"line 2, .*SyntaxError: '\(' was never closed"),
+        (
+            "x = 1\nimport no_such_library\n",
+            "line 2, .*ModuleNotFoundError: No module named 'no_such_library'",
+        ),
+        ("def f():\n    return 1 / 0\n\nf()\n", "line 2, .*ZeroDivisionError"),
+        ("import json\n\njson.loads('{')\n", "line 3, .*JSONDecodeError"),
+        ("import sys\nsys.exit()\n", "line 2, .*SystemExit"),
+        ("x = '\xe9'\n", "SyntaxError"),
+        ("x = 1\0\n", "cannot be run"),
+    ],
+)
+def test_an_own_file_that_fails_is_refused_with_its_line(tmp_path, source, sentence):
+    path = tmp_path / "my_scene.py"
+    path.write_bytes(source.encode("latin-1"))
+    before = set(sys.modules)
+    with pytest.raises(FileError, match=sentence) as caught:
+        scenarios.load(path)
+    assert str(path) in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+    assert not [name for name in set(sys.modules) - before if "my_scene" in name]
+
+
+def test_an_own_file_that_is_no_scenario_is_told_what_it_lacks(tmp_path):
+    path = tmp_path / "my_scene.py"
+    path.write_text(
+        OWN_SCENE.replace("headlines", "headings").replace("def theory", "def theories"), encoding="utf-8"
+    )
+    with pytest.raises(FileError, match="does not define theory, headlines:"):
+        scenarios.load(path)
+
+
+def test_an_interrupt_while_an_own_file_runs_is_not_swallowed(tmp_path):
+    path = tmp_path / "my_scene.py"
+    path.write_text("raise KeyboardInterrupt", encoding="utf-8")
+    with pytest.raises(KeyboardInterrupt):
+        scenarios.load(path)
