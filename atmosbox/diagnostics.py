@@ -21,19 +21,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from atmosbox import units
 from atmosbox.errors import EngineError
 
 __all__ = ["VARIABLES", "Variable", "dataset", "headline_variables", "variable"]
 
 CHUNK_FRAMES = 100  # the frames of some molecules that are compressed as one block
 CHUNK_VALUES = 1_000_000  # the most numbers in a block
-
-# The unit in which a file holds what a scene shows in another one.
-_SI_UNITS = {
-    "hPa": "Pa", "kPa": "Pa", "degC": "K", "K km-1": "K m-1", "%": "1", "g kg-1": "kg kg-1",
-    "km": "m", "cm": "m", "mm": "m", "um": "m", "nm": "m", "ms": "s", "us": "s", "ns": "s", "ps": "s",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -142,6 +135,8 @@ class _Headline(Protocol):
     @property
     def unit(self) -> str: ...
     @property
+    def display_unit(self) -> str: ...
+    @property
     def label(self) -> str: ...
     @property
     def reason(self) -> str | None: ...
@@ -195,15 +190,17 @@ VARIABLES: dict[str, Variable] = {
                 cell_methods=_POINT, comment=_SUM, ledger=True),
     **_declared((*_TIME, "wall"), ("heat_from_wall", "J", "heat given to the molecules by the wall"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
+    **_declared((*_TIME, "wall"), ("wall_pressure", "Pa", "pressure of the air on the wall", "air_pressure"),
+                cell_methods=_MEAN),
+    **_declared(_TIME, ("air_temperature_noise", "K", "expected scatter of a thermometer of so few molecules"),
+                difference=True),
     **_declared((*_TIME, "wall"), ("wall_temperature", "K", "temperature of the wall"), cell_methods=_POINT),
     # A parcel that is lifted
     **_declared(
         _TIME,
         ("parcel_temperature", "K", "temperature of the parcel", "air_temperature"),
         ("parcel_pressure", "Pa", "pressure of the parcel", "air_pressure"),
-        ("parcel_potential_temperature", "K", "potential temperature of the parcel",
-         "air_potential_temperature"),
-        cell_methods=_MEAN,
+        cell_methods=_POINT,
     ),
     **_declared(_TIME, ("parcel_height", "m", "height of the parcel above the ground", "height"),
                 positive="up"),
@@ -212,6 +209,8 @@ VARIABLES: dict[str, Variable] = {
         ("environment_temperature", "K", "temperature of the air around the parcel", "air_temperature"),
         ("environment_pressure", "Pa", "pressure of the air around the parcel", "air_pressure"),
         ("adiabat_temperature", "K", "temperature of the adiabat at this pressure", "air_temperature"),
+        ("dry_air_adiabat_temperature", "K", "temperature of the adiabat of dry air at this pressure",
+         "air_temperature"),
     ),
     **_declared(
         _TIME,
@@ -229,22 +228,29 @@ VARIABLES: dict[str, Variable] = {
         ("layer_pressure", "Pa", "pressure of the layer", "air_pressure"),
         cell_methods="height: mean",
     ),
+    **_declared(
+        ("height",),
+        ("number_density_barometric", "m-3", "number density by the barometric law"),
+        ("layer_pressure_barometric", "Pa", "pressure by the barometric law", "air_pressure"),
+        cell_methods="height: mean",
+    ),
     # Speeds, bin by bin
     **_declared(("speed",), ("speed_probability_density", "s m-1", "share of molecules per unit of speed"),
                 cell_methods="speed: mean"),
     # Discs that collide in a plane
     **_declared(
         _TIME,
-        ("kinetic_energy_light", "J", "kinetic energy of the light discs"),
-        ("kinetic_energy_heavy", "J", "kinetic energy of the heavy discs"),
+        ("kinetic_energy_light", "J", "mean kinetic energy of a disc of the light half"),
+        ("kinetic_energy_heavy", "J", "mean kinetic energy of a disc of the heavy half"),
+        ("running_energy_light", "J", "mean kinetic energy of a light disc since the start"),
+        ("running_energy_heavy", "J", "mean kinetic energy of a heavy disc since the start"),
+        ("energy_change", "1", "change of the kinetic energy since the start, as a share of it"),
+        ("momentum_residual", "1", "momentum that neither the discs have nor the walls took, as a share"),
         cell_methods=_POINT, ledger=True,
     ),
-    **_declared(
-        (*_TIME, "axis"),
-        ("momentum", "kg m s-1", "total momentum of the discs"),
-        ("trail_position", "m", "position of the traced molecule"),
-        cell_methods=_POINT, ledger=True,
-    ),
+    **_declared((*_TIME, "axis"), ("momentum", "kg m s-1", "total momentum of the discs"),
+                cell_methods=_POINT, ledger=True),
+    **_declared(("axis",), ("box_length", "m", "length of the box"), ledger=True),
     **_declared(
         _PATH,
         ("disc_position", "m", "position of the middle of the disc"),
@@ -318,54 +324,40 @@ def variable(name: str) -> Variable:
 
 
 def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
-    """Return the variables that hold one headline: its value, error, answer and tolerance, in SI.
+    """Return the variables that hold one headline: its value, error, answer and tolerance.
 
     Parameters
     ----------
     headline
-        The headline in the unit in which it is shown. A value of None becomes NaN, another None no variable.
+        The headline in SI units. A value of None becomes NaN, another None no variable.
 
     Returns
     -------
     dict
-        Variables without dimensions by their names; the attribute ``display_units`` keeps the unit shown.
+        Variables without dimensions by their names; the attribute ``display_units`` keeps the unit in which
+        a table shows them.
 
     Examples
     --------
-    An error of 0.5 degC is one of 0.5 K:
-
-    >>> from types import SimpleNamespace
-    >>> shown = SimpleNamespace(
-    ...     name="final_temperature",
-    ...     value=26.85,
-    ...     standard_error=0.5,
-    ...     theory=None,
-    ...     tolerance=None,
-    ...     unit="degC",
-    ...     label="temperature at the end",
-    ...     reason=None,
-    ... )
-    >>> {name: float(held.values) for name, held in headline_variables(shown).items()}
-    {'final_temperature': 300.0, 'final_temperature_se': 0.5}
+    >>> from atmosbox.settings import Headline
+    >>> warm = Headline("final", 300.0, 0.5, None, 0.0, "", "K", "degC", "temperature at the end")
+    >>> held = headline_variables(warm)
+    >>> {name: float(number) for name, number in held.items()}, held["final"].attrs["display_units"]
+    ({'final': 300.0, 'final_se': 0.5, 'final_tolerance': 0.0}, 'degC')
     """
-    unit = _SI_UNITS.get(headline.unit, headline.unit)
-    parent = Variable(headline.name, (), unit, headline.label, comment=headline.reason or None)
+    parent = Variable(headline.name, (), headline.unit, headline.label, comment=headline.reason or None)
     stated = {
         parent: math.nan if headline.value is None else headline.value,
         _derived(parent, "_se"): headline.standard_error,
         _derived(parent, "_theory"): headline.theory,
         _derived(parent, "_tolerance"): headline.tolerance,
     }
-    held = {}
-    for entry, number in stated.items():
-        if number is not None:
-            if unit != headline.unit:
-                number = units.to_si(number, headline.unit, difference=entry.difference)
-            held[entry.name] = xr.Variable((), float(number), entry.attributes(), entry.encoding(()))
-    if headline.unit == "K":  # whether a scene's kelvins are a temperature or a difference is its own affair
-        for name in {parent.name, f"{parent.name}_theory"} & held.keys():
-            held[name].attrs["units_metadata"] = "temperature: unknown"
-    held[parent.name].attrs["display_units"] = headline.unit
+    held = {
+        entry.name: xr.Variable((), float(number), entry.attributes(), entry.encoding(()))
+        for entry, number in stated.items()
+        if number is not None
+    }
+    held[parent.name].attrs["display_units"] = headline.display_unit
     return held
 
 

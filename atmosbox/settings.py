@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, Literal, Self, cast
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from atmosbox.errors import ConfigError, FileError, SettingError, UnknownSettingError, shown
 from atmosbox.units import parse_quantity, parse_whole, phrase, to_si, typed
@@ -366,6 +366,34 @@ class SceneSettings(BaseModel):
     def describe(cls) -> list[Parameter]:
         """Return the settings as they were declared: the scene's own, then the seed."""
         return list(_parameters(cls).values())
+
+    @classmethod
+    def with_defaults(cls, **defaults: Value) -> type[Self]:
+        """Return the same settings with other defaults, for a scene that is a variant of another.
+
+        Raises
+        ------
+        UnknownSettingError
+            If a default names no setting.
+
+        Examples
+        --------
+        >>> SceneSettings.with_defaults(seed=7)().seed
+        7
+        """
+        parameters = _parameters(cls)
+        for name, value in defaults.items():
+            if name not in parameters:
+                raise _unknown(name, value, parameters)
+        fields: dict[str, Any] = {
+            name: (
+                type(p.default),
+                setting(defaults[name], p.unit, p.help, low=p.low, high=p.high, choices=p.choices),
+            )
+            for name, p in parameters.items()
+            if name in defaults
+        }
+        return cast("type[Self]", create_model(cls.__name__, __base__=cls, **fields))
 
     def check(self) -> None:
         """Raise SettingError where the settings do not fit together; a scene may override this."""

@@ -12,13 +12,14 @@ from atmosbox.errors import EngineError
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 
 
-def headline(name="lapse_rate", value=9.7, **fields):
+def headline(name="lapse_rate", value=9.7e-3, **fields):
     """Return a headline as a scene states it."""
     stated = {
-        "standard_error": 0.1,
-        "theory": 9.8,
-        "tolerance": 0.4,
-        "unit": "K km-1",
+        "standard_error": 1e-4,
+        "theory": 9.8e-3,
+        "tolerance": 4e-4,
+        "unit": "K m-1",
+        "display_unit": "K km-1",
         "reason": "a finite rise",
     }
     return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
@@ -213,19 +214,13 @@ def test_a_headline_becomes_four_numbers_in_si():
     assert held["lapse_rate"].attrs["units_metadata"] == "temperature: difference"
 
 
-def test_the_error_of_a_temperature_in_degrees_celsius_is_not_shifted_by_273():
+def test_the_error_of_a_temperature_is_marked_as_a_difference():
     held = headline_variables(
-        headline("final", 20.0, unit="degC", standard_error=0.5, theory=21.0, tolerance=2.0)
+        headline("final", 293.15, unit="K", display_unit="degC", standard_error=0.5, theory=294.15, tolerance=2.0)
     )
     assert [float(number.values) for number in held.values()] == [293.15, 0.5, 294.15, 2.0]
     assert held["final"].attrs["units_metadata"] == "temperature: on_scale"
     assert held["final_se"].attrs["units_metadata"] == "temperature: difference"
-
-
-def test_whether_a_headline_in_kelvin_is_a_difference_is_left_open():
-    held = headline_variables(headline("misfit", 0.3, unit="K"))
-    assert held["misfit"].attrs["units_metadata"] == "temperature: unknown"
-    assert held["misfit_tolerance"].attrs["units_metadata"] == "temperature: difference"
 
 
 def test_what_a_headline_does_not_state_is_not_in_the_file():

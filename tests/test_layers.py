@@ -24,7 +24,7 @@ class Layer:
     lazily: str = ""  # parts and libraries that only a function may import, or a type checker
 
 
-FOUNDATION = "errors units settings theory sounding statistics"
+FOUNDATION = "errors units settings theory statistics"
 FACTS = Layer(f"version {FOUNDATION}", "numpy scipy pydantic", lazily="metpy pint")
 
 LAYERS = {
@@ -34,9 +34,11 @@ LAYERS = {
     "diagnostics": Layer("version engine units errors panels statistics", "numpy xarray"),
     "output": Layer("version engine units errors panels diagnostics", "numpy xarray netCDF4"),
     "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
-    "a scenario": Layer("engine units theory sounding statistics settings panels", "numpy"),
+    "instruments": Layer("engine units statistics", "numpy"),
+    "scene": Layer("units", lazily="engine instruments"),
+    "a scenario": Layer("engine errors units theory statistics settings panels instruments scene", "numpy", lazily="xarray"),
     "scenarios": Layer("errors"),
-    "runner": Layer("version engine diagnostics statistics settings errors units scenarios", "numpy xarray"),
+    "runner": Layer("version engine errors units settings panels diagnostics output instruments scene scenarios", "numpy xarray"),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
     "__main__": Layer("cli"),
     "version": Layer(lazily="runner xarray"),

@@ -54,7 +54,7 @@ def headline(name, value, unit, **fields):
         "label": "a number",
         "reason": "finite speed",
     }
-    return SimpleNamespace(**{"name": name, "value": value, "unit": unit, **stated, **fields})
+    return SimpleNamespace(**{"name": name, "value": value, "unit": unit, "display_unit": unit, **stated, **fields})
 
 
 def times(count, step=0.001):
@@ -100,11 +100,11 @@ def lifting():
     frames = filled(names, coords, companions=("_se", "_theory"))
     frames["parcel_temperature"][3] = np.nan
     stated = [
-        headline("lapse_rate", 9.7, "K km-1"),
-        headline("final_temperature", 20.0, "degC"),
+        headline("lapse_rate", 9.7e-3, "K m-1"),
+        headline("final_temperature", 293.15, "K"),
         headline("misfit", 0.2, "K", reason=None),
-        headline("final_pressure", 300.0, "hPa", theory=None, tolerance=None),
-        headline("cloud_base", None, "km", standard_error=None, theory=None, tolerance=None),
+        headline("final_pressure", 30000.0, "Pa", theory=None, tolerance=None),
+        headline("cloud_base", None, "m", standard_error=None, theory=None, tolerance=None),
         headline("compressibility_factor", 1.001, "1"),
     ]
     return dataset(frames, coords, attributes(), stated)

@@ -577,6 +577,23 @@ def test_the_axis_of_a_small_quantity_says_its_power_of_ten_in_the_label(drawing
     assert all(abs(float(text.get_text().replace("−", "-"))) < 10 for text in tick_texts(axes.yaxis))
 
 
+def test_numbers_that_hardly_differ_are_written_in_full():
+    drawing = plot.figure(
+        small([300.0, 300.0 + 1e-5], Panel("line", "T", (Line("elapsed_time", "air_temperature", "air"),)))
+    )
+    drawing.draw_without_rendering()
+    axis = drawing.axes[0].yaxis
+    assert axis.get_offset_text().get_text() == ""
+    assert all(text.get_text().startswith(("300", "299.99")) for text in tick_texts(axis))
+
+
+def test_axes_that_run_backwards_do_so_together():
+    line = Line("elapsed_time", "air_temperature", "air")
+    panels = [Panel("line", title, (line,), x_invert=True) for title in ("A", "B")]
+    for axes in plot.figure(small([280.0, 290.0]).assign_attrs(atmosbox_panels=to_json(panels))).axes:
+        assert axes.xaxis_inverted()
+
+
 def test_a_histogram_is_drawn_between_the_bounds_of_its_bins(runs, drawings):
     axes = drawings["temperature", "notes"].axes[2]
     steps = [patch for patch in axes.patches if isinstance(patch, StepPatch)]

@@ -21,10 +21,10 @@ __all__ = ["FollowPressure"]
 class FollowPressure:
     """Let the ceiling give way so that the pressure follows a schedule.
 
-    The pressure is p = n (kT + w / 3 N), the virial theorem. Here kT comes from all the energy, translation and rotation, that the ledger
-    holds, and so has no noise at fixed volume; n counts the volume open to centres; and w, the virial of contacts per unit time, is
-    averaged over the relaxation. With it the adiabat is T ~ p^(2/7) to second order in the packing fraction; without, it
-    is not even to first.
+    The pressure is that of the virial theorem, p = n kT + w / 3 V = n kT Z. Here kT comes from all the energy,
+    translation and rotation, that the ledger holds, and so has no noise at fixed volume; n counts the volume open to centres;
+    and w, the virial of contacts per unit time, is measured: (Z - 1) / n is averaged over a hundred mean free times. With it
+    the adiabat is T ~ p^(2/7) to second order in the packing fraction; without, not even to first.
 
     Parameters
     ----------
@@ -38,6 +38,8 @@ class FollowPressure:
         How long the piston keeps one velocity, in tau.
     relaxation
         In how many tau a gap of pressure is closed.
+    excess
+        First guess of (Z - 1) / n [length^3], until it is measured.
 
     Raises
     ------
@@ -59,6 +61,7 @@ class FollowPressure:
         mean_free_time: float,
         interval: float = 0.25,
         relaxation: float = 20.0,
+        excess: float = 0.0,
     ) -> None:
         self._time = np.asarray(time, np.float64)
         values = np.asarray(pressure, np.float64)
@@ -73,8 +76,9 @@ class FollowPressure:
         self._log = np.log(values)
         self._relaxation = relaxation * mean_free_time
         self.interval = interval * mean_free_time
+        self._memory = 100.0 * mean_free_time
         self._virial = 0.0
-        self._virial_rate = math.nan
+        self._excess = excess
 
     def log_pressure(self, time: float) -> float:
         """Return the logarithm of the pressure to follow at a time [time]."""
@@ -83,19 +87,18 @@ class FollowPressure:
     def pressure(self, parcel: ParcelSet) -> float:
         """Return the pressure of the parcel [energy/length^3]."""
         kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
-        contacts = self._virial_rate if math.isfinite(self._virial_rate) else 0.0
         density = parcel.open_density
-        return density * (kT + contacts / (3.0 * max(parcel.number, 1)))
+        return density * kT * (1.0 + self._excess * density)
 
     def _average_virial(self, parcel: ParcelSet) -> None:
-        """Average the virial of contacts per unit time over the last relaxation time."""
-        now = float(parcel.virial.sum())
-        rate = (now - self._virial) / self.interval
-        self._virial = now
-        if parcel.time == 0.0:
-            return
-        share = min(self.interval / self._relaxation, 1.0)
-        self._virial_rate = rate if math.isnan(self._virial_rate) else self._virial_rate + share * (rate - self._virial_rate)
+        """Average what contacts add to the pressure, (Z - 1) / n, which hardly changes while n falls."""
+        virial = float(parcel.virial.sum())
+        kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
+        if parcel.time > 0.0 and kT > 0.0:
+            rate = (virial - self._virial) / self.interval
+            excess = rate / (3.0 * parcel.number * kT * parcel.open_density)
+            self._excess += self.interval / self._memory * (excess - self._excess)
+        self._virial = virial
 
     def velocity(self, parcel: ParcelSet) -> float:
         """Return the velocity [length/time] of the ceiling for the next interval."""

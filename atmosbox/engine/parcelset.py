@@ -16,7 +16,7 @@ from atmosbox.engine.cells import ROW, choose_grid, size_classes
 from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, Modes, specialise
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.state import EVENT, KIND, MOLECULE, Box, Cells, Kinds, Tallies, aligned_records
-from atmosbox.engine.walls import HEAT_BATH, PERIODIC, PISTON, WALL_NAMES, Specular, Wall, new_walls
+from atmosbox.engine.walls import HEAT_BATH, PERIODIC, PISTON, WALL_NAMES, Specular, Wall, new_walls, wall_kT
 
 __all__ = ["Driver", "ParcelSet", "Snapshot"]
 
@@ -228,6 +228,11 @@ class ParcelSet:
         return float(self._walls.piston[1])
 
     @property
+    def periodic(self) -> tuple[bool, bool, bool]:
+        """Which axes are periodic."""
+        return self._periodic
+
+    @property
     def gravity(self) -> float:
         """Downward acceleration [length/time^2]."""
         return self._box.gravity
@@ -277,6 +282,11 @@ class ParcelSet:
     def wall_hits(self) -> NDArray[np.int64]:
         """How often each wall has been hit since the start."""
         return np.array(self._tallies.hits)
+
+    def wall_kT(self) -> Array:
+        """Return the temperature of each wall now [energy], NaN for one that has none."""
+        kT = [wall_kT(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)]
+        return np.array(kT)
 
     @property
     def work(self) -> float:

@@ -6,7 +6,7 @@ file is, without the scene and without the engine, and drawing it twice gives th
 
 Read in this order: `unit` (from SI to what a meteorologist reads), `curve` (from a line of a panel to
 numbers), `draw` and `disc` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
-`layout` (where), `file` (PNG, SVG, PDF).
+`plate` (one panel) and `layout` (all of them), `file` (PNG, SVG, PDF).
 """
 
 from atmosbox.plot.file import FORMATS, save

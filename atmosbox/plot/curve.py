@@ -110,13 +110,13 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     [0.0, 10.0]
     """
     measured_is_x = panel.kind == "profile"
-    along = _values(
-        dataset, line.y if measured_is_x else line.x, panel.y_unit if measured_is_x else panel.x_unit
-    )
-    name, unit = (line.x, panel.x_unit) if measured_is_x else (line.y, panel.y_unit)
-    measured = (
-        _values(dataset, name, unit) if line.minus is None else _misfit(dataset, name, line.minus, unit)
-    )
+    axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
+    (name, unit), other = axes if measured_is_x else axes[::-1]
+    along = _values(dataset, *other)
+    if line.minus is None:
+        measured = _values(dataset, name, unit)
+    else:
+        measured = _misfit(dataset, name, line.minus, unit)
     error = None if line.error is None else _values(dataset, line.error, unit, difference=True)
     try:
         along, measured = np.broadcast_arrays(np.atleast_1d(along), measured)

@@ -179,7 +179,5 @@ def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
         low, high = axes.dataLim.intervaly
         if np.isfinite([low, high]).all() and 0.0 <= low < 0.2 * high:
             axes.set_ylim(bottom=0.0)
-    if panel.x_invert:
-        axes.invert_xaxis()
-    if panel.y_invert:
-        axes.invert_yaxis()
+    axes.xaxis.set_inverted(panel.x_invert)
+    axes.yaxis.set_inverted(panel.y_invert)

@@ -153,6 +153,8 @@ def style(theme: Theme) -> AbstractContextManager[None]:
         "grid.linewidth": theme.line / 3,
         "axes.axisbelow": True,
         "axes.unicode_minus": True,
+        "axes.formatter.useoffset": False,
+        "axes.formatter.limits": (-9, 9),
         "figure.dpi": theme.dots_per_inch,
         "savefig.dpi": 300,
         "svg.hashsalt": "atmosbox",

@@ -98,7 +98,23 @@ def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
     name = text.replace("_", "-")
     if name not in names():
         raise _unknown(text)
-    return importlib.import_module(f"{__name__}.{name.replace('-', '_')}")
+    return _complete(importlib.import_module(f"{__name__}.{name.replace('-', '_')}"))
+
+
+def _complete(module: ModuleType) -> ModuleType:
+    """Give a variant of another scenario what it takes over.
+
+    A variant says whose it is, ``variant_of = "temperature"``, and which settings start from another value,
+    ``defaults = {"molecules": 800}``; all that it does not define itself is the other's.
+    """
+    base = getattr(module, "variant_of", None)
+    if base is not None and not hasattr(module, "Settings"):
+        other = load(base)
+        settings = other.Settings.with_defaults(**getattr(module, "defaults", {}))
+        for name in REQUIRED:
+            if not hasattr(module, name):
+                setattr(module, name, settings if name == "Settings" else getattr(other, name))
+    return module
 
 
 def _unknown(text: str) -> UnknownSceneError:
@@ -139,7 +155,7 @@ def _load_file(path: Path) -> ModuleType:
         del sys.modules[module.__name__]
         raise FileError(_why(path, location, error)) from error
 
-    missing = [attribute for attribute in REQUIRED if not hasattr(module, attribute)]
+    missing = [attribute for attribute in REQUIRED if not hasattr(_complete(module), attribute)]
     if missing:
         del sys.modules[module.__name__]
         raise FileError(

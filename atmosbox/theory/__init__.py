@@ -35,6 +35,7 @@ from atmosbox.theory.barometric import (
 from atmosbox.theory.collision import (
     collision_rate,
     collision_rate_between,
+    contact_share,
     contact_value_between,
     mean_free_path,
     mean_free_time,
@@ -119,6 +120,7 @@ __all__ = [
     "compressibility_noise",
     "constant_energy_kurtosis",
     "constant_energy_speed_factor",
+    "contact_share",
     "contact_value",
     "contact_value_between",
     "contact_value_discs",

@@ -254,3 +254,48 @@ def collision_rate_between(
     inverse_reduced_mass = 1.0 / masses[:, np.newaxis] + 1.0 / masses
     rate: FloatArray = 2.0 * density * reach**2 * contact * np.sqrt(2.0 * np.pi * kT * inverse_reduced_mass)
     return rate
+
+
+def contact_share(sides: ArrayLike, diameter: float, molecules: int) -> float:
+    r"""Return the share of contacts that a box with walls leaves of those in open space.
+
+    Of the places on a sphere of one diameter around a molecule where a partner could touch it, some lie beyond a wall. With
+    :math:`s_i = \sigma / L_i`, for sides L that the centres can reach, and orientations n of all directions alike, the share is
+    the mean of :math:`\prod (1 - |n_i| s_i)`; and a molecule has N - 1 partners, not N.
+
+    Parameters
+    ----------
+    sides : (axis,)
+        Lengths that centres can reach, ``inf`` on a periodic axis [length].
+    diameter
+        Diameter of a molecule [length].
+    molecules
+        Their number N.
+
+    Returns
+    -------
+    float
+        Share, between 0 and 1; exact for a thin gas, to first order in :math:`\sigma / L` for a dense one.
+
+    Raises
+    ------
+    ValueError
+        If there are no molecules.
+
+    Notes
+    -----
+    Over all directions the means of :math:`|n_x|, |n_x n_y|, |n_x n_y n_z|` are
+    :math:`1/2, 2/3\pi, 1/4\pi`.
+
+    Examples
+    --------
+    Two hundred molecules of air at the ground, in a cube of 54 diameters, meet 3 % less often:
+
+    >>> round(contact_share([54.0, 54.0, 54.0], 1.0, 200), 3)
+    0.968
+    """
+    if molecules < 1:
+        raise ValueError("a box without molecules has no contacts")
+    x, y, z = diameter / np.asarray(sides, np.float64)
+    lost = 0.5 * (x + y + z) - 2.0 / (3.0 * np.pi) * (x * y + y * z + z * x) + x * y * z / (4.0 * np.pi)
+    return float((1.0 - lost) * (molecules - 1) / molecules)

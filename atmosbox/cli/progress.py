@@ -1,0 +1,100 @@
+"""The progress of a run: on a terminal a bar with the time that remains, elsewhere a line if need be."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+
+from atmosbox.cli.terminal import tell
+
+DELAY = 1.0  # seconds after which it is worth saying what takes so long
+SILENT = ("running", "done")
+
+Show = Callable[[float, str], None]
+
+
+@contextlib.contextmanager
+def progress(scene: str, *, quiet: bool) -> Iterator[Show]:
+    """Show on stderr how far a run is.
+
+    Parameters
+    ----------
+    scene
+        The name of the scene.
+    quiet
+        Whether nothing is to be shown.
+
+    Yields
+    ------
+    callable
+        To be called with the fraction done, 0 to 1, and a word on what goes on. A word such as "compiling the
+        engine, once" is said as soon as that has taken a second, with or without a terminal; an engine that
+        was compiled before is there sooner.
+    """
+    if quiet:
+        yield lambda fraction, doing: None
+    elif sys.stderr is not None and sys.stderr.isatty() and os.environ.get("TERM") != "dumb":
+        with _bar(scene) as (move, name), _patient(lambda doing: name(f"{scene}: {doing}")) as hear:
+
+            def show(fraction: float, doing: str) -> None:
+                if hear(doing):
+                    name(scene)
+                move(fraction)
+
+            yield show
+    else:
+        with _patient(lambda doing: tell(f"{scene}: {doing}")) as hear:
+            yield lambda fraction, doing: (hear(doing), None)[1]
+
+
+@contextlib.contextmanager
+def _patient(announce: Callable[[str], None]) -> Iterator[Callable[[str], bool]]:
+    """Hear what goes on and announce it only if it takes long; True where something new has begun."""
+    now: str = ""
+    waiting: threading.Timer | None = None
+
+    def hear(doing: str) -> bool:
+        nonlocal now, waiting
+        if doing == now:
+            return False
+        now = doing
+        if waiting is not None:
+            waiting.cancel()
+        if doing not in SILENT:
+            waiting = threading.Timer(DELAY, announce, [doing])
+            waiting.daemon = True
+            waiting.start()
+        return True
+
+    try:
+        yield hear
+    finally:
+        if waiting is not None:
+            waiting.cancel()
+
+
+@contextlib.contextmanager
+def _bar(scene: str) -> Iterator[tuple[Callable[[float], None], Callable[[str], None]]]:
+    """Show a bar that leaves no trace; what is yielded moves it and changes its name."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=None),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True, markup=False),
+        transient=True,
+        auto_refresh=False,  # while the engine is at work, no other thread could draw it
+        expand=True,
+    )
+    with bar:
+        task = bar.add_task(scene, total=1.0)
+        yield (
+            lambda fraction: bar.update(task, completed=min(max(fraction, 0.0), 1.0), refresh=True),
+            lambda name: bar.update(task, description=name, refresh=True),
+        )

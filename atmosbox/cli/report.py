@@ -1,0 +1,201 @@
+"""What a run, a file and a scene look like, as lines of text and as JSON."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.cli.table import digits, measurement, number, table, wrapped
+from atmosbox.units import from_si, phrase
+
+if TYPE_CHECKING:
+    from atmosbox.runner import Card, Outcome
+    from atmosbox.settings import Headline, Parameter
+
+_VERDICT = {True: "yes", False: "no", None: "-"}
+
+
+def next_command(command: str, path: Path) -> str:
+    """Return what to type next for a file.
+
+    Examples
+    --------
+    >>> next_command("plot", Path("my run.nc")), next_command("plot", Path("-7.nc"))
+    ("atmosbox plot 'my run.nc'", 'atmosbox plot ./-7.nc')
+    """
+    name = str(path)
+    return f"atmosbox {command} {shlex.quote(f'./{name}' if name.startswith('-') else name)}"
+
+
+def _shown(headline: Headline) -> dict[str, Any]:
+    """Return the numbers of a headline in the unit in which they are shown."""
+    unit = headline.display_unit
+
+    def difference(value: float | None) -> float | None:
+        return None if value is None else from_si(value, unit, difference=True)
+
+    return {
+        "value": from_si(headline.value, unit),
+        "standard_error": difference(headline.standard_error),
+        "theory": None if headline.theory is None else from_si(headline.theory, unit),
+        "misfit": difference(headline.misfit),
+        "tolerance": difference(headline.tolerance),
+    }
+
+
+def headline_json(headline: Headline) -> dict[str, Any]:
+    """Return a headline for JSON, in the unit in which the table shows it."""
+    return {
+        "name": headline.name,
+        "label": headline.label,
+        "unit": headline.display_unit,
+        **_shown(headline),
+        "reason": headline.reason,
+        "agrees": headline.agrees,
+    }
+
+
+def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
+    r"""Return the table of what was measured and what theory says, and why a model may be off.
+
+    Examples
+    --------
+    >>> from atmosbox.settings import Headline
+    >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.0, "none", "K", "degC", "temperature")
+    >>> print("\n".join(headline_lines([warm], 100)))
+    quantity            measured    theory  misfit       within error?
+    temperature [degC]  17.9 ± 2.0  14.9    +3.0 (1.5σ)  yes
+    """
+    rows, notes = [], []
+    for headline in headlines:
+        shown = _shown(headline)
+        value, error = shown["value"], shown["standard_error"]
+        decimals, power = digits(value, error)
+        theory = misfit = "-"
+        if shown["theory"] is not None:
+            theory = number(shown["theory"], decimals, power)
+            misfit = number(shown["misfit"], decimals, power, "+")
+            if error > 0.0 and math.isfinite(shown["misfit"] / error):
+                misfit += f" ({abs(shown['misfit']) / error:.1f}σ)"
+            if headline.agrees and abs(shown["misfit"]) > 4.0 * error:
+                may_be = number(shown["tolerance"], decimals, power)
+                notes.append(f"{headline.label}: up to {may_be}{_unit(headline)} off, for {headline.reason}.")
+        unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
+        rows.append(
+            [headline.label + unit, measurement(value, error), theory, misfit, _VERDICT[headline.agrees]]
+        )
+    header = ["quantity", "measured", "theory", "misfit", "within error?"]
+    lines = table(header, rows, width) if rows else ["No frame is late enough for an average."]
+    return [*lines, *(line for note in notes for line in wrapped(note, width))]
+
+
+def _unit(headline: Headline) -> str:
+    """Return the unit of a difference with a blank before it."""
+    unit = {"degC": "K", "1": ""}.get(headline.display_unit, headline.display_unit)
+    return f" {unit}" if unit else ""
+
+
+def ledger_line(ledger: float, limit: float) -> str:
+    """Return how well the account of energy closes.
+
+    Examples
+    --------
+    >>> ledger_line(3.2e-15, 1e-10), ledger_line(4e-6, 1e-10)
+    ('energy ledger closes to 3e-15', 'energy ledger does not close: 4e-06, where at most 1e-10 is allowed')
+    """
+    if ledger <= limit:
+        return f"energy ledger closes to {ledger:.0e}"
+    return f"energy ledger does not close: {ledger:.0e}, where at most {limit:.0e} is allowed"
+
+
+def cost_line(collisions: int, seconds: float) -> str:
+    """Return what a run has cost.
+
+    Examples
+    --------
+    >>> cost_line(1234567, 2.0)
+    '1,234,567 collisions in 2.0 s, 620,000 a second'
+    """
+    taken = f"{collisions:,} collisions in {seconds:.2g} s" if seconds < 10 else ""
+    taken = taken or f"{collisions:,} collisions in {seconds:.0f} s"
+    return taken + (f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else "")
+
+
+def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: float) -> dict[str, Any]:
+    """Return a run for JSON."""
+    rate = outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None
+    return {
+        "scene": scene,
+        "status": str(outcome.dataset.attrs.get("atmosbox_status", "complete")),
+        "file": None if path is None else str(path),
+        "headlines": [headline_json(headline) for headline in outcome.headlines],
+        "ledger": {"residual": outcome.ledger, "limit": limit, "closes": bool(outcome.ledger <= limit)},
+        "collisions": outcome.collisions,
+        "seconds": outcome.seconds,
+        "collisions_per_second": rate,
+        "next": None if path is None else next_command("plot", path),
+    }
+
+
+def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int) -> list[str]:
+    """Return a run as text."""
+    return [
+        *headline_lines(outcome.headlines, width),
+        "",
+        ledger_line(outcome.ledger, limit),
+        cost_line(outcome.collisions, outcome.seconds),
+        f"file: {path}",
+        f"next: {next_command('plot', path)}",
+    ]
+
+
+def card_json(card: Card) -> dict[str, Any]:
+    """Return a model card for JSON."""
+    return {
+        "scene": card.scene,
+        "title": card.title,
+        "story": card.story,
+        "facts": dict(card.facts),
+        "parameters": [
+            {
+                "name": p.name,
+                "unit": p.unit,
+                "default": p.default,
+                "low": p.low,
+                "high": p.high,
+                "choices": p.choices,
+                "kind": p.kind,
+                "help": p.help,
+            }
+            for p in card.parameters
+        ],
+    }
+
+
+def parameter_lines(parameters: Sequence[Parameter], width: int) -> list[str]:
+    """Return the table of what may be set."""
+    header = ["setting", "default", "unit", "allowed", "what it is"]
+    rows = [
+        [p.name, _value(p, p.default).removesuffix(f" {p.unit}"), p.unit or "-", p.allowed, p.help]
+        for p in parameters
+    ]
+    return table(header, rows, width)
+
+
+def _value(parameter: Parameter, value: bool | int | float | str) -> str:
+    """Return the value of a setting with its unit."""
+    if isinstance(value, bool | str):
+        return parameter.typed(value)
+    return phrase(value, parameter.unit)
+
+
+def setting_lines(settings: Mapping[str, Any], parameters: Sequence[Parameter], width: int) -> list[str]:
+    """Return the values with which a scene runs, those that differ from their defaults marked."""
+    rows = [
+        [p.name, _value(p, settings[p.name]), "" if settings[p.name] == p.default else "set"]
+        for p in parameters
+    ]
+    return table(["setting", "value", ""], rows, width)

@@ -1,0 +1,169 @@
+"""Columns and numbers: how a table fits a terminal, and how many digits a measurement deserves."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import textwrap
+from collections.abc import Sequence
+
+LONGEST_LINE = 100  # columns of running text, however wide the terminal is
+NARROWEST = 20  # columns for a cell that is broken into lines
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
+    r"""Return the lines of a table; nothing in it is ever cut off.
+
+    Parameters
+    ----------
+    header
+        The name of each column; empty where a table has none.
+    rows
+        The cells.
+    width
+        How many columns the lines may take. The last cell and then the first are broken into lines to fit;
+        where even that does not fit, each row becomes a block of lines.
+
+    Examples
+    --------
+    >>> print("\n".join(table(["quantity", "theory"], [["temperature [degC]", "15.0"]], 80)))
+    quantity            theory
+    temperature [degC]  15.0
+    >>> print("\n".join(table(["quantity", "theory"], [["temperature [degC]", "15.0"]], 20)))
+    temperature [degC]
+      theory: 15.0
+    """
+    lines = [list(header), *map(list, rows)] if any(header) else [list(row) for row in rows]
+    if not lines:
+        return []
+    sizes = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
+    for column in (-1, 0):
+        excess = max(sum(sizes) + 2 * len(sizes) - 2 - width, 0)
+        sizes[column] = max(sizes[column] - excess, min(sizes[column], NARROWEST))
+    if sum(sizes) + 2 * len(sizes) - 2 > width:
+        return _blocks(header, rows, width)
+    made = []
+    for row in lines:
+        cells = [_filled(cell, max(size, 1)) for cell, size in zip(row, sizes, strict=True)]
+        for parts in itertools.zip_longest(*cells, fillvalue=""):
+            made.append("  ".join(part.ljust(size) for part, size in zip(parts, sizes, strict=True)).rstrip())
+    return made
+
+
+def _filled(text: str, size: int, indent: str = "") -> list[str]:
+    """Return a text in lines of a width; no word is cut."""
+    return textwrap.wrap(
+        text,
+        size,
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _blocks(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
+    """Return the rows of a table below each other."""
+    made = []
+    for row in rows:
+        if not any(header):
+            made += ["  ".join(row[:-1]), *wrapped(row[-1], width, indent="  ")]
+            continue
+        made.append(row[0])
+        for name, cell in zip(header[1:], row[1:], strict=True):
+            if cell:
+                made += wrapped(f"{name}: {cell}" if name else cell, width, indent="  ")
+    return made
+
+
+def wrapped(text: str, width: int, indent: str = "") -> list[str]:
+    """Return a paragraph in lines of a readable length; no word is cut."""
+    return _filled(text, max(min(width, LONGEST_LINE), 20), indent)
+
+
+def story(text: str, width: int) -> list[str]:
+    r"""Return a docstring for a terminal: its paragraphs are filled anew, what is indented stays as it is.
+
+    Examples
+    --------
+    >>> story("Air that\nrises cools.\n\n    T ~ p^(2/7)", 80)
+    ['Air that rises cools.', '', '    T ~ p^(2/7)']
+    """
+    made: list[str] = []
+    for paragraph in text.strip().split("\n\n"):
+        lines = paragraph.splitlines()
+        plain = not any(line[:1].isspace() or line[:2] in ("- ", "* ", "..") for line in lines)
+        made += ["", *(wrapped(" ".join(lines), width) if plain else lines)]
+    return made[1:]
+
+
+def number(value: float, decimals: int | None = None, power: int = 0, sign: str = "") -> str:
+    """Return a number as text.
+
+    Parameters
+    ----------
+    value
+        The number.
+    decimals
+        How many digits stand behind its point, fewer than none for tens and hundreds; None for what six
+        significant digits need.
+    power
+        The power of ten that is taken out.
+    sign
+        "+" to show the sign of a positive number, too.
+
+    Examples
+    --------
+    >>> number(288.149, 2), number(12345.0, -2), number(1.5e9, 1, 9, "+")
+    ('288.15', '12300', '+1.5e9')
+    """
+    if not math.isfinite(value):
+        return f"{value:{sign}}"
+    if decimals is None:
+        return f"{value:{sign}.6g}"
+    mantissa = round(value / 10.0**power, decimals) + 0.0  # never "-0"
+    return f"{mantissa:{sign}.{max(decimals, 0)}f}{f'e{power}' if power else ''}"
+
+
+def digits(value: float, error: float) -> tuple[int | None, int]:
+    """Return how many decimals a measurement deserves, and the power of ten to take out of it.
+
+    Parameters
+    ----------
+    value, error
+        The measurement and its standard error, of which two digits are shown.
+
+    Returns
+    -------
+    decimals : int or None
+        None where there is no error bar to judge by.
+    power : int
+        Zero for numbers that are easily read as they are.
+
+    Examples
+    --------
+    >>> digits(288.149, 0.0312), digits(1.5e9, 2e7), digits(3.0, 0.0)
+    ((3, 0), (3, 9), (None, 0))
+    """
+    if not (math.isfinite(value) and math.isfinite(error) and error > 0.0):
+        return None, 0
+    last = math.floor(math.log10(error)) - 1
+    first = math.floor(math.log10(max(abs(value), error)))
+    power = 0 if -4 <= first < 6 else first
+    return power - max(last, first - 11), power
+
+
+def measurement(value: float, error: float) -> str:
+    """Return a measurement with its standard error.
+
+    Examples
+    --------
+    >>> measurement(288.149, 0.0312), measurement(1.52345e9, 2e7), measurement(15.0, 0.0)
+    ('288.149 ± 0.031', '(1.523 ± 0.020)e9', '15')
+    """
+    decimals, power = digits(value, error)
+    if decimals is None:
+        return number(value) if error == 0.0 else f"{number(value)} ± {number(error)}"
+    # The power is taken out of both, and said once.
+    low, high = (number(x / 10.0**power, decimals) for x in (value, error))
+    return f"({low} ± {high})e{power}" if power else f"{low} ± {high}"

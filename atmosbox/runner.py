@@ -1,0 +1,458 @@
+"""Run a scenario: advance, measure, report."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from atmosbox import __version__, scenarios
+from atmosbox.engine.refusal import PackingError as EnginePackingError
+from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.errors import EngineError, FileError, PackingError, SettingError
+from atmosbox.instruments import Molecules, Readings
+from atmosbox.panels import to_json
+from atmosbox.scene import Setup
+from atmosbox.settings import Headline, Parameter, SceneSettings
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.output import Checkpoint
+
+__all__ = [
+    "LEDGER_LIMIT",
+    "Card",
+    "Check",
+    "Interrupted",
+    "Outcome",
+    "Prepared",
+    "card",
+    "execute",
+    "headlines_of",
+    "prepare",
+    "run",
+    "verify",
+]
+
+LEDGER_LIMIT = 1e-10
+"""By how much, relative to the energy there is, the ledger of a sound run may fail to close."""
+
+_BREATH = 0.1
+_MEMORY = 8e9
+
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scenario with its settings, checked and ready to run."""
+
+    scene: str
+    module: ModuleType
+    settings: SceneSettings
+    save_molecules: bool = False
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Everything that makes the run, as JSON can hold it."""
+        return {
+            "scene": self.scene,
+            "settings": self.settings.as_dict(),
+            "engine": "exact",
+            "version": __version__,
+            "save_molecules": self.save_molecules,
+        }
+
+
+class Card(NamedTuple):
+    """The model card of a scene."""
+
+    scene: str
+    title: str
+    story: str
+    facts: tuple[tuple[str, str], ...]
+    parameters: tuple[Parameter, ...]
+
+
+class Outcome(NamedTuple):
+    """What a run came to."""
+
+    dataset: xr.Dataset
+    headlines: tuple[Headline, ...]
+    seconds: float
+    collisions: int
+    ledger: float
+
+
+class Check(NamedTuple):
+    """One thing that was verified of a file."""
+
+    name: str
+    passed: bool
+    sentence: str
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run was stopped by Ctrl-C; ``outcome`` holds the frames that are complete, None if there is none."""
+
+    def __init__(self, outcome: Outcome | None) -> None:
+        super().__init__("the run was interrupted")
+        self.outcome = outcome
+
+
+def prepare(
+    scene: str | os.PathLike[str], settings: Mapping[str, Any], *, save_molecules: bool = False
+) -> Prepared:
+    """Load a scenario and check its settings; nothing is computed yet.
+
+    Parameters
+    ----------
+    scene
+        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
+    settings
+        Values by name, numbers in the documented unit or texts with a unit.
+    save_molecules
+        Whether places and speeds of all molecules are kept in every frame.
+
+    Returns
+    -------
+    Prepared
+        What `execute` takes.
+
+    Raises
+    ------
+    AtmosboxError
+        If the scene is unknown or a setting is refused.
+
+    Examples
+    --------
+    >>> prepare("lifting-dry", {"temperature": "20 degC"}).settings.temperature
+    20.0
+    """
+    module = scenarios.load(scene)
+    checked = module.Settings.from_user(settings)
+    name = str(scene) if os.fspath(scene) not in scenarios.names() else os.fspath(scene)
+    return Prepared(name.replace("_", "-") if name.replace("_", "-") in scenarios.names() else name, module, checked, save_molecules)
+
+
+def card(prepared: Prepared) -> Card:
+    """Return the model card: the story, the facts for these settings, the parameters.
+
+    Examples
+    --------
+    >>> dict(card(prepare("lifting-dry", {"molecules": 100})).facts)["gamma"]
+    '7/5'
+    """
+    setup = _build(prepared)
+    story = (prepared.module.__doc__ or "").strip()
+    title = getattr(prepared.module, "title", prepared.scene)
+    return Card(prepared.scene, title, story, tuple(setup.facts.items()), tuple(prepared.settings.describe()))
+
+
+def _build(prepared: Prepared) -> Setup:
+    """Build the box, in the words of a user where it cannot be built."""
+    try:
+        setup: Setup = prepared.module.build(prepared.settings)
+    except EnginePackingError as error:
+        molecules = getattr(prepared.settings, "molecules", None)
+        raise PackingError("molecules", molecules, "do not fit", str(error)) from error
+    except (RefusedError, ValueError) as error:
+        if isinstance(error, SettingError):
+            raise
+        raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
+    if prepared.save_molecules:
+        needed = 16.0 * setup.parcel.number * setup.frames
+        if needed > _MEMORY:
+            raise SettingError(
+                "molecules", setup.parcel.number, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
+                "leave out --save-molecules, or take fewer molecules",
+            )  # fmt: skip
+    return setup
+
+
+@dataclass
+class _Recording:
+    """A run under way: its box, its instruments, and the times of its frames."""
+
+    prepared: Prepared
+    setup: Setup
+    attributes: dict[str, Any]
+    times: list[float] = field(default_factory=lambda: [0.0])
+
+    def __post_init__(self) -> None:
+        extra = (Molecules(),) if self.prepared.save_molecules else ()
+        self.instruments = (*self.setup.instruments, *extra)
+
+    @property
+    def frames(self) -> int:
+        return len(self.times) - 1
+
+    def advance(self, watch: Callable[[float], None]) -> None:
+        """Advance by one frame and measure."""
+        setup = self.setup
+        parcel = setup.parcel
+        for sample in range(1, setup.samples + 1):
+            until = (self.frames + sample / setup.samples) * setup.frame
+            if sample == setup.samples:
+                until = (self.frames + 1) * setup.frame
+            parcel.advance(max(until, parcel.time), watch)
+            snapshot = parcel.snapshot()
+            for instrument in self.instruments:
+                instrument.look(parcel, snapshot)
+        for instrument in self.instruments:
+            instrument.close(parcel, snapshot)
+        self.times.append(parcel.time)
+
+    def dataset(self, status: str) -> tuple[xr.Dataset, tuple[Headline, ...]]:
+        """Return all that has been measured so far, with theory beside it."""
+        from atmosbox import diagnostics
+
+        setup, settings, module = self.setup, self.prepared.settings, self.prepared.module
+        in_unit = setup.scale.time / {"s": 1.0, "ns": 1e-9, "ps": 1e-12}[setup.time_unit]
+        times = np.array(self.times) * in_unit
+        readings = Readings()
+        settle = min(setup.settle, max(self.frames - 2, 0))
+        for instrument in self.instruments:
+            readings.update(instrument.readings(setup.scale, settle))
+        names = ("height", "height_bnds", "speed", "speed_bnds")
+        coords = {name: readings.pop(name) for name in names if name in readings}
+        coords["elapsed_time"] = times[1:]
+        coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
+        attributes = self.attributes | {"atmosbox_status": status}
+        measured = diagnostics.dataset(readings, coords, attributes, time_unit=setup.time_unit)
+        if self.frames < 2:
+            return measured, ()
+        answers = module.theory(measured, settings)
+        full = diagnostics.dataset(readings | answers, coords, attributes, time_unit=setup.time_unit)
+        headlines = tuple(module.headlines(full, settings))
+        return diagnostics.dataset(
+            readings | answers, coords, attributes, headlines, time_unit=setup.time_unit
+        ), headlines
+
+
+def execute(
+    prepared: Prepared,
+    *,
+    checkpoint: Checkpoint | None = None,
+    progress: Progress | None = None,
+    command: str = "",
+) -> Outcome:
+    """Run a prepared scenario.
+
+    Parameters
+    ----------
+    prepared
+        From `prepare`.
+    checkpoint
+        Keeps what is complete on disk while the run goes on, and writes the finished file.
+    progress
+        Called with the share that is done and a word on what goes on.
+    command
+        What the user typed, for the file's history.
+
+    Returns
+    -------
+    Outcome
+        The dataset, its headlines, and what it cost.
+
+    Raises
+    ------
+    Interrupted
+        After Ctrl-C, with the frames that are complete.
+    EngineError
+        If the engine cannot go on.
+
+    Examples
+    --------
+    >>> outcome = execute(prepare("elastic-collisions", {"duration": "2 s"}))
+    >>> outcome.ledger < LEDGER_LIMIT
+    True
+    """
+    from atmosbox.output import global_attributes
+
+    tell = progress or (lambda share, word: None)
+    tell(0.0, "compiling the engine, once")
+    setup = _build(prepared)
+    panels = prepared.module.panels
+    attributes = global_attributes(
+        prepared.parameters,
+        title=getattr(prepared.module, "title", prepared.scene),
+        command=command or f"atmosbox run {prepared.scene}",
+        comment=" ".join((prepared.module.__doc__ or "").split()),
+        references="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+        panels=to_json(panels(prepared.settings) if callable(panels) else panels),
+        status="partial",
+    )
+    recording = _Recording(prepared, setup, attributes)
+    setup.parcel.advance(0.0)
+    began = time.perf_counter()
+    last = 0.0
+
+    def watch(now: float) -> None:
+        nonlocal last
+        if time.perf_counter() - last > _BREATH:
+            last = time.perf_counter()
+            tell(min(now / setup.duration, 1.0), "running")
+
+    def outcome(status: str) -> Outcome:
+        dataset, headlines = recording.dataset(status)
+        seconds = time.perf_counter() - began
+        return Outcome(dataset, headlines, seconds, setup.parcel.contacts, setup.parcel.ledger())
+
+    try:
+        while recording.frames < setup.frames:
+            recording.advance(watch)
+            watch(setup.parcel.time)
+            if checkpoint is not None and recording.frames < setup.frames:
+                checkpoint(lambda: recording.dataset("partial")[0])
+        tell(1.0, "done")
+        done = outcome("complete")
+    except StalledError as error:
+        raise EngineError(f"The run of {prepared.scene} cannot go on: {error}.") from error
+    except KeyboardInterrupt:
+        partial = outcome("interrupted") if recording.frames else None
+        if partial is not None and checkpoint is not None:
+            checkpoint.save(partial.dataset)
+        raise Interrupted(partial) from None
+    if checkpoint is not None:
+        checkpoint.finish(done.dataset)
+    return done
+
+
+def run(
+    scene: str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    save_molecules: bool = False,
+    **settings: Any,
+) -> xr.Dataset:
+    """Run a scenario and return what it measured.
+
+    Parameters
+    ----------
+    scene
+        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
+    out
+        Where to write the netCDF file; nothing is written without it. An existing file is never replaced.
+    progress
+        Called with the share that is done and a word on what goes on.
+    save_molecules
+        Whether places and speeds of all molecules are kept in every frame.
+    **settings
+        Values by name, numbers in the documented unit or texts with a unit.
+
+    Returns
+    -------
+    xarray.Dataset
+        Everything measured, with theory beside it, in SI units.
+
+    Raises
+    ------
+    AtmosboxError
+        If the scene or a setting is refused, the file cannot be written, or the engine cannot go on.
+
+    Examples
+    --------
+    >>> box = run("elastic-collisions", duration="2 s", seed=3)
+    >>> bool(abs(box.energy_change).max() < 1e-12)
+    True
+    """
+    from atmosbox.output import Checkpoint, check_writable
+
+    prepared = prepare(scene, settings, save_molecules=save_molecules)
+    checkpoint = None
+    if out is not None:
+        check_writable(Path(out))
+        checkpoint = Checkpoint(Path(out))
+    words = ", ".join([repr(str(scene)), *(f"{name}={value!r}" for name, value in settings.items())])
+    return execute(prepared, checkpoint=checkpoint, progress=progress, command=f"atmosbox.run({words})").dataset
+
+
+def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
+    """Return the headlines that a dataset carries.
+
+    Raises
+    ------
+    FileError
+        If the file names headlines that it does not hold.
+
+    Examples
+    --------
+    >>> box = run("elastic-collisions", duration="2 s")
+    >>> headlines_of(box)[0].name
+    'energy_of_light_discs'
+    """
+    found = []
+    try:
+        for name in json.loads(dataset.attrs.get("atmosbox_headlines", "[]")):
+            value = dataset[name]
+            theory = dataset.get(f"{name}_theory")
+            error = dataset.get(f"{name}_se")
+            tolerance = dataset.get(f"{name}_tolerance")
+            found.append(
+                Headline(
+                    name,
+                    float(value),
+                    float(error) if error is not None else 0.0,
+                    float(theory) if theory is not None else None,
+                    float(tolerance) if tolerance is not None else 0.0,
+                    str(value.attrs.get("comment", "")),
+                    str(value.attrs["units"]),
+                    str(value.attrs.get("display_units", value.attrs["units"])),
+                    str(value.attrs["long_name"]),
+                )
+            )
+    except (KeyError, ValueError, TypeError) as error:
+        raise FileError(f"The headlines of this file cannot be read ({error}): run the scene again.") from error
+    return tuple(found)
+
+
+def verify(dataset: xr.Dataset) -> list[Check]:
+    """Check a dataset again: is it complete, does the ledger close, does theory agree within error?
+
+    Examples
+    --------
+    >>> all(check.passed for check in verify(run("elastic-collisions", seed=2)))
+    True
+    """
+    checks = []
+    status = str(dataset.attrs.get("atmosbox_status", "unknown"))
+    frames = int(dataset.sizes.get("elapsed_time", 0))
+    checks.append(Check("complete", status == "complete", f"the run is {status}, with {frames} frames"))
+    bad = [str(name) for name, values in dataset.data_vars.items() if values.dtype.kind == "f" and np.isinf(values.values).any()]
+    checks.append(Check("finite", not bad, f"infinite numbers in {', '.join(bad)}" if bad else "no number is infinite"))
+    if "ledger_residual" in dataset:
+        worst = float(np.max(dataset["ledger_residual"].values)) if frames else math.nan
+        checks.append(Check("ledger", worst <= LEDGER_LIMIT, f"the energy ledger closes to {worst:.1e}"))
+        checks.append(_balance(dataset))
+    for headline in headlines_of(dataset):
+        if headline.agrees is not None:
+            margin = 4.0 * headline.standard_error + headline.tolerance
+            checks.append(
+                Check(
+                    headline.name,
+                    bool(headline.agrees),
+                    f"{headline.label}: misfit {headline.misfit:.3g} {headline.unit}, allowed {margin:.3g}",
+                )
+            )
+    return checks
+
+
+def _balance(dataset: xr.Dataset) -> Check:
+    """Sum the ledger anew from its entries."""
+    total = sum(dataset[name].values for name in ("kinetic_energy", "rotational_energy", "potential_energy"))
+    given = dataset["heat_from_wall"].values.sum(axis=1) + dataset["work_by_piston"].values
+    start = total - given
+    scale = np.maximum(np.abs(total), np.abs(start))
+    worst = float(np.max(np.abs(start - start[0]) / np.where(scale > 0.0, scale, 1.0))) if len(start) else math.nan
+    return Check("balance", worst <= LEDGER_LIMIT, f"energy less heat and work is the same in all frames to {worst:.1e}")

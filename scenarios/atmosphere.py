@@ -1,0 +1,226 @@
+"""Why the air does not fly away, and why it thins with height.
+
+Three thousand molecules in a tall column with real gravity. Each falls freely between collisions, and yet the column neither
+falls down nor leaves: density and pressure decrease with height by the barometric law, by a factor e every 8.4 km, while
+the temperature is the same everywhere. The floor feels the blows of the molecules, and floor less ceiling is
+the weight of the air.
+
+Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or smooth, a smooth
+ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each molecule stands for some
+10^34 real ones and is hundreds of metres wide, so that it meets others within a stated share of the scale height (the Knudsen
+number): the theory beside the barometric law counts the room that they take. A real atmosphere is stirred and heated
+from below, and therefore cools with height; left alone for long enough it would become isothermal like this one.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine.walls import HeatBath, Periodic, Specular
+from atmosbox.instruments import Air, Layers
+from atmosbox.panels import Line, Panel
+from atmosbox.scene import Setup
+from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.statistics import block_average
+from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+
+title = "A column of atmosphere"
+FRAMES = 200
+SETTLE = 60
+LAYERS = 25
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(3000, "1", "number of molecules", low=50, high=1_000_000)
+    temperature: float = setting(288.15, "K", "temperature of the floor, and of the air at the start", low=10.0, high=2000.0)
+    surface_pressure: float = setting(1013.25, "hPa", "pressure at the floor", low=1.0, high=1e5)
+    gravity: float = setting(9.80665, "m s-2", "acceleration of gravity", low=0.1, high=100.0)
+    height: float = setting(25.0, "km", "height of the ceiling", low=0.1, high=1000.0)
+    knudsen: float = setting(0.2, "1", "mean free path at the floor in scale heights", low=0.02, high=10.0)
+    floor: str = setting("heat-bath", "", "what the floor is: warm, or smooth so that no heat passes", choices=("heat-bath", "isolated"))
+    start: str = setting("equilibrium", "", "where the molecules start", choices=("equilibrium", "bottom"))
+    duration: float = setting(240.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5)
+
+
+class Column:
+    """The column in reduced units: length in scale heights, energy in kT, mass of a molecule."""
+
+    def __init__(self, settings: Settings) -> None:
+        si = settings.si
+        self.energy = BOLTZMANN * si.temperature
+        self.scale_height = self.energy / (DRY_AIR.molecule_mass * si.gravity)
+        self.height = si.height / self.scale_height
+        self.width = 1.0
+        n = settings.molecules
+        held = -math.expm1(-min(self.height, 700.0))
+        density = n / (self.width**2 * held)
+        self.diameter = math.sqrt(1.0 / (math.sqrt(2.0) * math.pi * density * settings.knudsen))
+        self.per_area = n / self.width**2
+        # the floor carries what lies above it; what the ceiling pushes back is small
+        floor = self.per_area * (1.0 + math.exp(-min(self.height, 700.0)) / held)
+        weight = si.surface_pressure / (self.energy * floor / self.scale_height**3)
+        self.scale = Scale(self.scale_height, DRY_AIR.molecule_mass, self.energy, weight)
+        self.bottom = 0.5 * self.diameter
+        self.top = self.height - self.bottom
+
+    def density(self, edges: np.ndarray, kT: float, diameter: float) -> np.ndarray:
+        """Return the mean number density of layers in equilibrium [1/scale height^3]."""
+        return np.asarray(
+            law.hydrostatic_layers(edges, self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter)
+        )
+
+
+def build(settings: Settings) -> Setup:
+    """Return the column."""
+    column = Column(settings)
+    n = settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    length = (column.width, column.width, column.height)
+    sides = (True, True, False)
+    if settings.start == "bottom":
+        position = random_positions(length, np.full(n, column.diameter), rng, periodic=sides, top=min(0.1, column.height))
+    else:
+        position = random_positions(length, np.full(n, column.diameter), rng, periodic=sides, scale_height=1.0)
+    parcel = ParcelSet(
+        position,
+        maxwell_velocities(1.0, np.ones(n), rng, exact=True),
+        length=length,
+        walls=(Periodic(),) * 4 + (HeatBath(1.0) if settings.floor == "heat-bath" else Specular(), Specular()),
+        diameter=column.diameter,
+        gravity=1.0,
+        layers=LAYERS,
+        seed=settings.seed,
+    )
+    scale = column.scale
+    return Setup(
+        parcel,
+        scale,
+        settings.duration,
+        FRAMES,
+        (Air("floor"), Layers(LAYERS)),
+        samples=8,
+        settle=SETTLE,
+        time_unit="s",
+        facts={
+            "box": f"{column.width * scale.length / 1000.0:.2f} km wide, periodic, {settings.height:g} km high",
+            "weight of a molecule": f"{scale.weight:.2g} real molecules",
+            "exaggeration": f"molecules {column.diameter * scale.length:.0f} m wide",
+            "gamma": "5/3: the molecules do not rotate",
+            "scale height": f"{scale.length / 1000.0:.2f} km",
+            "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
+            "time": f"{settings.duration * scale.time / 60.0:.0f} minutes",
+            "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
+            f"{settings.temperature * math.sqrt(2.0 * LAYERS / (3.0 * n)):.0f} K at every look",
+        },
+    )
+
+
+def _equilibrium_kT(column: Column, dataset, settings: Settings) -> float:
+    """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
+    if settings.floor == "heat-bath":
+        return 1.0
+    n = settings.molecules
+    energy = float(dataset.kinetic_energy.values[0] + dataset.potential_energy.values[0]) / column.scale.total_energy
+    edges = np.linspace(0.0, column.height, 401)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    low, high = 1e-3, 10.0
+    for _ in range(60):
+        kT = 0.5 * (low + high)
+        share = column.density(edges, kT, column.diameter) * np.diff(edges) / column.per_area
+        if n * (1.5 * kT + float(np.sum(share * middle))) > energy:
+            high = kT
+        else:
+            low = kT
+    return kT
+
+
+def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+    """Return the profiles of the barometric law, and of hydrostatics with the room that molecules take."""
+    column = Column(settings)
+    scale = column.scale
+    kT = _equilibrium_kT(column, dataset, settings)
+    edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
+    thick = np.diff(edges)
+    reached = (np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom)) / thick
+    density = column.density(edges, kT, column.diameter)
+    ideal = column.density(edges, kT, 0.0)
+    pressure = np.asarray(law.gas_pressure(density / reached, kT, column.diameter)) * reached
+    return {
+        "number_density_theory": density * scale.number_density,
+        "air_density_theory": density * scale.mass_density,
+        "layer_pressure_theory": pressure * scale.pressure,
+        "layer_temperature_theory": np.full(len(thick), kT * scale.temperature),
+        "number_density_barometric": ideal * scale.number_density,
+        "layer_pressure_barometric": ideal * kT * scale.pressure,
+    }
+
+
+def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+    """Return the weight of the air, its temperature, and how fast it thins."""
+    column = Column(settings)
+    late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    if late.sizes["elapsed_time"] < 40:
+        return ()
+    kT = _equilibrium_kT(column, dataset, settings)
+    force = late.wall_pressure.values
+    weight = block_average(force[:, 4] - force[:, 5])
+    temperature = block_average(late.air_temperature.values)
+    expected = column.per_area * column.scale.pressure
+    nothing = "none: the model has no other error than chance"
+    found = [
+        Headline("weight_of_the_air", float(weight.mean), float(weight.standard_error), expected, 0.0, nothing,
+                 "Pa", "hPa", "weight of the air, floor less ceiling"),
+        Headline("mean_temperature", float(temperature.mean), float(temperature.standard_error),
+                 kT * column.scale.temperature, 2.0 / (3.0 * settings.molecules) * settings.temperature,
+                 "a finite number of molecules", "K", "K", "temperature of the column"),
+    ]  # fmt: skip
+    edges = np.linspace(0.0, column.height, 401)
+    share = column.density(edges, kT, column.diameter) * np.diff(edges) / column.per_area
+    height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
+    per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
+    climbed = block_average(late.potential_energy.values / per_metre)
+    found.append(
+        Headline("mean_height", float(climbed.mean), float(climbed.standard_error), height,
+                 0.001 * height, "the theory takes the gas to be locally uniform", "m", "km", "mean height of the molecules"),
+    )  # fmt: skip
+    return tuple(found)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return density, pressure and temperature against height."""
+    return (
+        Panel(
+            "profile",
+            "The air thins",
+            (
+                Line("number_density", "height", "molecules", error="number_density_se"),
+                Line("number_density_theory", "height", "hydrostatics with Z", "theory"),
+                Line("number_density_barometric", "height", "barometric law", "reference"),
+            ),
+            x_label="number density", y_label="height", y_unit="km", x_scale="log", headlines=("mean_height",),
+        ),
+        Panel(
+            "profile",
+            "Its weight is the pressure",
+            (
+                Line("layer_pressure", "height", "molecules", error="layer_pressure_se"),
+                Line("layer_pressure_theory", "height", "hydrostatics with Z", "theory"),
+                Line("layer_pressure_barometric", "height", "barometric law", "reference"),
+            ),
+            x_label="pressure", y_label="height", x_unit="hPa", y_unit="km", x_scale="log", headlines=("weight_of_the_air",),
+        ),
+        Panel(
+            "profile",
+            "Left alone, it is isothermal",
+            (
+                Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
+                Line("layer_temperature_theory", "height", "isothermal", "theory"),
+            ),
+            x_label="temperature", y_label="height", x_unit="K", y_unit="km", headlines=("mean_temperature",),
+        ),
+    )  # fmt: skip

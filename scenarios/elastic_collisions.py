@@ -1,0 +1,130 @@
+"""Discs of unlike mass collide in a plane, and share their energy.
+
+Sixty pucks on a frictionless table, light and heavy, start at one speed: the heavy ones carry most of the energy. Every
+collision keeps momentum and energy to the last digit that a computer holds, and yet, by nothing but collisions, light and heavy
+discs come to the same mean energy. The light ones end up fast. It is why hydrogen flies faster than oxygen in the same air.
+
+Modelled: smooth elastic discs in one plane, exact collisions, smooth walls. Left out: friction, spin, gravity. A disc's area
+grows with its mass. The scale is that of a table, and nothing is exaggerated.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engine.start import equal_speeds, random_positions
+from atmosbox.instruments import Air, Discs
+from atmosbox.panels import Line, Panel
+from atmosbox.scene import Setup
+from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.statistics import block_average
+from atmosbox.units import Scale
+
+title = "Elastic collisions"
+FRAMES = 1200
+SETTLE = 400
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(60, "1", "number of discs", low=2, high=5000)
+    mass_ratio: float = setting(20.0, "1", "mass of the heaviest disc in that of the lightest", low=1.0, high=1e6)
+    filling: float = setting(15.0, "%", "share of the table that the discs cover", low=0.01, high=70.0)
+    side: float = setting(1.0, "m", "side of the table", low=0.01, high=100.0)
+    speed: float = setting(0.5, "m s-1", "speed of every disc at the start", low=1e-3, high=1e3)
+    duration: float = setting(60.0, "s", "how long to watch", low=0.1, high=1e6)
+
+
+def build(settings: Settings) -> Setup:
+    """Return the discs on their table."""
+    si = settings.si
+    n = settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    mass = settings.mass_ratio ** rng.random(n)
+    mass *= 1.0 / mass.min()
+    area = mass / mass.sum() * (si.filling)
+    diameter = np.sqrt(4.0 * area / math.pi)
+    thickness = 2.0 * float(diameter.max())
+    length = (1.0, thickness, 1.0)
+    parcel = ParcelSet(
+        random_positions(length, diameter, rng, planar=True),
+        equal_speeds(1.0, n, rng, planar=True),
+        length=length,
+        mass=mass,
+        diameter=diameter,
+        planar=True,
+        seed=settings.seed,
+    )
+    lightest = 0.01
+    scale = Scale(si.side, lightest, lightest * si.speed**2)
+    return Setup(
+        parcel,
+        scale,
+        si.duration / scale.time,
+        FRAMES,
+        (Air(), Discs()),
+        settle=SETTLE,
+        time_unit="s",
+        facts={
+            "box": f"a table of {settings.side:g} m x {settings.side:g} m",
+            "weight of a disc": f"1: masses from 10 g to {10.0 * float(mass.max()):.0f} g",
+            "exaggeration": "none",
+            "gamma": "2: two degrees of freedom",
+            "noise": f"the mean energy of {n // 2} discs scatters by {100.0 * math.sqrt(2.0 / n):.0f} % at every look",
+        },
+    )
+
+
+def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+    """Return the mean energy that all discs come to."""
+    mean = dataset.kinetic_energy.values[0] / settings.molecules
+    return {"kinetic_energy_light_theory": np.full(dataset.sizes["elapsed_time"], mean)}
+
+
+def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+    """Return the ratio of mean energies, and how well energy and momentum were kept."""
+    late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    found = [
+        Headline("largest_energy_change", float(np.abs(dataset.energy_change.values).max()), 0.0, 0.0, 1e-12,
+                 "a computer rounds at every collision", "1", "1", "largest change of the energy"),
+        Headline("largest_momentum_residual", float(dataset.momentum_residual.values.max()), 0.0, 0.0, 1e-12,
+                 "a computer rounds at every collision", "1", "1", "largest momentum unaccounted for"),
+    ]  # fmt: skip
+    if late.sizes["elapsed_time"] >= 40 and settings.mass_ratio > 1.0:
+        mean = float(dataset.kinetic_energy.values[0]) / settings.molecules
+        share = block_average(late.kinetic_energy_light.values / mean)
+        found.insert(
+            0,
+            Headline("energy_of_light_discs", float(share.mean), float(share.standard_error), 1.0, 0.0,
+                     "none: in the long run all discs have the same mean energy", "1", "1",
+                     "energy of a light disc over the mean"),
+        )  # fmt: skip
+    return tuple(found)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return the table, the energies, and what was kept."""
+    return (
+        Panel("discs", "The table at the end", x_unit="m"),
+        Panel(
+            "line",
+            "Light and heavy: the same energy",
+            (
+                Line("elapsed_time", "running_energy_light", "light half"),
+                Line("elapsed_time", "running_energy_heavy", "heavy half"),
+                Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),
+            ),
+            x_label="time", y_label="energy, mean since the start", x_scale="log", headlines=("energy_of_light_discs",),
+        ),
+        Panel(
+            "line",
+            "Energy and momentum are kept",
+            (
+                Line("elapsed_time", "energy_change", "energy"),
+                Line("elapsed_time", "momentum_residual", "momentum, with that of the walls"),
+            ),
+            x_label="time", y_label="relative change",
+        ),
+    )  # fmt: skip

@@ -1,0 +1,235 @@
+"""A parcel of dry air rises and cools.
+
+Some thousand molecules fly in a box whose ceiling is a piston. The piston gives way so that the pressure in the box follows
+that of the air outside, as the parcel rises. Nothing cools the molecules but this: those that hit the receding ceiling come
+back slower than they went. Temperature against pressure is the dry adiabat, T ~ p^(2/7).
+
+Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact; smooth walls; a
+hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it would change its temperature by
+less than a billionth), water, mixing with the air outside, heat from it. Exaggerated: the molecules are drawn larger than
+they are, so that they meet often, and some kilometres are climbed within nanoseconds. Because the ascent is not infinitely
+slow, the parcel ends too warm by about 160 K divided by its length in mean free times.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine.lift import FollowPressure
+from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engine.walls import Piston, Specular
+from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
+from atmosbox.errors import SettingError
+from atmosbox.instruments import Air, Environment, Lift
+from atmosbox.panels import Line, Panel
+from atmosbox.scene import Setup
+from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+
+title = "Lifting dry air"
+FRAMES = 40
+FLATNESS = 0.4
+FINITE_SPEED = 0.78
+"""Warmth that a finite ascent leaves at its end, as a share of the temperature, times its length in mean free times."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(4000, "1", "number of molecules in the parcel", low=50, high=1_000_000)
+    temperature: float = setting(15.0, "degC", "temperature of the parcel and of the air at the ground", low=-80.0, high=60.0)
+    pressure: float = setting(1000.0, "hPa", "pressure at the ground", low=200.0, high=1100.0)
+    top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=50.0, high=1000.0)
+    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
+    rotation: bool = setting(True, "", "whether molecules rotate; without it gamma is 5/3")
+    ascent: float = setting(1600.0, "1", "length of the ascent in mean free times at its start", low=5.0, high=1e6)
+    diameter: float = setting(1.0, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
+
+    def check(self) -> None:
+        """Refuse an ascent that does not go up."""
+        if self.top_pressure > 0.98 * self.pressure:
+            raise SettingError(
+                "top_pressure",
+                f"{self.top_pressure:g} hPa",
+                f"is not below the pressure at the ground, {self.pressure:g} hPa",
+                f"give --set top_pressure={0.3 * self.pressure:.0f}hPa",
+            )
+
+
+def _start(settings: Settings) -> tuple[Scale, float, np.ndarray, float]:
+    """Return the scale, the density, the sides that centres can reach, and (Z - 1) / n [diameters], at the start.
+
+    The box is flat: it ends nearly as high as it is wide, and a slow piston does its work with less noise.
+    """
+    si = settings.si
+    scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
+    wanted = si.pressure / scale.pressure
+    density = wanted
+    for _ in range(60):
+        side = (settings.molecules / density / FLATNESS) ** (1.0 / 3.0)
+        sides = side * np.array([1.0, 1.0, FLATNESS])
+        excess = float(law.gas_pressure(density, 1.0, 1.0)) - density
+        excess *= law.contact_share(sides, 1.0, settings.molecules)
+        density *= wanted / (density + excess)
+    return scale, density, sides, excess / density**2
+
+
+def _environment(settings: Settings, duration: float) -> Environment:
+    """Return the air around a parcel that climbs evenly for so long [s]."""
+    si = settings.si
+    top = float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
+    freedom = 5 if settings.rotation else 3
+
+    def height(time: float) -> float:
+        return top * min(time / duration, 1.0)
+
+    return Environment(
+        height=height,
+        pressure=lambda time: float(law.environment_pressure(height(time), si.temperature, si.pressure, si.lapse_rate)),
+        temperature=lambda time: float(law.environment_temperature(height(time), si.temperature, si.lapse_rate)),
+        adiabat=lambda pressure: float(law.dry_adiabat_temperature(pressure, si.temperature, si.pressure, freedom)),
+    )
+
+
+def build(settings: Settings) -> Setup:
+    """Return the parcel at the ground with its piston."""
+    n = settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    scale, density, sides, excess = _start(settings)
+    mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+    length = tuple(sides + 1.0)
+    degrees = 2.0 if settings.rotation else 0.0
+    spin = rotational_energies(1.0, np.full(n, degrees), rng)
+    if degrees:
+        spin *= n / spin.sum()
+    duration = settings.ascent * mean_free_time
+    environment = _environment(settings, duration * scale.time)
+    times = np.linspace(0.0, duration, 400)
+    pressures = np.array([environment.pressure(t * scale.time) for t in times]) / scale.pressure
+    driver = FollowPressure(list(times), list(pressures), mean_free_time=mean_free_time, excess=excess)
+    parcel = ParcelSet(
+        random_positions(length, np.ones(n), rng),
+        maxwell_velocities(1.0, np.ones(n), rng, exact=True),
+        length=length,
+        walls=(Specular(),) * 5 + (Piston(),),
+        rotation=degrees,
+        rotational_energy=spin,
+        seed=settings.seed,
+        driver=driver,
+    )
+    gamma = "7/5" if settings.rotation else "5/3"
+    return Setup(
+        parcel,
+        scale,
+        duration,
+        FRAMES,
+        (Air(), Lift(driver, environment)),
+        facts={
+            "box": f"{length[0] * scale.length * 1e9:.1f} x {length[1] * scale.length * 1e9:.1f} x "
+            f"{length[2] * scale.length * 1e9:.1f} nm at the start, real size",
+            "weight of a molecule": "1: every molecule stands for itself",
+            "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+            "gamma": gamma,
+            "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
+            "error by the finite speed": f"{FINITE_SPEED * settings.si.temperature / settings.ascent:.2f} K at most",
+        },
+    )
+
+
+def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+    """Return the adiabat of dry air, which is also that of the parcel if it rotates."""
+    si = settings.si
+    air = law.dry_adiabat_temperature(dataset.parcel_pressure.values, si.temperature, si.pressure, 5)
+    return {"dry_air_adiabat_temperature": np.asarray(air)}
+
+
+def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+    """Return the temperatures on the way and the lapse rate."""
+    si = settings.si
+    freedom = 5 if settings.rotation else 3
+    pressure = dataset.parcel_pressure.values
+    temperature = dataset.parcel_temperature.values
+    misfit = temperature - dataset.adiabat_temperature.values
+    error = dataset.parcel_temperature_se.values
+    order = np.argsort(pressure)
+    reason = "the ascent is not infinitely slow"
+    found = []
+    for level in (70_000.0, si.top_pressure):
+        if not (si.top_pressure <= level < si.pressure and pressure.min() <= level * 1.01):
+            continue
+        expected = float(law.dry_adiabat_temperature(level, si.temperature, si.pressure, freedom))
+        share = math.log(si.pressure / level) / math.log(si.pressure / si.top_pressure)
+        found.append(
+            Headline(
+                f"temperature_at_{level / 100.0:.0f}_hpa",
+                expected + float(np.interp(level, pressure[order], misfit[order])),
+                float(np.interp(level, pressure[order], error[order])),
+                expected,
+                FINITE_SPEED * expected * share / settings.ascent,
+                reason,
+                "K",
+                "degC",
+                f"temperature at {level / 100.0:.0f} hPa",
+            )
+        )
+    height = dataset.parcel_height.values
+    if height[-1] >= 1000.0:
+        first = float(np.interp(1000.0, height, temperature))
+        outside = float(law.environment_pressure(1000.0, si.temperature, si.pressure, si.lapse_rate))
+        ideal = float(law.dry_adiabat_temperature(outside, si.temperature, si.pressure, freedom))
+        found.append(
+            Headline(
+                "lapse_rate_of_the_first_kilometre",
+                (si.temperature - first) / 1000.0,
+                float(np.interp(1000.0, height, error)) / 1000.0,
+                (si.temperature - ideal) / 1000.0,
+                FINITE_SPEED * si.temperature / settings.ascent / 1000.0,
+                reason,
+                "K m-1",
+                "K km-1",
+                "lapse rate of the first kilometre",
+            )
+        )
+    return tuple(found)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return temperature against pressure and height, and the misfit."""
+    parcel = "parcel_temperature"
+    others = () if settings.rotation else (Line("dry_air_adiabat_temperature", "parcel_pressure", "dry air, γ = 7/5", "reference"),)
+    adiabat = "dry adiabat" if settings.rotation else "adiabat, γ = 5/3"
+    return (
+        Panel(
+            "profile",
+            "A rising parcel cools",
+            (
+                Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se"),
+                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
+                Line("environment_temperature", "environment_pressure", "air around", "environment"),
+                *others,
+            ),
+            x_label="temperature", y_label="pressure", x_unit="degC", y_unit="hPa", y_scale="log", y_invert=True,
+            headlines=tuple(f"temperature_at_{p:.0f}_hpa" for p in dict.fromkeys((700.0, settings.top_pressure)) if settings.top_pressure <= p < settings.pressure),
+        ),
+        Panel(
+            "profile",
+            "9.8 K per kilometre",
+            (
+                Line(parcel, "parcel_height", "parcel", error="parcel_temperature_se"),
+                Line("adiabat_temperature", "parcel_height", adiabat, "theory"),
+                Line("environment_temperature", "parcel_height", "air around", "environment"),
+            ),
+            x_label="temperature", y_label="height", x_unit="degC", y_unit="km",
+            headlines=("lapse_rate_of_the_first_kilometre",),
+        ),
+        Panel(
+            "profile",
+            "Parcel less adiabat",
+            (
+                Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus="adiabat_temperature"),
+                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory", minus="adiabat_temperature"),
+            ),
+            x_label="misfit", y_label="pressure", x_unit="K", y_unit="hPa", y_scale="log", y_invert=True,
+        ),
+    )  # fmt: skip

@@ -1,0 +1,178 @@
+"""What temperature is: the motion of molecules.
+
+Molecules of real air at real density, in a cube some nanometres wide whose six walls are kept warm. They start cold; the walls
+send every molecule that hits them back at their own temperature, and within a fraction of a nanosecond the gas is as
+warm as they. The speeds are then those of Maxwell, and the blows on the walls add up to the pressure n k T Z.
+
+Modelled: hard spheres of the mass and the diameter of air, fully accommodating walls. Left out: gravity (over twenty
+nanometres it does nothing), rotation (it does not change how fast molecules fly), and that air is a mixture. A
+thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K for two hundred.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions
+from atmosbox.engine.walls import HeatBath
+from atmosbox.instruments import Air, Speeds
+from atmosbox.panels import Line, Panel
+from atmosbox.scene import Setup
+from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.statistics import block_average
+from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+
+title = "Temperature"
+FRAMES = 1000
+SETTLE = 50
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(200, "1", "number of molecules", low=1, high=1_000_000)
+    temperature: float = setting(25.0, "degC", "temperature of the walls", low=-270.0, high=2000.0)
+    start_temperature: float = setting(-150.0, "degC", "temperature at which the molecules start", low=-273.0, high=2000.0)
+    pressure: float = setting(1000.0, "hPa", "pressure of the air once it is as warm as the walls", low=0.01, high=100_000.0)
+    start: str = setting("maxwell", "", "speeds at the start: all different, or all equal", choices=("maxwell", "equal"))
+    duration: float = setting(20.0, "ns", "how long to watch", low=0.01, high=1e5)
+
+
+def _start(settings: Settings) -> tuple[Scale, float, tuple[float, float, float]]:
+    """Return the scale, the density [1/diameter^3], and the box [diameters]."""
+    si = settings.si
+    scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
+    wanted = si.pressure / scale.pressure
+    density = wanted
+    for _ in range(200):
+        density *= math.sqrt(wanted / float(law.gas_pressure(min(density, 0.9), 1.0, 1.0)))
+    side = (settings.molecules / density) ** (1.0 / 3.0) + 1.0
+    return scale, density, (side, side, side)
+
+
+def build(settings: Settings) -> Setup:
+    """Return the cold gas between warm walls."""
+    si = settings.si
+    n = settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    scale, density, length = _start(settings)
+    cold = scale.reduced_temperature(si.start_temperature)
+    velocity = (
+        maxwell_velocities(cold, np.ones(n), rng)
+        if settings.start == "maxwell"
+        else equal_speeds(math.sqrt(3.0 * cold), n, rng)
+    )
+    parcel = ParcelSet(
+        random_positions(length, np.ones(n), rng),
+        velocity,
+        length=length,
+        walls=(HeatBath(1.0),) * 6,
+        seed=settings.seed,
+    )
+    fastest = 4.5
+    free_path = float(law.mean_free_path(density, 1.0))
+    return Setup(
+        parcel,
+        scale,
+        si.duration / scale.time,
+        FRAMES,
+        (Air(), Speeds(np.linspace(0.0, fastest, 37))),
+        samples=4,
+        settle=SETTLE,
+        facts={
+            "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
+            "weight of a molecule": "1: every molecule stands for itself",
+            "exaggeration": "none: mass, diameter, density and speeds are those of air",
+            "gamma": "5/3: the molecules do not rotate",
+            "mean free path": f"{free_path * scale.length * 1e9:.3g} nm",
+            "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K at every look",
+        },
+    )
+
+
+def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+    """Return Maxwell's curve, the pressure n k T Z and the noise of a small thermometer."""
+    si = settings.si
+    scale, density, _ = _start(settings)
+    frames = np.ones(dataset.sizes["elapsed_time"])
+    pressure = float(law.gas_pressure(density, 1.0, 1.0)) * scale.pressure
+    return {
+        "air_temperature_theory": si.temperature * frames,
+        "air_temperature_noise": float(law.temperature_noise(settings.molecules, 3, si.temperature)) * frames,
+        "air_pressure_theory": pressure * frames,
+        "speed_probability_density_theory": law.maxwell_speed_density(
+            dataset.speed.values, BOLTZMANN * si.temperature, DRY_AIR.molecule_mass
+        ),
+    }
+
+
+def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+    """Return temperature, pressure, mean speed and how often molecules meet."""
+    si = settings.si
+    scale, density, length = _start(settings)
+    warm = dataset.isel(elapsed_time=slice(SETTLE, None))
+    if warm.sizes["elapsed_time"] < 40:
+        return ()
+    temperature = block_average(warm.air_temperature.values)
+    pressure = block_average(warm.air_pressure.values)
+    bins = np.diff(dataset.speed_bnds.values, axis=1)[:, 0]
+    share = dataset.speed_probability_density.values * bins
+    spread = dataset.speed_probability_density_se.values * bins
+    speed = dataset.speed.values
+    lasted = float(warm.elapsed_time[-1] - warm.elapsed_time[0]) * 1e-9
+    met = np.diff(warm.collision_count.values) * 2.0 / settings.molecules
+    per_second = block_average(met * (len(met) / lasted))
+    share_of_contacts = law.contact_share((length[0] - 1.0,) * 3, 1.0, settings.molecules)
+    expected = float(law.collision_rate(density, 1.0, 1.0, 1.0)) * share_of_contacts / scale.time
+    mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
+    nothing = "none: the model has no other error than chance"
+    bin_error = float(bins.mean() ** 2) / (12.0 * mean_speed)
+    return (
+        Headline("mean_temperature", float(temperature.mean), float(temperature.standard_error), si.temperature,
+                 0.0, nothing, "K", "degC", "temperature"),
+        Headline("mean_pressure", float(pressure.mean), float(pressure.standard_error),
+                 float(law.gas_pressure(density, 1.0, 1.0)) * scale.pressure,
+                 0.01 * abs(float(law.gas_pressure(density, 1.0, 1.0)) - density) * scale.pressure,
+                 "molecules at a wall are packed a little differently from those inside", "Pa", "hPa", "pressure"),
+        Headline("mean_speed", float(np.sum(share * speed) / share.sum()),
+                 float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2))), mean_speed,
+                 bin_error, "the speeds are counted in bins", "m s-1", "m s-1", "mean speed"),
+        Headline("collision_rate", float(per_second.mean), float(per_second.standard_error), expected,
+                 0.05 * expected * min(1.0, density),
+                 "molecules at a wall are packed a little differently from those inside", "s-1", "s-1", "collisions of a molecule"),
+    )  # fmt: skip
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return temperature and pressure against time, and the speeds."""
+    return (
+        Panel(
+            "line",
+            "Cold molecules between warm walls",
+            (
+                Line("elapsed_time", "air_temperature", "molecules"),
+                Line("elapsed_time", "air_temperature_theory", "walls ± noise", "theory", error="air_temperature_noise"),
+            ),
+            x_label="time", y_label="temperature", y_unit="degC", x_scale="log", headlines=("mean_temperature",),
+        ),
+        Panel(
+            "line",
+            "Their blows are the pressure",
+            (
+                Line("elapsed_time", "air_pressure", "six walls"),
+                Line("elapsed_time", "air_pressure_theory", "n k T Z", "theory"),
+            ),
+            x_label="time", y_label="pressure", y_unit="hPa", x_scale="log", headlines=("mean_pressure",),
+        ),
+        Panel(
+            "histogram",
+            "The speeds are Maxwell's",
+            (
+                Line("speed", "speed_probability_density", "molecules", error="speed_probability_density_se"),
+                Line("speed", "speed_probability_density_theory", "Maxwell", "theory"),
+            ),
+            x_label="speed", y_label="share per speed", headlines=("mean_speed",),
+        ),
+    )  # fmt: skip
