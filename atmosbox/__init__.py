@@ -77,6 +77,6 @@ def run(
     >>> bool(dataset.air_temperature[-1] < dataset.air_temperature[0])
     True
     """
-    from atmosbox import runner
+    from atmosbox.runner import run as start
 
-    return runner.run(scene, out=out, progress=progress, save_molecules=save_molecules, **settings)
+    return start(scene, out=out, progress=progress, save_molecules=save_molecules, **settings)

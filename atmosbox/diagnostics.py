@@ -200,6 +200,8 @@ VARIABLES: dict[str, Variable] = {
         _TIME,
         ("parcel_temperature", "K", "temperature of the parcel", "air_temperature"),
         ("parcel_pressure", "Pa", "pressure of the parcel", "air_pressure"),
+        ("parcel_potential_temperature", "K", "potential temperature of the parcel, reduced to 1000 hPa",
+         "air_potential_temperature"),
         cell_methods=_POINT,
     ),
     **_declared(_TIME, ("parcel_height", "m", "height of the parcel above the ground", "height"),
@@ -232,6 +234,7 @@ VARIABLES: dict[str, Variable] = {
         ("height",),
         ("number_density_barometric", "m-3", "number density by the barometric law"),
         ("layer_pressure_barometric", "Pa", "pressure by the barometric law", "air_pressure"),
+        ("layer_temperature_standard", "K", "temperature of the standard atmosphere", "air_temperature"),
         cell_methods="height: mean",
     ),
     # Speeds, bin by bin
@@ -370,9 +373,7 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
         return array.astype(str)
     if (declared.ledger or declared.dtype[0] == "i") and not np.isfinite(array).all():
         place = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
-        raise EngineError(
-            f"{declared.name} is not finite at {place}: the books of the run do not close any more."
-        )
+        raise EngineError(f"{declared.name} is not finite at {place}: the books of the run do not close any more.")
     return array.astype(declared.dtype)
 
 

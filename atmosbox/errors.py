@@ -63,9 +63,7 @@ def shown(value: object, longest: int = 60) -> str:
         power += abs(value) >= 10 ** (power + 1)
         return f"about {'-' if value < 0 else ''}1e{power}"
     try:
-        text = (
-            value if isinstance(value, str) else str(value) if isinstance(value, int | float) else repr(value)
-        )
+        text = value if isinstance(value, str) else str(value) if isinstance(value, int | float) else repr(value)
     except Exception:  # a stranger's object may fail to say what it is
         text = f"a {type(value).__name__}"
     cut = text[:longest]
@@ -136,9 +134,7 @@ class SettingError(AtmosboxError, ValueError):
 
     def __str__(self) -> str:
         """Return the sentence."""
-        subject = (
-            shown(self.setting) if self.value is None else f"{shown(self.setting)} = {shown(self.value)}"
-        )
+        subject = shown(self.setting) if self.value is None else f"{shown(self.setting)} = {shown(self.value)}"
         return f"{subject} {self.problem}: {self.fix}."
 
 

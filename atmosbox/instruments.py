@@ -1,8 +1,8 @@
 """Instruments: what a scene measures, each one a class that looks at the molecules and remembers.
 
-A scene carries only the instruments that it needs. Each is shown the box at every sample (``look``) and at the end of
-every frame (``close``); asked at any time (``readings``), it gives what it has, in SI units, by the names that `diagnostics`
-declares.
+A scene carries only the instruments that it needs. Each is shown the box at every sample (``look``) and
+at the end of every frame (``close``); asked at any time (``readings``), it gives what it has, in SI
+units, by the names that `diagnostics` declares.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ __all__ = ["Air", "Discs", "Environment", "Instrument", "Layers", "Lift", "Molec
 
 Array = NDArray[np.float64]
 _BLOCKS = 20
+_REFERENCE_PRESSURE = 1e5
 
 
 class Readings(dict[str, Any]):
@@ -96,7 +97,9 @@ class Air:
         chosen = self._barometer
         row: dict[str, Any] = {
             "air_temperature": float(np.mean(self._kT)),
-            "air_pressure": float(impulse[chosen].sum() / (area[chosen].sum() * lasted)) if area[chosen].any() else math.nan,
+            "air_pressure": float(impulse[chosen].sum() / (area[chosen].sum() * lasted))
+            if area[chosen].any()
+            else math.nan,
             "wall_pressure": wall_pressure,
             "kinetic_energy": kinetic,
             "rotational_energy": rotational,
@@ -177,9 +180,7 @@ class Layers:
         """Return the profiles with the standard errors of 20 blocks."""
         frames = np.array(self._frames[settle:])
         edges = np.linspace(0.0, self._height, self._number + 1) * scale.length
-        out = Readings(
-            height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1)
-        )
+        out = Readings(height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
         if len(frames) < 2:
             return out
         blocks = min(_BLOCKS, len(frames))
@@ -196,7 +197,11 @@ class Layers:
             "number_density": (scale.number_density, whole[0] / self._volume, density),
             "air_density": (scale.mass_density * self._mass, whole[0] / self._volume, density),
             "layer_temperature": (scale.temperature, whole_kT, kT),
-            "layer_pressure": (scale.pressure, (whole[0] * whole_kT + whole[3] / 3.0) / self._volume, pressure),
+            "layer_pressure": (
+                scale.pressure,
+                (whole[0] * whole_kT + whole[3] / 3.0) / self._volume,
+                pressure,
+            ),
         }
         for name, (factor, mean, part) in unit.items():
             out[name] = factor * mean
@@ -263,9 +268,10 @@ class Environment:
 class Lift:
     """A parcel on its way up: temperature and pressure of parcel and environment against height.
 
-    The temperature is that of all energy, which has no noise; what scatters from run to run is the work that
-    the piston exchanged. Its scatter shows in the entropy per molecule, s/k = (f/2 + 1) ln T - ln p, which an adiabat would
-    keep: the standard error is that of a sum of independent steps, from block to block of the ascent.
+    The temperature is that of all energy, which has no noise; what scatters from run to run is the work
+    that the piston exchanged. Its scatter shows in the entropy per molecule, s/k = (f/2 + 1) ln T - ln p,
+    which an adiabat would keep: the standard error is that of a sum of independent steps, from block to
+    block of the ascent.
 
     Parameters
     ----------
@@ -311,6 +317,8 @@ class Lift:
             parcel_temperature=parcel_temperature,
             parcel_temperature_se=parcel_temperature * spread,
             parcel_pressure=parcel_pressure,
+            parcel_potential_temperature=parcel_temperature
+            * (_REFERENCE_PRESSURE / parcel_pressure) ** (1.0 / self._heat_capacity),
             parcel_volume=volume * scale.length**3 * scale.weight,
             parcel_height=np.array([surroundings.height(t) for t in seconds]),
             environment_temperature=np.array([surroundings.temperature(t) for t in seconds]),

@@ -212,12 +212,8 @@ def _failure(error: OSError, path: Path) -> FileError:
     """Return the refusal that a failure to write a file amounts to."""
     if error.errno in NO_ROOM:
         kept = ", which stays as it was" if path.exists() else ""
-        return DiskFullError(
-            f"The disk has no room for {path}{kept}: delete something, or give another --out."
-        )
-    return FileError(
-        f"{path} could not be written ({error.strerror or error}): give another place with --out."
-    )
+        return DiskFullError(f"The disk has no room for {path}{kept}: delete something, or give another --out.")
+    return FileError(f"{path} could not be written ({error.strerror or error}): give another place with --out.")
 
 
 def _image(dataset: xr.Dataset) -> memoryview:

@@ -216,8 +216,7 @@ def from_json(text: str) -> tuple[Panel, ...]:
         raise ValueError("the panels are not in the form that atmosbox writes.")
     if record.get("format") != _FORMAT:
         raise ValueError(
-            f"the panels are in format {record.get('format')!r}, and this version of atmosbox reads "
-            f"format {_FORMAT}."
+            f"the panels are in format {record.get('format')!r}, and this version of atmosbox reads format {_FORMAT}."
         )
     return tuple(_panel(item) for item in record["panels"])
 

@@ -109,9 +109,7 @@ class Interrupted(KeyboardInterrupt):
         self.outcome = outcome
 
 
-def prepare(
-    scene: str | os.PathLike[str], settings: Mapping[str, Any], *, save_molecules: bool = False
-) -> Prepared:
+def prepare(scene: str | os.PathLike[str], settings: Mapping[str, Any], *, save_molecules: bool = False) -> Prepared:
     """Load a scenario and check its settings; nothing is computed yet.
 
     Parameters
@@ -141,7 +139,12 @@ def prepare(
     module = scenarios.load(scene)
     checked = module.Settings.from_user(settings)
     name = str(scene) if os.fspath(scene) not in scenarios.names() else os.fspath(scene)
-    return Prepared(name.replace("_", "-") if name.replace("_", "-") in scenarios.names() else name, module, checked, save_molecules)
+    return Prepared(
+        name.replace("_", "-") if name.replace("_", "-") in scenarios.names() else name,
+        module,
+        checked,
+        save_molecules,
+    )
 
 
 def card(prepared: Prepared) -> Card:
@@ -418,7 +421,7 @@ def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
 
 
 def verify(dataset: xr.Dataset) -> list[Check]:
-    """Check a dataset again: is it complete, does the ledger close, does theory agree within error?
+    """Check a dataset again: that it is complete, its ledger closes, and theory agrees within error.
 
     Examples
     --------
@@ -429,7 +432,11 @@ def verify(dataset: xr.Dataset) -> list[Check]:
     status = str(dataset.attrs.get("atmosbox_status", "unknown"))
     frames = int(dataset.sizes.get("elapsed_time", 0))
     checks.append(Check("complete", status == "complete", f"the run is {status}, with {frames} frames"))
-    bad = [str(name) for name, values in dataset.data_vars.items() if values.dtype.kind == "f" and np.isinf(values.values).any()]
+    bad = [
+        str(name)
+        for name, values in dataset.data_vars.items()
+        if values.dtype.kind == "f" and np.isinf(values.values).any()
+    ]
     checks.append(Check("finite", not bad, f"infinite numbers in {', '.join(bad)}" if bad else "no number is infinite"))
     if "ledger_residual" in dataset:
         worst = float(np.max(dataset["ledger_residual"].values)) if frames else math.nan
@@ -455,4 +462,8 @@ def _balance(dataset: xr.Dataset) -> Check:
     start = total - given
     scale = np.maximum(np.abs(total), np.abs(start))
     worst = float(np.max(np.abs(start - start[0]) / np.where(scale > 0.0, scale, 1.0))) if len(start) else math.nan
-    return Check("balance", worst <= LEDGER_LIMIT, f"energy less heat and work is the same in all frames to {worst:.1e}")
+    return Check(
+        "balance",
+        worst <= LEDGER_LIMIT,
+        f"energy less heat and work is the same in all frames to {worst:.1e}",
+    )

@@ -238,9 +238,7 @@ class Parameter:
         if self.choices is None:
             if isinstance(value, str) and (text or not self.default):
                 return text
-            raise self._refusal(
-                value, "is empty" if isinstance(value, str) else "is not a text", self.typed()
-            )
+            raise self._refusal(value, "is empty" if isinstance(value, str) else "is not a text", self.typed())
         for choice in self.choices:
             if _plain(choice) == _plain(text):
                 return choice
@@ -289,9 +287,7 @@ def setting(
     'mixed or layered'
     """
     extra: dict[str, Any] = {"unit": unit, "minimum": low, "maximum": high, "enum": choices}
-    return Field(
-        default, description=help, json_schema_extra={k: v for k, v in extra.items() if v is not None}
-    )
+    return Field(default, description=help, json_schema_extra={k: v for k, v in extra.items() if v is not None})
 
 
 class SceneSettings(BaseModel):
@@ -431,9 +427,7 @@ def _parameters(cls: type[SceneSettings]) -> dict[str, Parameter]:
             raise TypeError(f"{where} must be an int, a float, a bool or a str.")
         unit, low, high, choices = (cast("Any", extra.get(k)) for k in ("unit", "minimum", "maximum", "enum"))
         if bool(unit) != (kind in ("int", "float")):
-            raise TypeError(
-                f'{where} must have a unit if it is a number ("1" for a pure one), else the unit "".'
-            )
+            raise TypeError(f'{where} must have a unit if it is a number ("1" for a pure one), else the unit "".')
         declared = Parameter(name, unit, field.default, low, high, choices, field.description, kind)
         try:
             if unit:
@@ -569,9 +563,7 @@ def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:
     if raw.startswith((b"\x89HDF", b"CDF")):
         raise ConfigError(f"{where} is a netCDF file, not a settings file: give it with --from {where}.")
     if len(raw) > _LARGEST_CONFIG or b"\0" in raw:
-        raise ConfigError(
-            f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8."
-        )
+        raise ConfigError(f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8.")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -133,9 +133,7 @@ class Scale:
     def __post_init__(self) -> None:
         for name in ("length", "mass", "energy", "weight"):
             if not 0.0 < getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"The {name} of a scale must be positive and finite, not {getattr(self, name)}."
-                )
+                raise ValueError(f"The {name} of a scale must be positive and finite, not {getattr(self, name)}.")
 
     @property
     def time(self) -> float:
@@ -289,11 +287,7 @@ def _looked_up(name: str) -> _Unit | None:
         return None
     if unit.dimensionless or not math.isclose(two - one, one - zero):
         return None
-    alike = (
-        si
-        for si in _MEASURES
-        if si not in ("1", "kg kg-1") and parsed(si).dimensionality == unit.dimensionality
-    )
+    alike = (si for si in _MEASURES if si not in ("1", "kg kg-1") and parsed(si).dimensionality == unit.dimensionality)
     return _Unit(next(alike, str(unit.dimensionality)), float(one - zero), 1.0, float(zero))
 
 

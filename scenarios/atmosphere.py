@@ -1,18 +1,20 @@
 """Why the air does not fly away, and why it thins with height.
 
-Three thousand molecules in a tall column with real gravity. Each falls freely between collisions, and yet the column neither
-falls down nor leaves: density and pressure decrease with height by the barometric law, by a factor e every 8.4 km, while
-the temperature is the same everywhere. The floor feels the blows of the molecules, and floor less ceiling is
-the weight of the air.
+Three thousand molecules in a tall column with real gravity. Each falls freely between collisions, and yet
+the column neither falls down nor leaves: density and pressure decrease with height by the barometric law,
+by a factor e every 8.4 km, while the temperature is the same everywhere. The floor feels the blows of the
+molecules, and floor less ceiling is the weight of the air.
 
-Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or smooth, a smooth
-ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each molecule stands for some
-10^34 real ones and is hundreds of metres wide, so that it meets others within a stated share of the scale height (the Knudsen
-number): the theory beside the barometric law counts the room that they take. A real atmosphere is stirred and heated
-from below, and therefore cools with height; left alone for long enough it would become isothermal like this one.
+Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
+smooth, a smooth ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each
+molecule stands for some 10^34 real ones and is hundreds of metres wide, so that it meets others within a
+stated share of the scale height (the Knudsen number): the theory beside the barometric law counts the
+room that they take. A real atmosphere is stirred and heated from below, and therefore cools with height;
+left alone for long enough it would become isothermal like this one.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,9 +29,12 @@ from atmosbox.settings import Headline, SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 title = "A column of atmosphere"
-FRAMES = 200
-SETTLE = 60
+FRAMES = 240
+SETTLE = 40
 LAYERS = 25
 
 
@@ -37,14 +42,23 @@ class Settings(SceneSettings):
     """What a user may set."""
 
     molecules: int = setting(3000, "1", "number of molecules", low=50, high=1_000_000)
-    temperature: float = setting(288.15, "K", "temperature of the floor, and of the air at the start", low=10.0, high=2000.0)
+    temperature: float = setting(
+        288.15, "K", "temperature of the floor, and of the air at the start", low=10.0, high=2000.0
+    )
     surface_pressure: float = setting(1013.25, "hPa", "pressure at the floor", low=1.0, high=1e5)
     gravity: float = setting(9.80665, "m s-2", "acceleration of gravity", low=0.1, high=100.0)
     height: float = setting(25.0, "km", "height of the ceiling", low=0.1, high=1000.0)
-    knudsen: float = setting(0.2, "1", "mean free path at the floor in scale heights", low=0.02, high=10.0)
-    floor: str = setting("heat-bath", "", "what the floor is: warm, or smooth so that no heat passes", choices=("heat-bath", "isolated"))
+    knudsen: float = setting(0.3, "1", "mean free path at the floor in scale heights", low=0.02, high=10.0)
+    floor: str = setting(
+        "heat-bath",
+        "",
+        "what the floor is: warm, or smooth so that no heat passes",
+        choices=("heat-bath", "isolated"),
+    )
     start: str = setting("equilibrium", "", "where the molecules start", choices=("equilibrium", "bottom"))
-    duration: float = setting(240.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5)
+    duration: float = setting(
+        400.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5
+    )
 
 
 class Column:
@@ -70,9 +84,7 @@ class Column:
 
     def density(self, edges: np.ndarray, kT: float, diameter: float) -> np.ndarray:
         """Return the mean number density of layers in equilibrium [1/scale height^3]."""
-        return np.asarray(
-            law.hydrostatic_layers(edges, self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter)
-        )
+        return np.asarray(law.hydrostatic_layers(edges, self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter))
 
 
 def build(settings: Settings) -> Setup:
@@ -83,7 +95,9 @@ def build(settings: Settings) -> Setup:
     length = (column.width, column.width, column.height)
     sides = (True, True, False)
     if settings.start == "bottom":
-        position = random_positions(length, np.full(n, column.diameter), rng, periodic=sides, top=min(0.1, column.height))
+        position = random_positions(
+            length, np.full(n, column.diameter), rng, periodic=sides, top=min(0.1, column.height)
+        )
     else:
         position = random_positions(length, np.full(n, column.diameter), rng, periodic=sides, scale_height=1.0)
     parcel = ParcelSet(
@@ -120,7 +134,7 @@ def build(settings: Settings) -> Setup:
     )
 
 
-def _equilibrium_kT(column: Column, dataset, settings: Settings) -> float:
+def _equilibrium_kT(column: Column, dataset: "xr.Dataset", settings: Settings) -> float:
     """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
     if settings.floor == "heat-bath":
         return 1.0
@@ -139,7 +153,7 @@ def _equilibrium_kT(column: Column, dataset, settings: Settings) -> float:
     return kT
 
 
-def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return the profiles of the barometric law, and of hydrostatics with the room that molecules take."""
     column = Column(settings)
     scale = column.scale
@@ -155,12 +169,13 @@ def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
         "air_density_theory": density * scale.mass_density,
         "layer_pressure_theory": pressure * scale.pressure,
         "layer_temperature_theory": np.full(len(thick), kT * scale.temperature),
+        "layer_temperature_standard": np.asarray(law.isa_temperature(np.minimum(dataset.height.values, 80_000.0))),
         "number_density_barometric": ideal * scale.number_density,
         "layer_pressure_barometric": ideal * kT * scale.pressure,
     }
 
 
-def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the weight of the air, its temperature, and how fast it thins."""
     column = Column(settings)
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
@@ -173,21 +188,47 @@ def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
     expected = column.per_area * column.scale.pressure
     nothing = "none: the model has no other error than chance"
     found = [
-        Headline("weight_of_the_air", float(weight.mean), float(weight.standard_error), expected, 0.0, nothing,
-                 "Pa", "hPa", "weight of the air, floor less ceiling"),
-        Headline("mean_temperature", float(temperature.mean), float(temperature.standard_error),
-                 kT * column.scale.temperature, 2.0 / (3.0 * settings.molecules) * settings.temperature,
-                 "a finite number of molecules", "K", "K", "temperature of the column"),
-    ]  # fmt: skip
+        Headline(
+            "weight_of_the_air",
+            float(weight.mean),
+            float(weight.standard_error),
+            expected,
+            0.0,
+            nothing,
+            "Pa",
+            "hPa",
+            "weight of the air, floor less ceiling",
+        ),
+        Headline(
+            "mean_temperature",
+            float(temperature.mean),
+            float(temperature.standard_error),
+            kT * column.scale.temperature,
+            2.0 / (3.0 * settings.molecules) * settings.temperature,
+            "a finite number of molecules",
+            "K",
+            "K",
+            "temperature of the column",
+        ),
+    ]
     edges = np.linspace(0.0, column.height, 401)
     share = column.density(edges, kT, column.diameter) * np.diff(edges) / column.per_area
     height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
     per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
     climbed = block_average(late.potential_energy.values / per_metre)
     found.append(
-        Headline("mean_height", float(climbed.mean), float(climbed.standard_error), height,
-                 0.001 * height, "the theory takes the gas to be locally uniform", "m", "km", "mean height of the molecules"),
-    )  # fmt: skip
+        Headline(
+            "mean_height",
+            float(climbed.mean),
+            float(climbed.standard_error),
+            height,
+            0.001 * height,
+            "the theory takes the gas to be locally uniform",
+            "m",
+            "km",
+            "mean height of the molecules",
+        ),
+    )
     return tuple(found)
 
 
@@ -202,7 +243,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("number_density_theory", "height", "hydrostatics with Z", "theory"),
                 Line("number_density_barometric", "height", "barometric law", "reference"),
             ),
-            x_label="number density", y_label="height", y_unit="km", x_scale="log", headlines=("mean_height",),
+            x_label="number density",
+            y_label="height",
+            y_unit="km",
+            x_scale="log",
+            headlines=("mean_height",),
         ),
         Panel(
             "profile",
@@ -212,7 +257,12 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("layer_pressure_theory", "height", "hydrostatics with Z", "theory"),
                 Line("layer_pressure_barometric", "height", "barometric law", "reference"),
             ),
-            x_label="pressure", y_label="height", x_unit="hPa", y_unit="km", x_scale="log", headlines=("weight_of_the_air",),
+            x_label="pressure",
+            y_label="height",
+            x_unit="hPa",
+            y_unit="km",
+            x_scale="log",
+            headlines=("weight_of_the_air",),
         ),
         Panel(
             "profile",
@@ -220,7 +270,12 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             (
                 Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
                 Line("layer_temperature_theory", "height", "isothermal", "theory"),
+                Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment"),
             ),
-            x_label="temperature", y_label="height", x_unit="K", y_unit="km", headlines=("mean_temperature",),
+            x_label="temperature",
+            y_label="height",
+            x_unit="K",
+            y_unit="km",
+            headlines=("mean_temperature",),
         ),
-    )  # fmt: skip
+    )

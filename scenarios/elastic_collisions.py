@@ -1,14 +1,16 @@
 """Discs of unlike mass collide in a plane, and share their energy.
 
-Sixty pucks on a frictionless table, light and heavy, start at one speed: the heavy ones carry most of the energy. Every
-collision keeps momentum and energy to the last digit that a computer holds, and yet, by nothing but collisions, light and heavy
-discs come to the same mean energy. The light ones end up fast. It is why hydrogen flies faster than oxygen in the same air.
+Sixty pucks on a frictionless table, light and heavy, start at one speed: the heavy ones carry most of the
+energy. Every collision keeps momentum and energy to the last digit that a computer holds, and yet, by
+nothing but collisions, light and heavy discs come to the same mean energy. The light ones end up fast. It
+is why hydrogen flies faster than oxygen in the same air.
 
-Modelled: smooth elastic discs in one plane, exact collisions, smooth walls. Left out: friction, spin, gravity. A disc's area
-grows with its mass. The scale is that of a table, and nothing is exaggerated.
+Modelled: smooth elastic discs in one plane, exact collisions, smooth walls. Left out: friction, spin,
+gravity. A disc's area grows with its mass. The scale is that of a table, and nothing is exaggerated.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +22,9 @@ from atmosbox.scene import Setup
 from atmosbox.settings import Headline, SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import Scale
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 title = "Elastic collisions"
 FRAMES = 1200
@@ -77,30 +82,56 @@ def build(settings: Settings) -> Setup:
     )
 
 
-def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return the mean energy that all discs come to."""
     mean = dataset.kinetic_energy.values[0] / settings.molecules
     return {"kinetic_energy_light_theory": np.full(dataset.sizes["elapsed_time"], mean)}
 
 
-def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the ratio of mean energies, and how well energy and momentum were kept."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     found = [
-        Headline("largest_energy_change", float(np.abs(dataset.energy_change.values).max()), 0.0, 0.0, 1e-12,
-                 "a computer rounds at every collision", "1", "1", "largest change of the energy"),
-        Headline("largest_momentum_residual", float(dataset.momentum_residual.values.max()), 0.0, 0.0, 1e-12,
-                 "a computer rounds at every collision", "1", "1", "largest momentum unaccounted for"),
-    ]  # fmt: skip
+        Headline(
+            "largest_energy_change",
+            float(np.abs(dataset.energy_change.values).max()),
+            0.0,
+            0.0,
+            1e-12,
+            "a computer rounds at every collision",
+            "1",
+            "1",
+            "largest change of the energy",
+        ),
+        Headline(
+            "largest_momentum_residual",
+            float(dataset.momentum_residual.values.max()),
+            0.0,
+            0.0,
+            1e-12,
+            "a computer rounds at every collision",
+            "1",
+            "1",
+            "largest momentum unaccounted for",
+        ),
+    ]
     if late.sizes["elapsed_time"] >= 40 and settings.mass_ratio > 1.0:
         mean = float(dataset.kinetic_energy.values[0]) / settings.molecules
         share = block_average(late.kinetic_energy_light.values / mean)
         found.insert(
             0,
-            Headline("energy_of_light_discs", float(share.mean), float(share.standard_error), 1.0, 0.0,
-                     "none: in the long run all discs have the same mean energy", "1", "1",
-                     "energy of a light disc over the mean"),
-        )  # fmt: skip
+            Headline(
+                "energy_of_light_discs",
+                float(share.mean),
+                float(share.standard_error),
+                1.0,
+                0.0,
+                "none: in the long run all discs have the same mean energy",
+                "1",
+                "1",
+                "energy of a light disc over the mean",
+            ),
+        )
     return tuple(found)
 
 
@@ -116,7 +147,10 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("elapsed_time", "running_energy_heavy", "heavy half"),
                 Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),
             ),
-            x_label="time", y_label="energy, mean since the start", x_scale="log", headlines=("energy_of_light_discs",),
+            x_label="time",
+            y_label="energy, mean since the start",
+            x_scale="log",
+            headlines=("energy_of_light_discs",),
         ),
         Panel(
             "line",
@@ -125,6 +159,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("elapsed_time", "energy_change", "energy"),
                 Line("elapsed_time", "momentum_residual", "momentum, with that of the walls"),
             ),
-            x_label="time", y_label="relative change",
+            x_label="time",
+            y_label="relative change",
         ),
-    )  # fmt: skip
+    )

@@ -1,31 +1,37 @@
 """A parcel of dry air rises and cools.
 
-Some thousand molecules fly in a box whose ceiling is a piston. The piston gives way so that the pressure in the box follows
-that of the air outside, as the parcel rises. Nothing cools the molecules but this: those that hit the receding ceiling come
-back slower than they went. Temperature against pressure is the dry adiabat, T ~ p^(2/7).
+Some thousand molecules fly in a box whose ceiling is a piston. The piston gives way so that the pressure
+in the box follows that of the air outside, as the parcel rises. Nothing cools the molecules but this:
+those that hit the receding ceiling come back slower than they went. Temperature against pressure is the
+dry adiabat, T ~ p^(2/7).
 
-Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact; smooth walls; a
-hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it would change its temperature by
-less than a billionth), water, mixing with the air outside, heat from it. Exaggerated: the molecules are drawn larger than
-they are, so that they meet often, and some kilometres are climbed within nanoseconds. Because the ascent is not infinitely
-slow, the parcel ends too warm by about 160 K divided by its length in mean free times.
+Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact;
+smooth walls; a hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it
+would change its temperature by less than a billionth), water, mixing with the air outside, heat from it.
+Exaggerated: the molecules are drawn larger than they are, so that they meet often, and some kilometres
+are climbed within nanoseconds. Because the ascent is not infinitely slow, the parcel ends too warm by
+about 160 K divided by its length in mean free times.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.walls import Piston, Specular
 from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
+from atmosbox.engine.walls import Piston, Specular
 from atmosbox.errors import SettingError
 from atmosbox.instruments import Air, Environment, Lift
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Setup
 from atmosbox.settings import Headline, SceneSettings, setting
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 title = "Lifting dry air"
 FRAMES = 40
@@ -38,7 +44,9 @@ class Settings(SceneSettings):
     """What a user may set."""
 
     molecules: int = setting(4000, "1", "number of molecules in the parcel", low=50, high=1_000_000)
-    temperature: float = setting(15.0, "degC", "temperature of the parcel and of the air at the ground", low=-80.0, high=60.0)
+    temperature: float = setting(
+        15.0, "degC", "temperature of the parcel and of the air at the ground", low=-80.0, high=60.0
+    )
     pressure: float = setting(1000.0, "hPa", "pressure at the ground", low=200.0, high=1100.0)
     top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=50.0, high=1000.0)
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
@@ -137,14 +145,14 @@ def build(settings: Settings) -> Setup:
     )
 
 
-def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return the adiabat of dry air, which is also that of the parcel if it rotates."""
     si = settings.si
     air = law.dry_adiabat_temperature(dataset.parcel_pressure.values, si.temperature, si.pressure, 5)
     return {"dry_air_adiabat_temperature": np.asarray(air)}
 
 
-def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the temperatures on the way and the lapse rate."""
     si = settings.si
     freedom = 5 if settings.rotation else 3
@@ -155,8 +163,8 @@ def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
     order = np.argsort(pressure)
     reason = "the ascent is not infinitely slow"
     found = []
-    for level in (70_000.0, si.top_pressure):
-        if not (si.top_pressure <= level < si.pressure and pressure.min() <= level * 1.01):
+    for level in (100.0 * shown for shown in _levels(settings)):
+        if pressure.min() > 1.01 * level:
             continue
         expected = float(law.dry_adiabat_temperature(level, si.temperature, si.pressure, freedom))
         share = math.log(si.pressure / level) / math.log(si.pressure / si.top_pressure)
@@ -194,10 +202,19 @@ def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
     return tuple(found)
 
 
+def _levels(settings: Settings) -> list[float]:
+    """Return the levels that are reported [hPa]: 700 hPa on the way, and the top."""
+    return [p for p in dict.fromkeys((700.0, settings.top_pressure)) if settings.top_pressure <= p < settings.pressure]
+
+
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return temperature against pressure and height, and the misfit."""
     parcel = "parcel_temperature"
-    others = () if settings.rotation else (Line("dry_air_adiabat_temperature", "parcel_pressure", "dry air, γ = 7/5", "reference"),)
+    others = (
+        ()
+        if settings.rotation
+        else (Line("dry_air_adiabat_temperature", "parcel_pressure", "dry air, γ = 7/5", "reference"),)
+    )
     adiabat = "dry adiabat" if settings.rotation else "adiabat, γ = 5/3"
     return (
         Panel(
@@ -209,8 +226,13 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("environment_temperature", "environment_pressure", "air around", "environment"),
                 *others,
             ),
-            x_label="temperature", y_label="pressure", x_unit="degC", y_unit="hPa", y_scale="log", y_invert=True,
-            headlines=tuple(f"temperature_at_{p:.0f}_hpa" for p in dict.fromkeys((700.0, settings.top_pressure)) if settings.top_pressure <= p < settings.pressure),
+            x_label="temperature",
+            y_label="pressure",
+            x_unit="degC",
+            y_unit="hPa",
+            y_scale="log",
+            y_invert=True,
+            headlines=tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings)),
         ),
         Panel(
             "profile",
@@ -220,7 +242,10 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("adiabat_temperature", "parcel_height", adiabat, "theory"),
                 Line("environment_temperature", "parcel_height", "air around", "environment"),
             ),
-            x_label="temperature", y_label="height", x_unit="degC", y_unit="km",
+            x_label="temperature",
+            y_label="height",
+            x_unit="degC",
+            y_unit="km",
             headlines=("lapse_rate_of_the_first_kilometre",),
         ),
         Panel(
@@ -230,6 +255,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus="adiabat_temperature"),
                 Line("adiabat_temperature", "parcel_pressure", adiabat, "theory", minus="adiabat_temperature"),
             ),
-            x_label="misfit", y_label="pressure", x_unit="K", y_unit="hPa", y_scale="log", y_invert=True,
+            x_label="misfit",
+            y_label="pressure",
+            x_unit="K",
+            y_unit="hPa",
+            y_scale="log",
+            y_invert=True,
         ),
-    )  # fmt: skip
+    )

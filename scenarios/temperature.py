@@ -1,15 +1,18 @@
 """What temperature is: the motion of molecules.
 
-Molecules of real air at real density, in a cube some nanometres wide whose six walls are kept warm. They start cold; the walls
-send every molecule that hits them back at their own temperature, and within a fraction of a nanosecond the gas is as
-warm as they. The speeds are then those of Maxwell, and the blows on the walls add up to the pressure n k T Z.
+Molecules of real air at real density, in a cube some nanometres wide whose six walls are kept warm. They
+start cold; the walls send every molecule that hits them back at their own temperature, and within a
+fraction of a nanosecond the gas is as warm as they. The speeds are then those of Maxwell, and the blows
+on the walls add up to the pressure n k T Z.
 
-Modelled: hard spheres of the mass and the diameter of air, fully accommodating walls. Left out: gravity (over twenty
-nanometres it does nothing), rotation (it does not change how fast molecules fly), and that air is a mixture. A
-thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K for two hundred.
+Modelled: hard spheres of the mass and the diameter of air, fully accommodating walls. Left out: gravity
+(over twenty nanometres it does nothing), rotation (it does not change how fast molecules fly), and that
+air is a mixture. A thermometer of so few molecules scatters: by sqrt(2 / 3N) of the temperature, 17 K for
+two hundred.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +27,9 @@ from atmosbox.settings import Headline, SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 title = "Temperature"
 FRAMES = 1000
 SETTLE = 50
@@ -34,9 +40,15 @@ class Settings(SceneSettings):
 
     molecules: int = setting(200, "1", "number of molecules", low=1, high=1_000_000)
     temperature: float = setting(25.0, "degC", "temperature of the walls", low=-270.0, high=2000.0)
-    start_temperature: float = setting(-150.0, "degC", "temperature at which the molecules start", low=-273.0, high=2000.0)
-    pressure: float = setting(1000.0, "hPa", "pressure of the air once it is as warm as the walls", low=0.01, high=100_000.0)
-    start: str = setting("maxwell", "", "speeds at the start: all different, or all equal", choices=("maxwell", "equal"))
+    start_temperature: float = setting(
+        -150.0, "degC", "temperature at which the molecules start", low=-273.0, high=2000.0
+    )
+    pressure: float = setting(
+        1000.0, "hPa", "pressure of the air once it is as warm as the walls", low=0.01, high=100_000.0
+    )
+    start: str = setting(
+        "maxwell", "", "speeds at the start: all different, or all equal", choices=("maxwell", "equal")
+    )
     duration: float = setting(20.0, "ns", "how long to watch", low=0.01, high=1e5)
 
 
@@ -92,7 +104,7 @@ def build(settings: Settings) -> Setup:
     )
 
 
-def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return Maxwell's curve, the pressure n k T Z and the noise of a small thermometer."""
     si = settings.si
     scale, density, _ = _start(settings)
@@ -108,7 +120,7 @@ def theory(dataset, settings: Settings) -> dict[str, np.ndarray]:
     }
 
 
-def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return temperature, pressure, mean speed and how often molecules meet."""
     si = settings.si
     scale, density, length = _start(settings)
@@ -130,19 +142,51 @@ def headlines(dataset, settings: Settings) -> tuple[Headline, ...]:
     nothing = "none: the model has no other error than chance"
     bin_error = float(bins.mean() ** 2) / (12.0 * mean_speed)
     return (
-        Headline("mean_temperature", float(temperature.mean), float(temperature.standard_error), si.temperature,
-                 0.0, nothing, "K", "degC", "temperature"),
-        Headline("mean_pressure", float(pressure.mean), float(pressure.standard_error),
-                 float(law.gas_pressure(density, 1.0, 1.0)) * scale.pressure,
-                 0.01 * abs(float(law.gas_pressure(density, 1.0, 1.0)) - density) * scale.pressure,
-                 "molecules at a wall are packed a little differently from those inside", "Pa", "hPa", "pressure"),
-        Headline("mean_speed", float(np.sum(share * speed) / share.sum()),
-                 float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2))), mean_speed,
-                 bin_error, "the speeds are counted in bins", "m s-1", "m s-1", "mean speed"),
-        Headline("collision_rate", float(per_second.mean), float(per_second.standard_error), expected,
-                 0.05 * expected * min(1.0, density),
-                 "molecules at a wall are packed a little differently from those inside", "s-1", "s-1", "collisions of a molecule"),
-    )  # fmt: skip
+        Headline(
+            "mean_temperature",
+            float(temperature.mean),
+            float(temperature.standard_error),
+            si.temperature,
+            0.0,
+            nothing,
+            "K",
+            "degC",
+            "temperature",
+        ),
+        Headline(
+            "mean_pressure",
+            float(pressure.mean),
+            float(pressure.standard_error),
+            float(law.gas_pressure(density, 1.0, 1.0)) * scale.pressure,
+            0.01 * abs(float(law.gas_pressure(density, 1.0, 1.0)) - density) * scale.pressure,
+            "molecules at a wall are packed a little differently from those inside",
+            "Pa",
+            "hPa",
+            "pressure",
+        ),
+        Headline(
+            "mean_speed",
+            float(np.sum(share * speed) / share.sum()),
+            float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2))),
+            mean_speed,
+            bin_error,
+            "the speeds are counted in bins",
+            "m s-1",
+            "m s-1",
+            "mean speed",
+        ),
+        Headline(
+            "collision_rate",
+            float(per_second.mean),
+            float(per_second.standard_error),
+            expected,
+            0.05 * expected * min(1.0, density),
+            "molecules at a wall are packed a little differently from those inside",
+            "s-1",
+            "s-1",
+            "collisions of a molecule",
+        ),
+    )
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
@@ -153,9 +197,15 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "Cold molecules between warm walls",
             (
                 Line("elapsed_time", "air_temperature", "molecules"),
-                Line("elapsed_time", "air_temperature_theory", "walls ± noise", "theory", error="air_temperature_noise"),
+                Line(
+                    "elapsed_time", "air_temperature_theory", "walls ± noise", "theory", error="air_temperature_noise"
+                ),
             ),
-            x_label="time", y_label="temperature", y_unit="degC", x_scale="log", headlines=("mean_temperature",),
+            x_label="time",
+            y_label="temperature",
+            y_unit="degC",
+            x_scale="log",
+            headlines=("mean_temperature",),
         ),
         Panel(
             "line",
@@ -164,7 +214,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("elapsed_time", "air_pressure", "six walls"),
                 Line("elapsed_time", "air_pressure_theory", "n k T Z", "theory"),
             ),
-            x_label="time", y_label="pressure", y_unit="hPa", x_scale="log", headlines=("mean_pressure",),
+            x_label="time",
+            y_label="pressure",
+            y_unit="hPa",
+            x_scale="log",
+            headlines=("mean_pressure",),
         ),
         Panel(
             "histogram",
@@ -173,6 +227,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("speed", "speed_probability_density", "molecules", error="speed_probability_density_se"),
                 Line("speed", "speed_probability_density_theory", "Maxwell", "theory"),
             ),
-            x_label="speed", y_label="share per speed", headlines=("mean_speed",),
+            x_label="speed",
+            y_label="share per speed",
+            headlines=("mean_speed",),
         ),
-    )  # fmt: skip
+    )

@@ -87,7 +87,7 @@ def filled(names, coords, companions=("_se", "_count", "_theory", "_tolerance"),
 ALWAYS = [
     *("air_temperature", "air_pressure", "wall_temperature", "kinetic_energy", "rotational_energy"),
     *("potential_energy", "heat_from_wall", "work_by_piston", "ledger_residual", "collision_count"),
-    "wall_hit_count",
+    *("wall_hit_count", "wall_pressure", "air_temperature_noise"),
 ]
 
 
@@ -95,7 +95,7 @@ def lifting():
     coords = times(50)
     names = [
         *ALWAYS,
-        *(name for name in VARIABLES if name.startswith(("parcel", "environment", "piston", "adiabat"))),
+        *(name for name in VARIABLES if name.startswith(("parcel", "environment", "piston", "adiabat", "dry_air"))),
     ]
     frames = filled(names, coords, companions=("_se", "_theory"))
     frames["parcel_temperature"][3] = np.nan
@@ -112,7 +112,7 @@ def lifting():
 
 def column():
     coords = times(4, 0.5) | bins("height", 20, 500.0)
-    names = [*ALWAYS, "number_density", "air_density", "layer_temperature", "layer_pressure"]
+    names = [*ALWAYS, *(name for name in VARIABLES if name.startswith(("number_density", "air_density", "layer")))]
     frames = filled(names, coords)
     frames["layer_temperature"][-1] = np.nan
     return dataset(frames, coords, attributes(), time_unit="s")
@@ -125,7 +125,7 @@ def speeds():
 
 def discs():
     coords = times(30, 0.25)
-    names = [name for name in VARIABLES if name.startswith(("disc", "kinetic_energy_", "momentum", "trail"))]
+    names = [name for name in VARIABLES if name.startswith(("disc", "kinetic_energy_", "momentum", "running", "energy_change", "box"))]
     return dataset(filled([*ALWAYS, *names], coords, molecule=16), coords, attributes(), time_unit="ps")
 
 

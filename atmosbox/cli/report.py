@@ -119,9 +119,10 @@ def cost_line(collisions: int, seconds: float) -> str:
     >>> cost_line(1234567, 2.0)
     '1,234,567 collisions in 2.0 s, 620,000 a second'
     """
-    taken = f"{collisions:,} collisions in {seconds:.2g} s" if seconds < 10 else ""
-    taken = taken or f"{collisions:,} collisions in {seconds:.0f} s"
-    return taken + (f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else "")
+    taken = f"{seconds:#.2g}" if seconds < 10.0 else f"{seconds:.0f}"
+    return f"{collisions:,} collisions in {taken} s" + (
+        f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
+    )
 
 
 def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: float) -> dict[str, Any]:

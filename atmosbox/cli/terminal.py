@@ -19,6 +19,7 @@ from atmosbox.errors import AtmosboxError, shown
 
 INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
 ENDLESS = 1_000_000  # columns of what is no terminal
+LONGEST_SENTENCE = 20_000  # characters; paths may have 4096
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -125,7 +126,8 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except (typer.Exit, typer.Abort, typer.BadParameter):
             raise
         except AtmosboxError as error:
-            tell(f"error: {error}")
+            # The name of a file may hold anything, but a sentence stands on one line.
+            tell(f"error: {shown(str(error), longest=LONGEST_SENTENCE)}")
             raise typer.Exit(error.exit_code) from error
         except KeyboardInterrupt as error:
             tell("stopped")

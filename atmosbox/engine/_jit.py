@@ -1,9 +1,10 @@
 """The one door to numba.
 
-numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel calls *in another
-file*, or a constant imported from one, and the old machine code is served. Here the cache is filed under a digest of all
-the engine's sources, so that any edit, or a newly installed version, starts a fresh one. That is right only because the
-engine imports nothing of atmosbox from outside its folder, which a test enforces.
+numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel
+calls *in another file*, or a constant imported from one, and the old machine code is served. Here the
+cache is filed under a digest of all the engine's sources, so that any edit, or a newly installed version,
+starts a fresh one. That is right only because the engine imports nothing of atmosbox from outside its
+folder, which a test enforces.
 """
 
 import hashlib
@@ -22,7 +23,7 @@ from numba.extending import intrinsic
 __all__ = ["COMPILED", "POSITIVE", "cache_folder", "kernel", "prefetch"]
 
 POSITIVE = (1 << 40) - 1
-"""``index & POSITIVE`` tells the compiler that an index is not negative, which saves it Python's counting from the end."""
+"""``index & POSITIVE`` tells the compiler that an index is not negative: that saves Python's counting from the end."""
 
 COMPILED = not config.DISABLE_JIT
 """Whether kernels are compiled (they are not under ``NUMBA_DISABLE_JIT=1``, which the coverage run uses)."""
@@ -81,8 +82,8 @@ def kernel(function: Callable[..., Any] | None = None, *, entry: bool = False) -
     function
         Numbers, arrays and NamedTuples of them come in; no strings, no exceptions, no allocation in loops.
     entry
-        True for what Python calls: it keeps its machine code on disk. False for a law that other kernels call: it is
-        always inlined into them, so that flags passed as constants cost nothing.
+        True for what Python calls: it keeps its machine code on disk. False for a law that other kernels
+        call: it is always inlined into them, so that flags passed as constants cost nothing.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """What happens next: a tournament of the molecules' next events.
 
-Leaves hold one time per molecule, in groups of eight (a cache line). Above them stands a binary tournament whose nodes
-carry the winning time *and* its molecule, so the next event is read at the root and a change plays one match per level. There is
-nothing to tune.
+Leaves hold one time per molecule, in groups of eight (a cache line). Above them stands a binary
+tournament whose nodes carry the winning time *and* its molecule, so the next event is read at the root
+and a change plays one match per level. There is nothing to tune.
 """
 
 import math

@@ -1,15 +1,16 @@
 """Which molecules can meet: cells, and the slots by which molecules move among them.
 
-A molecule belongs to every cell that its *sphere* overlaps: most often one, near a face two, in a corner eight. Two spheres
-that touch share the cell of the point where they touch, so a molecule is only ever compared with those that share a cell of
-its own, never with neighbouring cells. Along each axis its centre stands in a **slot**: an interval between two successive
-boundaries, which are the cell edges shifted by plus and minus its radius. Crossing a boundary means entering one cell, or
-leaving one. Layers of unequal thickness cost nothing, the outermost boundary is the wall, and a sphere larger than a cell just
-overlaps more of them.
+A molecule belongs to every cell that its *sphere* overlaps: most often one, near a face two, in a corner
+eight. Two spheres that touch share the cell of the point where they touch, so a molecule is only ever
+compared with those that share a cell of its own, never with neighbouring cells. Along each axis its
+centre stands in a **slot**: an interval between two successive boundaries, which are the cell edges
+shifted by plus and minus its radius. Crossing a boundary means entering one cell, or leaving one. Layers
+of unequal thickness cost nothing, the outermost boundary is the wall, and a sphere larger than a cell
+just overlaps more of them.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,7 +117,7 @@ def choose_grid(
             if room <= 0.05 * length[axis]:
                 raise RefusedError(
                     f"a periodic box of length {length[axis]:.6g} is too short for molecules of diameter "
-                    f"{2 * biggest:.6g}, which would meet their own images: make it longer than {4.5 * biggest / 0.5:.6g}"
+                    f"{2 * biggest:.6g}, which would meet their own images: make it longer than {4.5 * biggest:.6g}"
                 )
             n = max(n, math.ceil(length[axis] / room))
             if exact_radius and n > length[axis] / (2.002 * biggest):
@@ -168,7 +169,8 @@ def _layers(height: float, number: int, scale_height: float, thinnest: float) ->
     a = min(height / scale_height, 700.0)
     below = 0.9 * np.expm1(-a * z / height) / math.expm1(-a) + 0.1 * z / height
     if scale_height < height / 5_000:
-        z = np.concatenate([np.linspace(0.0, min(40.0 * scale_height, height / 2), 20_001)[:-1], z[z >= min(40.0 * scale_height, height / 2)]])
+        deep = min(40.0 * scale_height, height / 2)
+        z = np.concatenate([np.linspace(0.0, deep, 20_001)[:-1], z[z >= deep]])
         below = 0.9 * np.expm1(-z / scale_height) / math.expm1(-height / scale_height) + 0.1 * z / height
     wanted = np.interp(np.linspace(0.0, 1.0, number + 1), below, z)
     edges = [0.0]
@@ -210,7 +212,8 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
         turns = np.floor(x / edges[-1]).astype(np.int64)
         inside = np.searchsorted(edges, x - turns * edges[-1], side="right") - 1
         return np.clip(inside, 0, n - 1) + turns * n
-    return np.clip(np.searchsorted(edges, x, side="right") - 1, 0, n - 1)
+    cell: NDArray[np.int64] = np.searchsorted(edges, x, side="right") - 1
+    return np.clip(cell, 0, n - 1)
 
 
 @kernel

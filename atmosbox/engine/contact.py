@@ -33,9 +33,9 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
 
     Notes
     -----
-    The root is c / (-b + sqrt(d)), which keeps its digits when the two nearly touch. A pair that overlaps by rounding and
-    still approaches touches at once, one that parts never does [1]_. Most pairs miss: the discriminant is formed with
-    min(b, 0) and tested alone, so that the one branch is rarely taken.
+    The root is c / (-b + sqrt(d)), which keeps its digits when the two nearly touch. A pair that overlaps
+    by rounding and still approaches touches at once, one that parts never does [1]_. Most pairs miss: the
+    discriminant is formed with min(b, 0) and tested alone, so that the one branch is rarely taken.
 
     References
     ----------
@@ -81,8 +81,8 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 
     Notes
     -----
-    The division by the actual \|r\|^2, not by sigma^2, keeps energy to rounding although the distance at contact is
-    known to rounding only.
+    The division by the actual \|r\|^2, not by sigma^2, keeps energy to rounding although the distance at
+    contact is known to rounding only.
 
     Examples
     --------
@@ -100,8 +100,9 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 def share_energy(energy, rotation, other_rotation, state):
     r"""Share the energy of a contact between relative motion and the two rotations (Larsen and Borgnakke [1]_).
 
-    The shares are as gamma variates :math:`\Gamma(2) : \Gamma(\zeta_i/2) : \Gamma(\zeta_j/2)`. It is 2, not 3/2, for the
-    relative motion because hard spheres collide in proportion to their relative speed; that keeps detailed balance.
+    The shares are as gamma variates :math:`\Gamma(2) : \Gamma(\zeta_i/2) : \Gamma(\zeta_j/2)`. It is 2,
+    not 3/2, for the relative motion because hard spheres collide in proportion to their relative speed;
+    that keeps detailed balance.
 
     Parameters
     ----------

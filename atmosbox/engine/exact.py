@@ -1,12 +1,13 @@
 """The exact engine: from event to event, with nothing in between.
 
-Every molecule holds one event: its next contact, its next crossing of a cell boundary, or its next wall, whichever comes
-first. The calendar tells which of all is next; that one is resolved, and the molecules it changed plan anew. A contact whose
-partner has meanwhile met someone else is stale: its molecule plans anew when it comes due. Nothing is approximated; the
-order of events is that of the real numbers, to rounding.
+Every molecule holds one event: its next contact, its next crossing of a cell boundary, or its next wall,
+whichever comes first. The calendar tells which of all is next; that one is resolved, and the molecules it
+changed plan anew. A contact whose partner has meanwhile met someone else is stale: its molecule plans
+anew when it comes due. Nothing is approximated; the order of events is that of the real numbers, to
+rounding.
 
-A scene pays only for what it requires: `specialise` makes the kernels for one set of `Modes`, in which the code of
-everything else does not exist.
+A scene pays only for what it requires: `specialise` makes the kernels for one set of `Modes`, in which
+the code of everything else does not exist.
 """
 
 import functools
@@ -17,8 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atmosbox.engine._jit import POSITIVE, kernel, prefetch
-from atmosbox.engine.cells import append, overlapped, remove
 from atmosbox.engine.calendar import next_event, schedule
+from atmosbox.engine.cells import append, overlapped, remove
 from atmosbox.engine.contact import resolve_contact, share_energy
 from atmosbox.engine.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.random import uniform
@@ -34,8 +35,8 @@ _MANY = 4_000
 class Modes(NamedTuple):
     """What a scene requires.
 
-    Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than cells, periodic
-    axes, a piston.
+    Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
+    cells, periodic axes, a piston.
     """
 
     contacts: bool
@@ -51,7 +52,8 @@ class Modes(NamedTuple):
 def _soonest_in_cell(cell, i, t, x, y, z, vx, vy, vz, radius, soonest, partner, molecules, kinds, cells, box, modes):
     """Return the earlier of ``soonest`` and the first contact of molecule i with a member of a cell, and with whom.
 
-    It is `time_to_contact` written out: most pairs miss, so the discriminant is tested alone and all else stands inside.
+    It is `time_to_contact` written out: most pairs miss, so the discriminant is tested alone and all else
+    stands inside.
     """
     row = cells.row
     start = (cell * cells.stride) & POSITIVE
@@ -169,9 +171,7 @@ def _plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, 
                         cell, i, t, x, y, z, vx, vy, vz, radius, soonest, partner,
                         molecules, kinds, cells, box, modes,
                     )  # fmt: skip
-    time, what = _next_move(
-        slot_x, slot_y, slot_z, t, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes
-    )
+    time, what = _next_move(slot_x, slot_y, slot_z, t, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes)
     event = events[i]
     event.contact_time = t + soonest
     if partner >= 0:
@@ -241,9 +241,7 @@ def _meet(i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes):
         reduced_mass = mass * other_mass / (mass + other_mass)
         spin = kinds.rotational_energy
         relative = 0.5 * reduced_mass * (ux * ux + uy * uy + uz * uz)
-        shared, spin[i], spin[j] = share_energy(
-            relative + spin[i] + spin[j], rotation, other_rotation, tallies.random
-        )
+        shared, spin[i], spin[j] = share_energy(relative + spin[i] + spin[j], rotation, other_rotation, tallies.random)
         # the elastic contact turns the relative velocity u into u + d (1 + m_i / m_j); now its length is scaled
         share = 1.0 + mass / other_mass
         scale = math.sqrt(shared / relative)
@@ -369,12 +367,12 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def place(molecules, events, kinds, cells, calendar, box, walls, now):
-        """Enter all molecules into their cells at time ``now`` and plan their events; ROW_FULL if a row is too short."""
+        """Enter all molecules into their cells at time ``now`` and plan their events, unless a row is full."""
         cells.row[:] = 0
         row = cells.row
         for i in range(molecules.size):
             x, y, z, vx, vy, vz = _position(molecules[i], now, box, modes)
-            size, radius = _size_and_radius(i, molecules, kinds, modes)
+            size, _ = _size_and_radius(i, molecules, kinds, modes)
             for axis in range(3):
                 if axis == 0:
                     u, length, last = x, box.length_x, cells.last_slot_x

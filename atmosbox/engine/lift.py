@@ -4,7 +4,8 @@ Every interval the ceiling gets the velocity
 
 .. math:: u = h \left[ S / \gamma + \ln(p / p_{env}) / (20 \tau) \right], \quad S = -d \ln p_{env} / dt,
 
-the first term being what an adiabat asks for, the second what closes the gap that is left. Between, it moves evenly.
+the first term being what an adiabat asks for, the second what closes the gap that is left. Between, it
+moves evenly.
 """
 
 import math
@@ -21,10 +22,11 @@ __all__ = ["FollowPressure"]
 class FollowPressure:
     """Let the ceiling give way so that the pressure follows a schedule.
 
-    The pressure is that of the virial theorem, p = n kT + w / 3 V = n kT Z. Here kT comes from all the energy,
-    translation and rotation, that the ledger holds, and so has no noise at fixed volume; n counts the volume open to centres;
-    and w, the virial of contacts per unit time, is measured: (Z - 1) / n is averaged over a hundred mean free times. With it
-    the adiabat is T ~ p^(2/7) to second order in the packing fraction; without, not even to first.
+    The pressure is that of the virial theorem, p = n kT + w / 3 V = n kT Z. Here kT comes from all the
+    energy, translation and rotation, that the ledger holds, and so has no noise at fixed volume; n counts
+    the volume open to centres; and w, the virial of contacts per unit time, is measured: (Z - 1) / n is
+    averaged over a hundred mean free times. With it the adiabat is T ~ p^(2/7) to second order in the
+    packing fraction; without, not even to first.
 
     Parameters
     ----------

@@ -16,8 +16,9 @@ Array = NDArray[np.float64]
 class Layers(NamedTuple):
     """Sums over the molecules of each layer at one time; add up samples, then divide.
 
-    ``number : (layer,)`` molecules; ``energy : (layer,)`` kinetic energy relative to the layer's mean motion [energy];
-    ``freedom : (layer,)`` degrees of freedom that share it: those of the mean motion are not counted.
+    ``number : (layer,)`` molecules; ``energy : (layer,)`` kinetic energy relative to the layer's mean
+    motion [energy]; ``freedom : (layer,)`` degrees of freedom that share it: those of the mean motion are
+    not counted.
     """
 
     number: Array

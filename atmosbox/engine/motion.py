@@ -1,7 +1,8 @@
 r"""Free flight: straight lines, and the exact parabola of gravity.
 
-Between encounters a molecule moves as :math:`x + v t` along the floor and :math:`z + v_z t - g t^2 / 2` along the vertical.
-When it will reach a plane is a linear or a quadratic equation, and both are solved without cancellation.
+Between encounters a molecule moves as :math:`x + v t` along the floor and :math:`z + v_z t - g t^2 / 2`
+along the vertical. When it will reach a plane is a linear or a quadratic equation, and both are solved
+without cancellation.
 """
 
 import math
@@ -45,8 +46,8 @@ def time_to_leave(x, v, low, high):
 def time_to_leave_in_gravity(z, v, low, high, gravity):
     r"""Return when a molecule in free fall leaves a layer, and at which end.
 
-    It reaches the upper end if :math:`v^2 > 2 g h`, at :math:`t = 2 h / (v + \sqrt{v^2 - 2 g h})`; else it falls out of
-    the lower end, at the later root of the same parabola.
+    It reaches the upper end if :math:`v^2 > 2 g h`, at :math:`t = 2 h / (v + \sqrt{v^2 - 2 g h})`; else
+    it falls out of the lower end, at the later root of the same parabola.
 
     Parameters
     ----------

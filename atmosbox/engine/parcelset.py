@@ -1,12 +1,12 @@
 """The parcel of air: molecules in a box, advanced exactly.
 
-`ParcelSet` checks what it is given, lays it out for the kernels, owns the random numbers and the moving epoch of time, and
-turns the kernels' status codes into sentences.
+`ParcelSet` checks what it is given, lays it out for the kernels, owns the random numbers and the moving
+epoch of time, and turns the kernels' status codes into sentences.
 """
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from atmosbox.engine.calendar import new_calendar
 from atmosbox.engine.cells import ROW, choose_grid, size_classes
 from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, Modes, specialise
+from atmosbox.engine.inputs import column, inside, matrix, natural_time, sides_of
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.state import EVENT, KIND, MOLECULE, Box, Cells, Kinds, Tallies, aligned_records
 from atmosbox.engine.walls import HEAT_BATH, PERIODIC, PISTON, WALL_NAMES, Specular, Wall, new_walls, wall_kT
@@ -28,7 +29,8 @@ Array = NDArray[np.float64]
 class Snapshot(NamedTuple):
     """All molecules at one time.
 
-    ``position``, ``velocity : (molecule, axis)`` [length, length/time]; ``rotational_energy : (molecule,)`` [energy].
+    ``position``, ``velocity : (molecule, axis)`` [length, length/time]; ``rotational_energy :
+    (molecule,)`` [energy].
     """
 
     time: float
@@ -66,7 +68,8 @@ class ParcelSet:
     planar
         Whether this is a plane gas: all y and all y velocities are then those given, and never change.
     collision_number
-        How many contacts pass, on average, between two exchanges of energy with rotation, >= 1, ``inf`` for never.
+        How many contacts pass, on average, between two exchanges of energy with rotation, >= 1, ``inf``
+        for never.
     layers
         Number of layers of equal thickness by which the virial of contacts is counted.
     seed
@@ -107,20 +110,18 @@ class ParcelSet:
         seed: int = 0,
         driver: Driver | None = None,
     ) -> None:
-        x = _matrix(position, "position")
-        v = _matrix(velocity, "velocity")
+        x = matrix(position, "position")
+        v = matrix(velocity, "velocity")
         if x.shape != v.shape:
             raise RefusedError(f"{len(x)} positions and {len(v)} velocities: give one velocity for each position")
         n = len(x)
-        self._mass = _column(mass, n, "mass", above=0.0)
-        self._diameter = _column(diameter, n, "diameter", least=0.0)
-        self._rotation = _column(rotation, n, "rotation", least=0.0)
+        self._mass = column(mass, n, "mass", above=0.0)
+        self._diameter = column(diameter, n, "diameter", least=0.0)
+        self._rotation = column(rotation, n, "rotation", least=0.0)
         if not np.isin(self._rotation, (0.0, 2.0, 3.0)).all():
             raise RefusedError("the rotational degrees of freedom of a molecule are 0, 2 or 3")
-        spin = _column(0.0 if rotational_energy is None else rotational_energy, n, "rotational_energy", least=0.0)
-        sides = np.asarray(length, np.float64)
-        if sides.shape != (3,) or not (np.isfinite(sides).all() and (sides > 0).all()):
-            raise RefusedError(f"length = {length!r}: give three sides, each above 0")
+        spin = column(0.0 if rotational_energy is None else rotational_energy, n, "rotational_energy", least=0.0)
+        sides = sides_of(length)
         if not (math.isfinite(gravity) and gravity >= 0.0):
             raise RefusedError(f"gravity = {gravity} must be 0 or above: it acts downward, along -z")
         if not collision_number >= 1.0:
@@ -137,14 +138,14 @@ class ParcelSet:
         self._sides = sides
         self._planar = bool(planar)
         self._driver = driver
-        self._check_inside(x)
+        x = inside(x, self._diameter, sides, self._periodic)
         self._kinds, kind = self._classify(spin)
         self._molecules = aligned_records(n, MOLECULE)
         for axis, name in enumerate("xyz"):
             self._molecules[name] = x[:, axis]
             self._molecules["v" + name] = v[:, axis]
         self._molecules["kind"] = kind
-        self._spread = _natural_time(v, sides, n, self._walls, self._mass, gravity)
+        self._spread = natural_time(v, sides, n, self._walls, self._mass, gravity)
         self._box = self._new_box(gravity, collision_number)
         words = np.random.SeedSequence(int(seed)).generate_state(1, np.uint64)
         self._tallies = Tallies(
@@ -161,6 +162,7 @@ class ParcelSet:
         self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
         self._now = 0.0
         self._turn = 0
+        self._cells: Cells
         self._lay_out()
         depth, i, j = self._overlap(self._molecules, self._kinds, self._cells, self._box)
         if n > 1 and depth > _OVERLAP:
@@ -211,8 +213,8 @@ class ParcelSet:
     def open_density(self) -> float:
         """Sum over molecules of one over the volume that its centre can reach now [1/length^3; planar: 1/length^2].
 
-        Times kT it is the pressure on the walls of molecules that never meet, exactly; the volume of the box would be
-        too large by the layer, half a diameter thin, that no centre enters.
+        Times kT it is the pressure on the walls of molecules that never meet, exactly; the volume of the
+        box would be too large by the layer, half a diameter thin, that no centre enters.
         """
         if not self.number:
             return 0.0
@@ -285,7 +287,10 @@ class ParcelSet:
 
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
-        kT = [wall_kT(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)]
+        kT = [
+            wall_kT(self._walls, w, self.time) if law == HEAT_BATH else math.nan
+            for w, law in enumerate(self._walls.law)
+        ]
         return np.array(kT)
 
     @property
@@ -329,7 +334,8 @@ class ParcelSet:
     def ledger(self) -> float:
         """Return by how much the energy ledger fails to close, relative to the energy that there is.
 
-        Kinetic + rotational + potential = what there was at the start + heat from the walls + work of the piston.
+        Kinetic + rotational + potential = what there was at the start + heat from the walls + work of the
+        piston.
         """
         total = sum(self.energy())
         given = float(self._tallies.heat.sum()) + self.work
@@ -353,7 +359,8 @@ class ParcelSet:
         until
             When to stop; however a run is cut into pieces, its molecules do the same.
         watch
-            Called with the time every tenth of a second or so; what it raises (Ctrl-C) leaves a state that can go on.
+            Called with the time every tenth of a second or so; what it raises (Ctrl-C) leaves a state
+            that can go on.
 
         Raises
         ------
@@ -399,12 +406,22 @@ class ParcelSet:
             self._lay_out()
             return
         # below the layer in which the ceiling stands no molecule can meet it before it changes its slot
-        lowest = self.ceiling if velocity >= 0.0 or self._driver is None else self.ceiling + velocity * self._driver.interval
+        lowest = (
+            self.ceiling if velocity >= 0.0 or self._driver is None else self.ceiling + velocity * self._driver.interval
+        )
         lowest = 0.0 if velocity < 0.0 and self._driver is None else lowest
         layer = int(lowest / top * self._cells.number_z) - 1
         layer = min(max(layer, 0), self._cells.number_z - 1)
         self._replan(
-            self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls, self._now, layer
+            self._molecules,
+            self._events,
+            self._kinds,
+            self._cells,
+            self._calendar,
+            self._box,
+            self._walls,
+            self._now,
+            layer,
         )
 
     # ------------------------------------------------------------------ how
@@ -504,7 +521,14 @@ class ParcelSet:
             )
             self._calendar = new_calendar(n)
             status = place(
-                self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls, self._now
+                self._molecules,
+                self._events,
+                self._kinds,
+                self._cells,
+                self._calendar,
+                self._box,
+                self._walls,
+                self._now,
             )
             if status != ROW_FULL:
                 return
@@ -529,7 +553,18 @@ class ParcelSet:
         if self._walls.law[5] == PISTON:
             length[2] = math.inf
         inverse = [1.0 / float(side) if turn else 0.0 for side, turn in zip(self._sides, self._periodic, strict=True)]
-        return Box(*length, *inverse, float(gravity), self._planar, 1.0 / collision_number, 1e-9 * self._spread)
+        return Box(
+            length_x=length[0],
+            length_y=length[1],
+            length_z=length[2],
+            inverse_x=inverse[0],
+            inverse_y=inverse[1],
+            inverse_z=inverse[2],
+            gravity=float(gravity),
+            planar=self._planar,
+            exchange=1.0 / collision_number,
+            stall=1e-9 * self._spread,
+        )
 
     def _mean_kT(self) -> float:
         if not self.number:
@@ -542,79 +577,17 @@ class ParcelSet:
         ]
         return max([kT, *baths]) if kT > 0.0 or baths else potential / self.number
 
-    def _check_inside(self, x: Array) -> None:
-        radius = 0.5 * self._diameter
-        for axis in range(3):
-            if self._periodic[axis]:
-                continue
-            slack = 1e-12 * self._sides[axis]
-            low = x[:, axis] < radius - slack
-            high = x[:, axis] > self._sides[axis] - radius + slack
-            if (low | high).any():
-                i = int(np.argmax(low | high))
-                wall = WALL_NAMES[2 * axis + (0 if low[i] else 1)]
-                raise RefusedError(
-                    f"molecule {i} at {'xyz'[axis]} = {x[i, axis]:.6g} reaches through wall {wall}: its centre must lie "
-                    f"between {radius[i]:.6g} and {self._sides[axis] - radius[i]:.6g}"
-                )
-            x[:, axis] = np.clip(x[:, axis], radius, self._sides[axis] - radius)
-
     def _why_stalled(self) -> str:
         walls = [w for w in range(6) if self._walls.law[w] == HEAT_BATH]
         coldest = min(walls, key=lambda w: self._walls.schedule_kT[self._walls.schedule[w]], default=None)
         if coldest is not None and self.gravity > 0.0:
             kT = float(self._walls.schedule_kT[self._walls.schedule[coldest]])
-            cause = f"wall {WALL_NAMES[coldest]} at kT = {kT:.3g} is too cold for gravity {self.gravity:.3g}: warm it or reduce gravity"
+            cause = (
+                f"wall {WALL_NAMES[coldest]} at kT = {kT:.3g} is too cold for gravity {self.gravity:.3g}: "
+                "warm it or reduce gravity"
+            )
         elif self._walls.law[5] == PISTON:
             cause = f"the piston at {self.ceiling:.6g} crushes the molecules: stop it earlier"
         else:
             cause = "molecules are jammed: lower the packing fraction or the gravity"
         return f"events pile up without end at t = {self.time:.6g}: {cause}"
-
-
-def _matrix(values: ArrayLike, name: str) -> Array:
-    try:
-        array = np.array(values, np.float64)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
-    if array.size == 0:
-        array = array.reshape(0, 3)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise RefusedError(f"{name} has shape {array.shape}: give three numbers per molecule")
-    if not np.isfinite(array).all():
-        i = int(np.argmax(~np.isfinite(array).all(axis=1)))
-        raise RefusedError(f"{name} of molecule {i} is not finite: give finite numbers")
-    return array
-
-
-def _column(values: ArrayLike, n: int, name: str, *, above: float | None = None, least: float | None = None) -> Array:
-    try:
-        array = np.array(values, np.float64)
-    except (TypeError, ValueError):
-        raise RefusedError(f"{name} holds something that is not a number") from None
-    if array.ndim > 1 or (array.ndim == 1 and array.size != n):
-        raise RefusedError(f"{name} has shape {array.shape}: give one number, or one for each of {n} molecules")
-    bad = ~np.isfinite(array)
-    if above is not None:
-        bad |= ~(array > above)
-    if least is not None:
-        bad |= ~(array >= least)
-    if bad.any():
-        value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
-        limit = f"above {above:g}" if above is not None else f"{least:g} or above"
-        raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
-    return np.broadcast_to(array, (n,)).copy()
-
-
-def _natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
-    """Return the time in which a molecule passes its neighbour's place."""
-    spacing = float(np.cbrt(math.prod(sides) / max(n, 1)))
-    speeds = [math.sqrt(float(np.mean(np.sum(v * v, axis=1))))] if n else []
-    if n:
-        speeds += [math.sqrt(float(kT) / float(mass.mean())) for kT, law in zip(walls.schedule_kT[walls.schedule[:-1]], walls.law, strict=True) if law == HEAT_BATH]
-    if gravity > 0.0:
-        speeds.append(math.sqrt(gravity * spacing))
-    if walls.law[5] == PISTON:
-        speeds.append(abs(float(walls.piston[1])))
-    fastest = max(speeds, default=0.0)
-    return spacing / fastest if fastest > 0.0 and math.isfinite(spacing / fastest) else 1.0

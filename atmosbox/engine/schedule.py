@@ -72,7 +72,9 @@ class Steps:
     def points(self) -> list[tuple[float, float]]:
         """Return the corners: two at each step."""
         if len(self.times) != len(self.values) or not self.times:
-            raise RefusedError(f"steps need as many values as times, at least one: {len(self.times)} times, {len(self.values)} values")
+            raise RefusedError(
+                f"steps need as many values as times, at least one: {len(self.times)} times, {len(self.values)} values"
+            )
         corners = [(float(self.times[0]), float(self.values[0]))]
         for time, value in zip(self.times[1:], self.values[1:], strict=True):
             if time <= corners[-1][0]:
@@ -100,7 +102,7 @@ def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) 
         corners = list(value.points())
     else:
         try:
-            corners = Constant(float(value)).points()  # type: ignore[arg-type]
+            corners = Constant(float(value)).points()
         except (TypeError, ValueError):
             raise RefusedError(f"{name} = {value!r} is not a number: give a number, Constant, Ramp or Steps") from None
     for time, number in corners:

@@ -99,8 +99,9 @@ def random_positions(
 
     Notes
     -----
-    Overlapping pairs are moved apart along their line of centres by what they overlap, again and again. That reaches
-    packing fractions of 0.55 and more, where trying random places one by one ends at 0.38 (in a plane 0.80 and 0.55).
+    Overlapping pairs are moved apart along their line of centres by what they overlap, again and again.
+    That reaches packing fractions of 0.55 and more, where trying random places one by one ends at 0.38
+    (in a plane 0.80 and 0.55).
 
     Examples
     --------
@@ -183,7 +184,7 @@ def lattice_positions(
         return np.zeros((0, 3))
     biggest = float(sigma.max())
     room = np.where(periodic, sides, sides - biggest)
-    best: tuple[float, tuple[int, ...], Array] | None = None
+    best: tuple[float, tuple[int, int, int], Array] | None = None
     axes = [0, 2] if planar else [0, 1, 2]
     ideal = (2.0 * n / math.prod(max(float(room[a]), 0.3 * biggest) for a in axes)) ** (1.0 / len(axes))
     stretch = {0: 3.0 ** (0.25), 2: 3.0 ** (-0.25)} if planar else {}
@@ -322,10 +323,12 @@ def _refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, b
     biggest = float(sigma.max())
     for axis in range(3):
         if not periodic[axis] and sides[axis] < biggest:
-            raise PackingError(f"a molecule of diameter {biggest:.6g} does not fit into a box of side {sides[axis]:.6g}")
+            raise PackingError(
+                f"a molecule of diameter {biggest:.6g} does not fit into a box of side {sides[axis]:.6g}"
+            )
     phi = packing_fraction(list(sides), sigma, planar=planar)
     densest = _DENSEST_PLANE if planar else _DENSEST
-    if phi > densest * (1.0 + 1e-9) and np.ptp(sigma) == 0.0 or phi >= 1.0:
+    if (phi > densest * (1.0 + 1e-9) and np.ptp(sigma) == 0.0) or phi >= 1.0:
         raise PackingError(
             f"{sigma.size} molecules would fill {phi:.3g} of the space, and no packing of spheres fills more than "
             f"{densest:.3g}: take fewer or smaller molecules, or a larger box"

@@ -12,6 +12,7 @@ __all__ = [
     "EVENT",
     "KIND",
     "MOLECULE",
+    "SLOT_OFFSET",
     "Box",
     "Calendar",
     "Cells",
@@ -22,10 +23,23 @@ __all__ = [
 ]
 
 MOLECULE = np.dtype(
-    [("x", "f8"), ("y", "f8"), ("z", "f8"), ("vx", "f8"), ("vy", "f8"), ("vz", "f8"), ("clock", "f8"), ("count", "u4"), ("kind", "u4")]
+    [
+        ("x", "f8"),
+        ("y", "f8"),
+        ("z", "f8"),
+        ("vx", "f8"),
+        ("vy", "f8"),
+        ("vz", "f8"),
+        ("clock", "f8"),
+        ("count", "u4"),
+        ("kind", "u4"),
+    ]
 )
-"""One molecule, one 64-byte line of memory: its centre [length] and velocity [length/time] *at the time of its clock* [time],
-how many encounters it has had, and its kind (a row of `Kinds`). Only an encounter writes it."""
+"""One molecule, one 64-byte line of memory.
+
+Its centre [length] and velocity [length/time] *at the time of its clock* [time], how many encounters it
+has had, and its kind (a row of `Kinds`). Only an encounter writes it.
+"""
 
 EVENT = np.dtype(
     {
@@ -34,16 +48,30 @@ EVENT = np.dtype(
         "itemsize": 32,
     }
 )
-"""What lies ahead of one molecule: its next contact [time], with whom, how many encounters the partner had had when that was
-predicted (if it has had more since, the prediction is stale), where it stands among the cells (`cells`), and which of
-contact, crossing or wall comes first."""
+"""What lies ahead of one molecule.
+
+Its next contact [time], with whom, how many encounters the partner had had when that was predicted (if it
+has had more since, the prediction is stale), where it stands among the cells (`cells`), and which of
+contact, crossing or wall comes first.
+"""
+
+SLOT_OFFSET = 16
+"""Where in the bytes of an `EVENT` the three slots begin."""
 
 KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size", "i8")])
-"""A kind of molecule: mass [mass], radius [length], rotational degrees of freedom, row of the table of cell boundaries."""
+"""A kind of molecule.
+
+Mass [mass], radius [length], rotational degrees of freedom, row of the table of cell boundaries.
+"""
 
 
 class Box(NamedTuple):
-    """The box [length], gravity along -z [length/time^2]; ``inverse_*`` is 1/length on a periodic axis and 0 on a walled one."""
+    """The box, and what holds everywhere in it.
+
+    Sides [length], ``inverse_*`` 1/side on a periodic axis and 0 on a walled one, gravity along -z
+    [length/time^2], whether the gas is a plane, the share of contacts that exchange energy with rotation,
+    and the time [time] in which many events without progress are a pile-up.
+    """
 
     length_x: float
     length_y: float
@@ -58,7 +86,10 @@ class Box(NamedTuple):
 
 
 class Kinds(NamedTuple):
-    """The kinds of molecule: ``table : (kind,)`` of `KIND`, and ``rotational_energy : (molecule,)`` [energy] where molecules rotate."""
+    """The kinds of molecule.
+
+    ``table : (kind,)`` of `KIND`, and ``rotational_energy : (molecule,)`` [energy] where molecules rotate.
+    """
 
     table: Any
     rotational_energy: Any
@@ -67,10 +98,11 @@ class Kinds(NamedTuple):
 class Cells(NamedTuple):
     """Which molecules stand where.
 
-    ``row : (cell * stride,)``: each cell's number of molecules, then their indices. ``boundary : (size, axis, slot)``
-    [length], ``first`` and ``span : (size, axis, slot)``: the first cell, and the number of cells, that a sphere of that
-    size overlaps when its centre lies between ``boundary[slot]`` and ``boundary[slot + 1]``. ``slot : (molecule, 3)`` is a
-    view into the events. ``last_slot_*`` is the number of slots less one.
+    ``row : (cell * stride,)``: each cell's number of molecules, then their indices. ``boundary : (size,
+    axis, slot)`` [length], ``first`` and ``span : (size, axis, slot)``: the first cell, and the number of
+    cells, that a sphere of that size overlaps when its centre lies between ``boundary[slot]`` and
+    ``boundary[slot + 1]``. ``slot : (molecule, 3)`` is a view into the events. ``last_slot_*`` is the
+    number of slots less one.
     """
 
     row: Any
@@ -100,10 +132,10 @@ class Calendar(NamedTuple):
 class Walls(NamedTuple):
     """The six walls, in the order x low, x high, y low, y high, z low, z high.
 
-    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, their temperatures as polygons in time: wall w has the
-    points ``schedule[w] <= k < schedule[w + 1]`` of ``schedule_time`` [time] and ``schedule_kT`` [energy]. ``piston`` holds the
-    ceiling's position [length] and velocity at a time [time]: (position, velocity, time). ``epoch`` is the time at
-    which all clocks read zero.
+    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, their temperatures as polygons in time:
+    wall w has the points ``schedule[w] <= k < schedule[w + 1]`` of ``schedule_time`` [time] and
+    ``schedule_kT`` [energy]. ``piston`` holds the ceiling's position [length] and velocity at a time
+    [time]: (position, velocity, time). ``epoch`` is the time at which all clocks read zero.
     """
 
     law: Any
@@ -118,11 +150,12 @@ class Walls(NamedTuple):
 class Tallies(NamedTuple):
     """What has been counted since the start.
 
-    ``count : (5,)`` contacts, cells entered, cells left, stale predictions, wall hits; ``impulse``, ``heat``, ``hits``,
-    ``work : (wall,)`` [momentum, energy, 1, energy]: what each wall took up as normal impulse (outward), gave as heat, how
-    often it was hit, what it did as work; ``virial : (layer,)`` [energy]: sum of r . dp over contacts by height;
-    ``layer_scale`` [1/length]; ``random : (1,)`` state of the random numbers; ``progress : (2,)`` a time [time], and the events
-    since: many in no time are a pile-up.
+    ``count : (5,)`` contacts, cells entered, cells left, stale predictions, wall hits; ``impulse``,
+    ``heat``, ``hits``, ``work : (wall,)`` [momentum, energy, 1, energy]: what each wall took up as normal
+    impulse (outward), gave as heat, how often it was hit, what it did as work; ``virial : (layer,)``
+    [energy]: sum of r . dp over contacts by height; ``layer_scale`` [1/length]; ``random : (1,)`` state
+    of the random numbers; ``progress : (2,)`` a time [time], and the events since: many in no time are a
+    pile-up.
     """
 
     count: Any

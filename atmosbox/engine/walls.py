@@ -1,9 +1,10 @@
 r"""What walls do: one law each.
 
-A **specular** wall turns the normal velocity round. A **periodic** pair of walls is none: who leaves on one side enters on the
-other. A **heat bath** forgets the molecule and emits one at its own temperature: the normal velocity is Rayleigh, because
-fast molecules arrive more often, :math:`p(v) \propto v \exp(-m v^2 / 2 k T)`; the tangential ones are Gaussian. A **piston** is
-a specular wall that moves at velocity u: :math:`v' = -v + 2 u`, which does the work that it should.
+A **specular** wall turns the normal velocity round. A **periodic** pair of walls is none: who leaves on
+one side enters on the other. A **heat bath** forgets the molecule and emits one at its own temperature:
+the normal velocity is Rayleigh, because fast molecules arrive more often, :math:`p(v) \propto v \exp(-m
+v^2 / 2 k T)`; the tangential ones are Gaussian. A **piston** is a specular wall that moves at velocity u:
+:math:`v' = -v + 2 u`, which does the work that it should.
 """
 
 import math
@@ -18,7 +19,17 @@ from atmosbox.engine.refusal import RefusedError
 from atmosbox.engine.schedule import Schedule, as_schedule
 from atmosbox.engine.state import Walls
 
-__all__ = ["WALL_NAMES", "HeatBath", "Periodic", "Piston", "Specular", "Wall", "new_walls", "resolve_wall_hit", "wall_kT"]
+__all__ = [
+    "WALL_NAMES",
+    "HeatBath",
+    "Periodic",
+    "Piston",
+    "Specular",
+    "Wall",
+    "new_walls",
+    "resolve_wall_hit",
+    "wall_kT",
+]
 
 SPECULAR, PERIODIC, HEAT_BATH, PISTON = 0, 1, 2, 3
 WALL_NAMES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
@@ -52,7 +63,10 @@ class HeatBath:
 
 @dataclass(frozen=True)
 class Piston:
-    """A ceiling that moves at a velocity [length/time] that its driver may change (see `ParcelSet.set_piston_velocity`)."""
+    """A ceiling that moves at a velocity [length/time], which a driver may change.
+
+    See `ParcelSet.set_piston_velocity`.
+    """
 
     velocity: float = 0.0
 
@@ -117,7 +131,8 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     for axis in range(3):
         pair = laws.law[2 * axis : 2 * axis + 2]
         if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
-            raise RefusedError(f"walls {WALL_NAMES[2 * axis]} and {WALL_NAMES[2 * axis + 1]} must both be periodic or neither")
+            low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
+            raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
     flat = [corner for corners in laws.corners for corner in corners]
     start = np.concatenate([[0], np.cumsum([len(corners) for corners in laws.corners])])
     return Walls(
@@ -132,7 +147,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
 
 
 @kernel
-def wall_kT(walls: Any, wall: int, time: float) -> float:
+def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
     """Return the temperature of a wall [energy] at a time [time] since the start.
 
     Examples

@@ -94,9 +94,7 @@ def headline(dataset: xr.Dataset, name: str) -> str:
         shown = of_difference(shown)
     value = float(convert(value, unit, shown, name=name, difference=compared))
     error = float(convert(error, unit, shown, name=name, difference=True))
-    return (
-        f"{title} = {number(value, error, signed=compared)} {'' if shown == '1' else spelled(shown)}".rstrip()
-    )
+    return f"{title} = {number(value, error, signed=compared)} {'' if shown == '1' else spelled(shown)}".rstrip()
 
 
 def number(value: float, error: float = math.nan, *, signed: bool = False) -> str:

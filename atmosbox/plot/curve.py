@@ -67,9 +67,7 @@ def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
             labels = [str(each) for each in np.char.decode(dataset[dimension].values.astype("S"))]
             if label in labels:
                 return variable.isel({dimension: labels.index(label)})
-    raise FileError(
-        f"The variable {name!r} of the file has no part {label!r}, which its figure needs: {_AGAIN}."
-    )
+    raise FileError(f"The variable {name!r} of the file has no part {label!r}, which its figure needs: {_AGAIN}.")
 
 
 def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
@@ -113,10 +111,8 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
     (name, unit), other = axes if measured_is_x else axes[::-1]
     along = _values(dataset, *other)
-    if line.minus is None:
-        measured = _values(dataset, name, unit)
-    else:
-        measured = _misfit(dataset, name, line.minus, unit)
+    plain = line.minus is None
+    measured = _values(dataset, name, unit) if plain else _misfit(dataset, name, str(line.minus), unit)
     error = None if line.error is None else _values(dataset, line.error, unit, difference=True)
     try:
         along, measured = np.broadcast_arrays(np.atleast_1d(along), measured)

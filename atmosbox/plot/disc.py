@@ -27,9 +27,7 @@ _MOST_SEGMENTS = 6000
 _LONGEST_STEP = 0.1
 
 
-def draw_discs(
-    axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme
-) -> list[tuple[tuple[Artist, ...], str]]:
+def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
     """Draw the last frame of a flat scene: box, discs, and where they come from.
 
     Parameters
@@ -72,22 +70,19 @@ def draw_discs(
     ... )
     >>> axes = Figure().add_subplot()
     >>> [label for _, label in draw_discs(axes, Panel("discs", "The box"), dataset, THEMES["notes"])]
-    ['light', 'heavy: 4 × the mass']
+    ['light half', 'heavy half: 4 × the mass']
     """
     unit = panel.x_unit or "nm"
     position, velocity = (
-        read(dataset, name).transpose("elapsed_time", "molecule", "axis")
-        for name in ("disc_position", "disc_velocity")
+        read(dataset, name).transpose("elapsed_time", "molecule", "axis") for name in ("disc_position", "disc_velocity")
     )
     plane = _plane(position.values)
-    places = convert(
-        position.values[:, :, plane], str(position.attrs.get("units", "m")), unit, name="disc_position"
-    )
+    places = convert(position.values[:, :, plane], str(position.attrs.get("units", "m")), unit, name="disc_position")
     diameter = read(dataset, "disc_diameter")
     sizes = convert(diameter.values, str(diameter.attrs.get("units", "m")), unit, name="disc_diameter")
     box = _box(dataset, places, sizes, plane, unit)
     mass = read(dataset, "disc_mass").values
-    heavy = mass > (mass.min() + mass.max()) / 2
+    heavy = _heavy_half(mass)
 
     _draw_trails(axes, places, float(np.min(box[1] - box[0])), theme)
     speed = np.linalg.norm(velocity.values, axis=2)
@@ -176,14 +171,18 @@ def _draw_trails(axes: Axes, places: NDArray[np.float64], box: float, theme: The
     segments = np.stack((path[:-1], path[1:]), axis=2).reshape(-1, 2, 2)
     alpha = np.repeat(np.linspace(0.1, 0.8, frames), places.shape[1])
     colours = np.column_stack((np.tile(to_rgb(FAINT), (alpha.size, 1)), alpha))
-    axes.add_collection(
-        LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0)
-    )
+    axes.add_collection(LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0))
 
 
-def _entries(
-    heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme
-) -> list[tuple[tuple[Artist, ...], str]]:
+def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which discs are of the heavier half; none if all are alike."""
+    heavy = np.zeros(mass.size, dtype=bool)
+    if mass.size and mass.min() < mass.max():
+        heavy[np.argsort(mass, kind="stable")[mass.size // 2 :]] = True
+    return heavy
+
+
+def _entries(heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
     """Return what the legend says of two kinds of discs, nothing if they are all alike."""
     if not heavy.any():
         return []
@@ -196,6 +195,6 @@ def _entries(
         )  # fmt: skip
 
     return [
-        ((disc(1.4, theme.line / 3),), "light"),
-        ((disc(2.2, theme.line),), f"heavy: {ratio:.3g} × the mass"),
+        ((disc(1.4, theme.line / 3),), "light half"),
+        ((disc(2.2, theme.line),), f"heavy half: {ratio:.2g} × the mass"),
     ]

@@ -89,9 +89,7 @@ def draw(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[En
     return entries
 
 
-def _line(
-    axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int
-) -> tuple[Artist, ...]:
+def _line(axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int) -> tuple[Artist, ...]:
     x, y, error = values
     style = _style(line.role, theme, index) | {"zorder": _ORDER[line.role]}
     measured = line.role == "data"
@@ -132,9 +130,7 @@ def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], inde
     return (cast(Artist, bars),)
 
 
-def _steps(
-    axes: Axes, panel: Panel, line: Line, dataset: xr.Dataset, theme: Theme, index: int
-) -> tuple[Artist, ...]:
+def _steps(axes: Axes, panel: Panel, line: Line, dataset: xr.Dataset, theme: Theme, index: int) -> tuple[Artist, ...]:
     """Draw a histogram, between the bounds of its bins."""
     x, y, error = curve(dataset, panel, line)
     colour = DATA_COLOURS[index % len(DATA_COLOURS)]
@@ -167,11 +163,7 @@ def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= _MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
     axes.autoscale_view()
-    if (
-        panel.kind == "line"
-        and panel.x_scale == "linear"
-        and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]
-    ):
+    if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:
         axes.set_xlim(left=0.0)
     if panel.kind == "histogram":
         axes.set_ylim(bottom=0.0, top=axes.get_ylim()[1] * 1.05)

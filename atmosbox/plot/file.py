@@ -69,13 +69,9 @@ def save(
     path, kind = _named(Path(path), format)
     find(theme)
     if path.is_dir():
-        raise FileError(
-            f"{path} is a folder: name the file of the figure, {path / f'figure.{kind}'} for instance."
-        )
+        raise FileError(f"{path} is a folder: name the file of the figure, {path / f'figure.{kind}'} for instance.")
     if not path.parent.is_dir():
-        raise FileError(
-            f"The folder {path.parent} for the figure does not exist: make it first, or name another one."
-        )
+        raise FileError(f"The folder {path.parent} for the figure does not exist: make it first, or name another one.")
     if path.exists() and not force:
         raise FileError(f"{path} exists already: add --force to replace it, or name another file.")
     _write(path, _render(dataset, kind, theme))
@@ -90,9 +86,7 @@ def _named(path: Path, format: str | None) -> tuple[Path, str]:
         problem = "is unknown" if kind else "is not given"
         raise SettingError("format", kind or None, problem, "give a file name or --format of png, svg or pdf")
     if suffix in FORMATS and suffix != kind:
-        raise SettingError(
-            "format", kind, f"does not go with the file name {path.name}", "leave one of the two out"
-        )
+        raise SettingError("format", kind, f"does not go with the file name {path.name}", "leave one of the two out")
     return (path if suffix == kind else path.with_name(f"{path.name}.{kind}")), kind
 
 
@@ -121,9 +115,5 @@ def _write(path: Path, content: bytes) -> None:
     except OSError as error:
         part.unlink(missing_ok=True)
         if error.errno == errno.ENOSPC:
-            raise DiskFullError(
-                f"The disk is full, and {path} was not written: make room and try again."
-            ) from error
-        raise FileError(
-            f"{path} cannot be written ({error.strerror}): name a file in another folder."
-        ) from error
+            raise DiskFullError(f"The disk is full, and {path} was not written: make room and try again.") from error
+        raise FileError(f"{path} cannot be written ({error.strerror}): name a file in another folder.") from error

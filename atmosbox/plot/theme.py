@@ -68,9 +68,7 @@ class Theme:
 
 
 THEMES = {
-    "notes": Theme(
-        "notes", (3.5, 3.5), (7.2, 4.5), 8.5, 9.5, 8.0, 1.2, 3.5, 150.0, heading=False, grows=True
-    ),
+    "notes": Theme("notes", (3.5, 3.5), (7.2, 4.5), 8.5, 9.5, 8.0, 1.2, 3.5, 150.0, heading=False, grows=True),
     "slides": Theme(
         "slides", (40 / 3, 7.5), (40 / 3, 7.5), 16.0, 18.0, 12.0, 2.4, 7.0, 96.0, heading=True, grows=False
     ),

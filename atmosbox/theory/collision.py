@@ -259,9 +259,10 @@ def collision_rate_between(
 def contact_share(sides: ArrayLike, diameter: float, molecules: int) -> float:
     r"""Return the share of contacts that a box with walls leaves of those in open space.
 
-    Of the places on a sphere of one diameter around a molecule where a partner could touch it, some lie beyond a wall. With
-    :math:`s_i = \sigma / L_i`, for sides L that the centres can reach, and orientations n of all directions alike, the share is
-    the mean of :math:`\prod (1 - |n_i| s_i)`; and a molecule has N - 1 partners, not N.
+    Of the places on a sphere of one diameter around a molecule where a partner could touch it, some lie
+    beyond a wall. With :math:`s_i = \sigma / L_i`, for sides L that the centres can reach, and
+    orientations n of all directions alike, the share is the mean of :math:`\prod (1 - |n_i| s_i)`; and a
+    molecule has N - 1 partners, not N.
 
     Parameters
     ----------

@@ -1,0 +1,124 @@
+"""What a box may be given: every number checked once, with a sentence for every refusal."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine.walls import HEAT_BATH, PISTON, WALL_NAMES
+
+__all__ = ["column", "inside", "matrix", "natural_time", "sides_of"]
+
+Array = NDArray[np.float64]
+
+
+def matrix(values: ArrayLike, name: str) -> Array:
+    """Return three finite numbers per molecule, or refuse.
+
+    Examples
+    --------
+    >>> matrix([[1, 2, 3]], "position")
+    array([[1., 2., 3.]])
+    """
+    try:
+        array = np.array(values, np.float64)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
+    if array.size == 0:
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise RefusedError(f"{name} has shape {array.shape}: give three numbers per molecule")
+    if not np.isfinite(array).all():
+        i = int(np.argmax(~np.isfinite(array).all(axis=1)))
+        raise RefusedError(f"{name} of molecule {i} is not finite: give finite numbers")
+    return array
+
+
+def column(values: ArrayLike, n: int, name: str, *, above: float | None = None, least: float | None = None) -> Array:
+    """Return one finite number per molecule within its limits, or refuse.
+
+    Examples
+    --------
+    >>> column(1.0, 3, "mass", above=0.0)
+    array([1., 1., 1.])
+    """
+    try:
+        array = np.array(values, np.float64)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} holds something that is not a number") from None
+    if array.ndim > 1 or (array.ndim == 1 and array.size != n):
+        raise RefusedError(f"{name} has shape {array.shape}: give one number, or one for each of {n} molecules")
+    bad = ~np.isfinite(array)
+    if above is not None:
+        bad |= ~(array > above)
+    if least is not None:
+        bad |= ~(array >= least)
+    if bad.any():
+        value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
+        limit = f"above {above:g}" if above is not None else f"{least:g} or above"
+        raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
+    return np.broadcast_to(array, (n,)).copy()
+
+
+def sides_of(length: Any) -> Array:
+    """Return the three sides of a box, or refuse.
+
+    Examples
+    --------
+    >>> sides_of((1, 2, 3))
+    array([1., 2., 3.])
+    """
+    try:
+        sides = np.array(length, np.float64)
+    except (TypeError, ValueError):
+        sides = np.zeros(0)
+    if sides.shape != (3,) or not (np.isfinite(sides).all() and (sides > 0).all()):
+        raise RefusedError(f"length = {length!r}: give three sides, each above 0")
+    return sides
+
+
+def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, bool]) -> Array:
+    """Return the centres, those that rounding has put into a wall moved out of it; refuse what stands outside.
+
+    Examples
+    --------
+    >>> inside(np.array([[1.0, 1.0, 1.0]]), np.ones(1), np.array([2.0, 2.0, 2.0]), (False, False, False))
+    array([[1., 1., 1.]])
+    """
+    radius = 0.5 * diameter
+    x = x.copy()
+    for axis in range(3):
+        if periodic[axis]:
+            continue
+        slack = 1e-12 * sides[axis]
+        low = x[:, axis] < radius - slack
+        high = x[:, axis] > sides[axis] - radius + slack
+        if (low | high).any():
+            i = int(np.argmax(low | high))
+            wall = WALL_NAMES[2 * axis + (0 if low[i] else 1)]
+            raise RefusedError(
+                f"molecule {i} at {'xyz'[axis]} = {x[i, axis]:.6g} reaches through wall {wall}: its centre must lie "
+                f"between {radius[i]:.6g} and {sides[axis] - radius[i]:.6g}"
+            )
+        x[:, axis] = np.clip(x[:, axis], radius, sides[axis] - radius)
+    return x
+
+
+def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
+    """Return the time in which a molecule passes its neighbour's place [time]."""
+    spacing = float(np.cbrt(math.prod(sides) / max(n, 1)))
+    speeds = [math.sqrt(float(np.mean(np.sum(v * v, axis=1))))] if n else []
+    if n:
+        speeds += [
+            math.sqrt(float(kT) / float(mass.mean()))
+            for kT, law in zip(walls.schedule_kT[walls.schedule[:-1]], walls.law, strict=True)
+            if law == HEAT_BATH
+        ]
+    if gravity > 0.0:
+        speeds.append(math.sqrt(gravity * spacing))
+    if walls.law[5] == PISTON:
+        speeds.append(abs(float(walls.piston[1])))
+    fastest = max(speeds, default=0.0)
+    return spacing / fastest if fastest > 0.0 and math.isfinite(spacing / fastest) else 1.0

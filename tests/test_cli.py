@@ -1,0 +1,782 @@
+"""The command line: what each command prints and where, how it ends, and what it leaves on the disk."""
+
+import io
+import json
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import typer
+import xarray as xr
+from typer.testing import CliRunner
+
+import atmosbox
+from atmosbox import output, runner, scenarios
+from atmosbox.cli import app, check, progress, report, table, terminal
+from atmosbox.cli.command import Format, Theme, _completed
+from atmosbox.cli.request import Request
+from atmosbox.cli.run import FIGURES
+from atmosbox.errors import EngineError
+from atmosbox.settings import Headline
+
+ROOT = Path(__file__).resolve().parents[1]
+COMMANDS = ("list", "info", "run", "plot", "check")
+SCENE = "elastic-collisions"
+SHORT = ("run", SCENE, "--set", "duration=2s")  # a fraction of a second
+LONG = ("run", "temperature", "--set", "duration=4000ns")  # minutes
+HEAVY = ("numba", "xarray", "netCDF4", "matplotlib", "metpy", "pint", "scipy", "pandas")
+
+posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and terminals are those of POSIX")
+
+
+def atmosbox_in_process(*words, **environment):
+    """Run a command in this process; where it is no terminal, its width has no end."""
+    return CliRunner().invoke(app, list(words), env={"COLUMNS": None, **environment})
+
+
+def command_line(*words, **options):
+    """Return the arguments of subprocess that run a command in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **options.pop("env", {})}
+    return {"args": [sys.executable, "-m", "atmosbox", *words], "env": environment, "text": True, **options}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """The file of a short run."""
+    path = tmp_path_factory.mktemp("finished") / "short.nc"
+    result = atmosbox_in_process(*SHORT, "--out", str(path))
+    assert result.exit_code == 0, result.output
+    return path
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def no_computing(monkeypatch):
+    """Fail if anything is computed."""
+
+    def execute(*args, **kwargs):
+        raise AssertionError("a run was begun")
+
+    monkeypatch.setattr(runner, "execute", execute)
+
+
+def refused(result, status=2):
+    """Return the one sentence with which a command was refused."""
+    assert result.exit_code == status, result.output
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("error: ")
+    return line
+
+
+def planned(*words):
+    """Return the settings with which a run would start."""
+    result = atmosbox_in_process("run", *words, "--dry-run", "--json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+# Help
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_a_command_has_two_or_more_examples(command):
+    result = atmosbox_in_process(command, "--help")
+    assert result.exit_code == 0
+    _, found, examples = result.stdout.partition("Examples:\n")
+    assert found
+    lines = examples.strip().splitlines()
+    assert len(lines) >= 2
+    assert all(line.strip().startswith(f"atmosbox {command}") for line in lines)
+
+
+@pytest.mark.parametrize("command", ["info", "run", "plot", "check"])
+def test_the_examples_of_a_help_use_options_that_exist(command):
+    text = atmosbox_in_process(command, "--help").stdout
+    options, _, examples = text.partition("Examples:")
+    used = set(re.findall(r"--[a-z-]+", examples))
+    assert used <= set(re.findall(r"--[a-z-]+", options))
+
+
+@pytest.mark.parametrize("width", ["40", "80", "200"])
+def test_the_help_fits_every_terminal(width):
+    for command in COMMANDS:
+        assert "Examples:" in atmosbox_in_process(command, "--help", COLUMNS=width).stdout
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["--version"], ["list"]])
+def test_what_must_be_there_at_once_imports_nothing_heavy(words):
+    command = command_line(*words, capture_output=True)
+    command["args"][1:1] = ["-X", "importtime"]
+    run = subprocess.run(**command, check=True)
+    imported = {line.rpartition("|")[2].strip().partition(".")[0] for line in run.stderr.splitlines()}
+    assert "typer" in imported
+    assert imported.isdisjoint(HEAVY)
+
+
+def test_the_version_is_that_of_the_package():
+    assert atmosbox_in_process("--version").stdout == f"atmosbox {atmosbox.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", SCENE, "--no-such-option"],
+        ["no-such-command"],
+        ["info"],
+        ["plot"],
+        ["plot", "x.nc", "--theme", "z"],
+    ],
+)
+def test_a_wrong_usage_ends_with_2(words, folder):
+    result = atmosbox_in_process(*words)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert list(folder.iterdir()) == []
+
+
+# The scenes
+
+
+def test_list_has_every_scene_with_its_first_sentence():
+    lines = atmosbox_in_process("list").stdout.splitlines()
+    for name in scenarios.names():
+        (line,) = (line for line in lines if line.split()[:1] == [name])
+        assert (scenarios.load(name).__doc__ or "").split("\n")[0] in line
+
+
+def test_list_names_prints_the_names_alone():
+    assert tuple(atmosbox_in_process("list", "--names").stdout.split()) == scenarios.names()
+
+
+def test_list_json_is_one_object():
+    listed = json.loads(atmosbox_in_process("list", "--json").stdout)["scenes"]
+    assert tuple(scene["name"] for scene in listed) == scenarios.names()
+    assert all(scene["summary"] for scene in listed)
+
+
+def test_the_shell_completes_the_names_of_scenes():
+    assert _completed("elas") == [SCENE]
+    assert set(_completed("")) == set(scenarios.names())
+
+
+@pytest.mark.parametrize("width", [None, "40", "80", "200"])
+@pytest.mark.parametrize("name", scenarios.names())
+def test_info_shows_story_facts_and_every_parameter_at_every_width(name, width):
+    card = runner.card(runner.prepare(name, {}))
+    shown = atmosbox_in_process("info", name, COLUMNS=width).stdout
+    words = " ".join(shown.split())
+    assert " ".join(card.story.split()) in words
+    for parameter in card.parameters:
+        assert f"\n{parameter.name}" in shown
+        assert parameter.allowed in words
+    for fact, value in card.facts:
+        assert f"\n{fact}" in shown
+        assert value in words
+    if width is not None:
+        readable = max(int(width), 50)  # nothing is cut, and some words are long
+        assert max(map(len, shown.splitlines())) <= readable
+
+
+def test_info_json_has_what_a_program_needs():
+    card = json.loads(atmosbox_in_process("info", SCENE, "--json").stdout)
+    assert {"scene", "title", "story", "facts", "parameters"} == set(card)
+    assert {"name", "unit", "default", "low", "high", "choices", "kind", "help"} == set(card["parameters"][0])
+
+
+def test_info_of_an_unknown_scene_offers_the_nearest():
+    assert SCENE in refused(atmosbox_in_process("info", "elastic-colisions"))
+
+
+# A run
+
+
+def test_a_run_prints_its_table_its_ledger_its_cost_its_file_and_what_to_type_next(folder):
+    result = atmosbox_in_process(*SHORT)
+    assert result.exit_code == 0, result.output
+    assert [path.name for path in folder.iterdir()] == [f"{SCENE}.nc"]
+    dataset = output.read(f"{SCENE}.nc")
+    for headline in runner.headlines_of(dataset):
+        assert headline.label in result.stdout
+    for text in ("within error?", "±", "energy ledger closes to ", " collisions in ", " a second"):
+        assert text in result.stdout
+    assert result.stdout.endswith(f"\nfile: {SCENE}.nc\nnext: atmosbox plot {SCENE}.nc\n")
+
+
+def test_the_history_of_the_file_has_the_exact_command(folder):
+    atmosbox_in_process(*SHORT, "--out", "my run.nc")
+    expected = "atmosbox run elastic-collisions --set duration=2s --out 'my run.nc'"
+    assert output.read("my run.nc").attrs["history"].endswith(f": {expected}")
+
+
+def test_json_is_one_object_and_says_the_same(folder):
+    result = atmosbox_in_process(*SHORT, "--json")
+    found = json.loads(result.stdout)
+    headlines = runner.headlines_of(output.read(f"{SCENE}.nc"))
+    assert [one["name"] for one in found["headlines"]] == [one.name for one in headlines]
+    assert [one["agrees"] for one in found["headlines"]] == [one.agrees for one in headlines]
+    assert found["file"] == f"{SCENE}.nc"
+    assert found["status"] == "complete"
+    assert found["settings"]["duration"] == 2.0
+    assert found["ledger"]["closes"] is True
+    assert found["collisions"] > 0
+    assert found["next"] == f"atmosbox plot {SCENE}.nc"
+
+
+def test_quiet_prints_the_path_alone(folder):
+    result = atmosbox_in_process(*SHORT, "--quiet")
+    assert (result.stdout, result.stderr) == (f"{SCENE}.nc\n", "")
+
+
+def test_a_file_that_is_there_is_kept_and_both_ways_out_are_named(folder, no_computing):
+    Path(f"{SCENE}.nc").write_text("mine", encoding="utf-8")
+    sentence = refused(atmosbox_in_process(*SHORT))
+    assert "--force" in sentence
+    assert "--out" in sentence
+    assert Path(f"{SCENE}.nc").read_text(encoding="utf-8") == "mine"
+
+
+def test_force_replaces_a_file(folder):
+    Path(f"{SCENE}.nc").write_text("mine", encoding="utf-8")
+    assert atmosbox_in_process(*SHORT, "--force").exit_code == 0
+    assert output.read(f"{SCENE}.nc").attrs["atmosbox_status"] == "complete"
+
+
+def test_what_an_earlier_run_left_is_not_replaced_in_silence(folder):
+    Path(f"{SCENE}.part.nc").write_text("left", encoding="utf-8")
+    assert f"{SCENE}.part.nc is left from a run that was stopped" in atmosbox_in_process(*SHORT).stderr
+
+
+def test_a_dry_run_shows_everything_and_writes_nothing(folder, no_computing):
+    result = atmosbox_in_process(*SHORT, "--dry-run")
+    assert result.exit_code == 0
+    card = runner.card(runner.prepare(SCENE, {"duration": "2 s"}))
+    for fact, value in card.facts:
+        assert fact in result.stdout
+        assert value in result.stdout
+    for parameter in card.parameters:
+        assert parameter.name in result.stdout
+    assert re.search(r"^duration +2 s +set$", result.stdout, re.MULTILINE)
+    assert f"file: {SCENE}.nc (not written" in result.stdout
+    assert list(folder.iterdir()) == []
+
+
+def test_verbose_says_on_stderr_what_is_run(folder):
+    result = atmosbox_in_process(*SHORT, "--verbose", "--json")
+    assert json.loads(result.stdout)["scene"] == SCENE
+    assert "duration" in result.stderr
+
+
+def test_the_molecules_are_saved_on_request(folder):
+    atmosbox_in_process(*SHORT, "--save-molecules")
+    assert "molecule_position" in output.read(f"{SCENE}.nc")
+
+
+def test_a_scene_of_ones_own_runs_by_its_path_and_its_prints_are_no_result(folder):
+    source = Path(scenarios.load(SCENE).__file__).read_text(encoding="utf-8")
+    Path("my scene.py").write_text(source + "\nprint('hello from the scene')\n", encoding="utf-8")
+    result = atmosbox_in_process("run", "./my scene.py", "--set", "duration=2s", "--json")
+    assert json.loads(result.stdout)["next"] == "atmosbox plot 'my scene.nc'"
+    assert "hello from the scene" in result.stderr
+
+
+# Where settings come from
+
+
+def test_seed_counts_before_set_before_config_before_an_earlier_run(folder, finished):
+    Path("a.toml").write_text('[settings]\nduration = "3 s"\nseed = 3\n', encoding="utf-8")
+    earlier = ("--from", str(finished))
+    assert planned(*earlier)["settings"]["duration"] == 2.0
+    assert planned(*earlier)["scene"] == SCENE
+    config = (*earlier, "--config", "a.toml")
+    assert planned(*config)["settings"]["duration"] == 3.0
+    typed = (*config, "--set", "duration=5s", "--set", "seed=5")
+    assert planned(*typed)["settings"]["duration"] == 5.0
+    assert planned(*typed)["settings"]["seed"] == 5
+    assert planned(*typed, "--seed", "7")["settings"]["seed"] == 7
+
+
+def test_a_setting_may_be_spelled_with_either_dash_in_every_place(folder):
+    Path("a.toml").write_text('scene = "lifting_dry"\n[settings]\ntop-pressure = 400\n', encoding="utf-8")
+    assert planned("--config", "a.toml", "--set", "top_pressure=500hPa")["settings"]["top_pressure"] == 500.0
+    assert planned("--config", "a.toml")["file"] == "lifting-dry.nc"
+
+
+def test_an_earlier_run_is_repeated_bit_for_bit(folder, finished):
+    assert atmosbox_in_process("run", "--from", str(finished), "--out", "again.nc").exit_code == 0
+    first, again = output.read(finished), output.read("again.nc")
+    xr.testing.assert_equal(first, again)
+
+
+def test_an_earlier_run_that_saved_its_molecules_does_so_again(folder):
+    atmosbox_in_process(*SHORT, "--save-molecules")
+    assert Request(None, source=f"{SCENE}.nc").gather()[2] is True
+
+
+def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):
+    monkeypatch.setattr(atmosbox, "__version__", "99.0")
+    result = atmosbox_in_process("run", "--from", str(finished), "--dry-run")
+    assert result.exit_code == 0
+    assert "note: " in result.stderr
+
+
+@pytest.mark.parametrize("scene", ["./evil.py", "evil.py", "folder/evil"])
+def test_a_settings_file_never_makes_a_program_run(folder, scene):
+    Path("evil.py").write_text("open('ran', 'w')", encoding="utf-8")
+    Path("a.toml").write_text(f'scene = "{scene}"', encoding="utf-8")
+    assert f"atmosbox run {scene} --config a.toml" in refused(
+        atmosbox_in_process("run", "--config", "a.toml")
+    )
+    assert not Path("ran").exists()
+
+
+@pytest.mark.parametrize("option", ["--from", "--config"])
+def test_a_file_for_another_scene_is_refused(folder, finished, option):
+    Path("a.toml").write_text(f'scene = "{SCENE}"', encoding="utf-8")
+    path = str(finished) if option == "--from" else "a.toml"
+    sentence = refused(atmosbox_in_process("run", "temperature", option, path))
+    assert SCENE in sentence
+    assert "temperature" in sentence
+
+
+# Refusals
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["run"], "No scene"),
+        (["run", "no-such-scene"], "atmosbox list"),
+        (["run", "./no_such.py"], "no_such.py"),
+        (["run", SCENE, "--set", "duration"], '"="'),
+        (["run", SCENE, "--set", "duration="], "value"),
+        (["run", SCENE, "--set", "durration=2s"], "duration"),
+        (["run", SCENE, "--set", "duration=2degC"], "--set duration="),
+        (["run", SCENE, "--set", "duration=nan"], "duration"),
+        (["run", SCENE, "--seed", "x"], "--set seed="),
+        (["run", SCENE, "--seed", "-1"], "seed"),
+        (["run", SCENE, "--out", "no/such/folder/x.nc"], "mkdir"),
+        (["run", SCENE, "--out", ""], "folder"),
+        (["run", SCENE, "--out", "lift.png"], "atmosbox plot lift.nc --out lift.png"),
+        (["run", SCENE, "--config", "no.toml"], "no.toml"),
+        (["run", "--from", "no.nc"], "no.nc"),
+        (["run", "--from", "foreign.nc"], "foreign.nc"),
+        (["plot", "no.nc"], "no.nc"),
+        (["plot", "foreign.nc"], "foreign.nc"),
+        (["check", "no.nc"], "no.nc"),
+        (["check", "."], "folder"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_leaves_nothing_behind(folder, no_computing, words, said):
+    Path("foreign.nc").write_bytes(b"\x89HDF and then nothing")
+    assert said in refused(atmosbox_in_process(*words))
+    assert [path.name for path in folder.iterdir()] == ["foreign.nc"]
+
+
+def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):
+    attributes = output.global_attributes({"scene": SCENE}, title="A box", command="a test")
+    output.write(xr.Dataset(attrs=attributes), "old.nc")
+    assert "does not say" in refused(atmosbox_in_process("run", "--from", "old.nc"))
+
+
+@posix
+def test_a_run_that_could_not_be_saved_is_not_begun(folder, no_computing, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda *args, **kwargs: False)
+    assert "folder" in refused(atmosbox_in_process(*SHORT))
+
+
+# Failures
+
+
+def failing(monkeypatch, error):
+    """Let every run fail."""
+
+    def execute(*args, **kwargs):
+        raise error
+
+    monkeypatch.setattr(runner, "execute", execute)
+
+
+def test_a_failed_run_ends_with_1(folder, monkeypatch):
+    failing(monkeypatch, EngineError("Molecule 7 left the box at 0.3 ns."))
+    assert refused(atmosbox_in_process(*SHORT), 1) == "error: Molecule 7 left the box at 0.3 ns."
+
+
+def test_a_bug_is_one_sentence_and_a_traceback_only_if_asked_for(folder, monkeypatch):
+    failing(monkeypatch, KeyError("x\ny"))
+    sentence = refused(atmosbox_in_process(*SHORT), 1)
+    assert "bug" in sentence
+    assert "KeyError" in sentence
+    assert "--verbose" in sentence
+    result = atmosbox_in_process(*SHORT, "--verbose")
+    assert result.exit_code == 1
+    assert "Traceback (most recent call last)" in result.stderr
+
+
+def test_a_lack_of_memory_is_no_bug(folder, monkeypatch):
+    failing(monkeypatch, MemoryError())
+    assert "fewer molecules" in refused(atmosbox_in_process(*SHORT), 1)
+
+
+def test_a_ledger_that_does_not_close_ends_with_3_and_keeps_the_file(folder, monkeypatch):
+    execute = runner.execute
+    monkeypatch.setattr(runner, "execute", lambda *a, **k: execute(*a, **k)._replace(ledger=1e-3))
+    result = atmosbox_in_process(*SHORT)
+    assert result.exit_code == 3
+    assert "energy ledger does not close" in result.stdout
+    assert f"atmosbox check {SCENE}.nc" in result.stderr
+    assert Path(f"{SCENE}.nc").exists()
+
+
+@pytest.mark.parametrize("place", ["prepare", "execute"])
+def test_ctrl_c_anywhere_ends_with_130_and_without_traceback(folder, monkeypatch, place):
+    def stop(*args, **kwargs):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(runner, place, stop)
+    result = atmosbox_in_process(*SHORT)
+    assert result.exit_code == 130
+    assert (result.stdout, result.stderr) == ("", "stopped\n")
+    assert list(folder.iterdir()) == []
+
+
+def test_a_run_stopped_before_its_first_frame_keeps_nothing_and_says_so(folder, monkeypatch):
+    failing(monkeypatch, runner.Interrupted(None))
+    result = atmosbox_in_process(*SHORT)
+    assert result.exit_code == 130
+    assert "nothing is kept" in result.stderr
+    assert list(folder.iterdir()) == []
+
+
+def stop_after(monkeypatch, fraction):
+    """Let Ctrl-C be pressed when a run is so far."""
+    execute = runner.execute
+
+    def stopped(*args, progress, **kwargs):
+        def watch(done, doing):
+            progress(done, doing)
+            if doing == "running" and done > fraction:
+                raise KeyboardInterrupt
+
+        return execute(*args, progress=watch, **kwargs)
+
+    monkeypatch.setattr(runner, "execute", stopped)
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+
+
+def test_a_stopped_run_says_where_its_frames_are_and_how_to_see_them(folder, monkeypatch):
+    stop_after(monkeypatch, 0.5)
+    result = atmosbox_in_process(*SHORT)
+    assert result.exit_code == 130
+    assert result.stdout == ""
+    assert f"atmosbox plot {SCENE}.part.nc" in result.stderr
+    assert [path.name for path in folder.iterdir()] == [f"{SCENE}.part.nc"]
+    frames = int(re.search(r"(\d+) complete frames", result.stderr)[1])
+    assert output.read(f"{SCENE}.part.nc").sizes["elapsed_time"] == frames > 0
+
+
+@pytest.mark.parametrize("option", ["--json", "--quiet"])
+def test_a_stopped_run_tells_a_program_the_file_it_left(folder, monkeypatch, option):
+    stop_after(monkeypatch, 0.5)
+    result = atmosbox_in_process(*SHORT, option)
+    assert result.exit_code == 130
+    text = json.loads(result.stdout)["file"] if option == "--json" else result.stdout.strip()
+    assert text == f"{SCENE}.part.nc"
+
+
+@posix
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_stops_a_run_and_what_is_complete_is_kept(folder, number, status):
+    process = subprocess.Popen(
+        **command_line(*LONG, "--out", "x.nc", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    )
+    try:
+        deadline = time.monotonic() + 300.0  # the engine may have to be compiled
+        while not Path("x.part.nc").exists() and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.05)
+        process.send_signal(number)
+        out, told = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == status, told
+    assert out == ""
+    assert "Traceback" not in told
+    assert "atmosbox plot x.part.nc" in told
+    assert [path.name for path in folder.iterdir()] == ["x.part.nc"]
+    kept = output.read("x.part.nc")
+    assert kept.attrs["atmosbox_status"] == "interrupted"
+    assert kept.sizes["elapsed_time"] > 0
+
+
+# Streams
+
+
+@posix
+@pytest.mark.parametrize("words", [["list"], ["run", "--help"]])
+def test_a_reader_that_has_seen_enough_is_no_error(words):
+    reader, writer = os.pipe()
+    os.close(reader)
+    run = subprocess.run(**command_line(*words, stdout=writer, stderr=subprocess.PIPE), check=False)
+    os.close(writer)
+    assert run.stderr == ""
+    assert run.returncode in (0, 1)
+
+
+@posix
+def test_a_closed_stdout_is_no_error():
+    line = shlex.join([sys.executable, "-m", "atmosbox", "list"]) + " >&-"
+    options = command_line(stderr=subprocess.PIPE) | {"args": ["sh", "-c", line]}
+    run = subprocess.run(**options, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
+def test_a_result_that_cannot_be_written_is_one_sentence():
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        run = subprocess.run(**command_line("list", stdout=full, stderr=subprocess.PIPE), check=False)
+    assert run.returncode == 1
+    assert run.stderr.startswith("error: ")
+    assert run.stderr.count("\n") == 1
+
+
+class Stream(io.StringIO):
+    """A stream of an encoding, which may be a terminal."""
+
+    def __init__(self, encoding="utf-8", tty=False):
+        super().__init__()
+        self._encoding, self._tty = encoding, tty
+
+    encoding = property(lambda self: self._encoding)
+    errors = property(lambda self: "strict")
+
+    def isatty(self):
+        return self._tty
+
+
+def test_what_an_encoding_lacks_is_spelled_out(monkeypatch):
+    stream = Stream("ascii")
+    monkeypatch.setattr(sys, "stdout", stream)
+    terminal.say("15.0 ± 0.1 (2σ) \udcff 雲")
+    assert stream.getvalue() == "15.0 +- 0.1 (2 sigma) \\udcff \\u96f2\n"
+
+
+def test_json_has_null_for_what_is_no_number(capsys):
+    terminal.say_json({"a": [float("nan"), 1.0], "b": {"c": float("inf")}, "d": "ü"})
+    text = capsys.readouterr().out
+    assert json.loads(text) == {"a": [None, 1.0], "b": {"c": None}, "d": "ü"}
+    assert text.isascii()
+
+
+# Progress
+
+
+def test_a_terminal_shows_how_far_a_run_is_and_no_trace_of_it_is_left(monkeypatch):
+    stream = Stream(tty=True)
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "40")
+    monkeypatch.setenv("NO_COLOR", "1")
+    with progress.progress("a [bold]scene", quiet=False) as show:
+        show(0.25, "running")
+        show(0.5, "running")
+    text = stream.getvalue()
+    assert "a [bold]scene" in text
+    assert "25%" in text
+    assert "50%" in text
+    assert re.search(r"\d:\d\d:\d\d|-:--:--", text)  # the time that remains
+    assert not re.search(r"\x1b\[\d*(;\d+)*m", text)  # no colour
+    assert text.endswith("\x1b[1A\x1b[2K")  # the line is cleared
+
+
+@pytest.mark.parametrize("term", ["dumb", "xterm"])
+def test_elsewhere_a_word_is_said_only_when_it_takes_long(monkeypatch, term):
+    stream = Stream(tty=term == "dumb")
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setenv("TERM", term)
+    monkeypatch.setattr(progress, "DELAY", 0.05)
+    with progress.progress("scene", quiet=False) as show:
+        show(0.0, "checking at once")
+        show(0.0, "compiling the engine, once")
+        show(0.0, "compiling the engine, once")
+        time.sleep(0.5)
+        show(0.5, "running")
+        show(1.0, "done")
+        time.sleep(0.2)
+    assert stream.getvalue() == "scene: compiling the engine, once\n"
+
+
+def test_a_terminal_says_that_the_engine_is_being_compiled(monkeypatch):
+    stream = Stream(tty=True)
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "120")
+    monkeypatch.setattr(progress, "DELAY", 0.05)
+    with progress.progress("scene", quiet=False) as show:
+        show(0.0, "compiling the engine, once")
+        time.sleep(0.5)
+        show(0.5, "running")
+    assert "scene: compiling the engine, once" in stream.getvalue()
+
+
+def test_quiet_shows_no_progress(monkeypatch):
+    stream = Stream(tty=True)
+    monkeypatch.setattr(sys, "stderr", stream)
+    with progress.progress("scene", quiet=True) as show:
+        show(0.5, "running")
+    assert stream.getvalue() == ""
+
+
+# Tables and numbers
+
+
+def a_headline(value=288.1492, error=0.0312, theory=288.0, tolerance=0.0, unit="K", display="degC"):
+    return Headline("t", value, error, theory, tolerance, "the box is small", unit, display, "temperature")
+
+
+@pytest.mark.parametrize("width", [20, 40, 60, 80, 120, terminal.ENDLESS])
+def test_no_value_of_a_result_is_cut_at_any_width(width):
+    wide = a_headline()
+    text = "\n".join(
+        report.headline_lines([wide, a_headline(value=-1e9, error=3e7, unit="s-1", display="s-1")], width)
+    )
+    words = " ".join(text.split())
+    for value in ("14.999 ± 0.031", "14.850", "+0.149 (4.8σ)", "no", "(-1.000 ± 0.030)e9", "0.000e9"):
+        assert value in words
+    assert "…" not in text
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "shown"),
+    [
+        (288.1492, 0.0312, "288.149 ± 0.031"),
+        (12345.0, 1234.0, "12300 ± 1200"),
+        (0.00001234, 0.0000005, "(1.234 ± 0.050)e-5"),
+        (1.0, 1e-20, "1.00000000000 ± 0.00000000000"),
+        (0.0, 0.5, "0.00 ± 0.50"),
+        (15.0, 0.0, "15"),
+        (float("nan"), 0.1, "nan ± 0.1"),
+        (1.0, float("nan"), "1 ± nan"),
+        (float("inf"), float("inf"), "inf ± inf"),
+    ],
+)
+def test_a_measurement_has_the_digits_that_its_error_deserves(value, error, shown):
+    assert table.measurement(value, error) == shown
+
+
+@pytest.mark.parametrize(
+    ("headline", "verdict"),
+    [
+        (a_headline(error=0.1), "yes"),
+        (a_headline(error=0.01), "no"),
+        (a_headline(theory=None), "-"),
+        (a_headline(value=float("nan")), "no"),
+    ],
+)
+def test_the_verdict_is_that_of_the_headline(headline, verdict):
+    assert report.headline_lines([headline], 200)[1].split()[-1] == verdict
+
+
+def test_a_misfit_that_only_the_model_excuses_is_explained():
+    lines = report.headline_lines([a_headline(error=0.01, tolerance=0.5)], 200)
+    assert lines[-1] == "temperature: up to 0.500 K off, for the box is small."
+
+
+def test_a_run_without_headlines_says_why():
+    assert "average" in report.headline_lines([], 80)[0]
+
+
+# Figures
+
+
+def test_plot_puts_the_figure_beside_the_run_and_prints_its_path(folder, finished):
+    shutil.copy(finished, "x.nc")
+    result = atmosbox_in_process("plot", "x.nc", "--format", "svg")
+    assert (result.exit_code, result.stdout) == (0, "x.svg\n"), result.output
+    assert Path("x.svg").read_bytes().startswith(b"<?xml")
+    assert "--force" in refused(atmosbox_in_process("plot", "x.nc", "--format", "svg"))
+    again = atmosbox_in_process("plot", "x.nc", "--out", "x.svg", "--force", "--theme", "slides")
+    assert again.exit_code == 0
+
+
+def test_the_formats_and_themes_are_those_of_the_figures():
+    from atmosbox import plot
+
+    assert tuple(Format) == plot.FORMATS
+    assert tuple(f".{name}" for name in plot.FORMATS) == FIGURES
+    assert set(Theme) == set(plot.THEMES)
+
+
+# Checks
+
+
+def test_check_of_a_sound_file_ends_with_0_and_lists_every_check(finished):
+    result = atmosbox_in_process("check", str(finished))
+    assert result.exit_code == 0, result.output
+    lines = result.stdout.splitlines()
+    assert len(lines) == len(runner.verify(output.read(finished))) + 1
+    assert all(line.startswith("ok ") for line in lines)
+    assert "CF-1.11" in lines[-1]
+
+
+def test_check_json_is_one_object(finished):
+    found = json.loads(atmosbox_in_process("check", str(finished), "--json").stdout)
+    assert found["passed"] is True
+    assert found["conventions"]["passed"] is True
+    assert all(set(one) == {"name", "passed", "sentence"} for one in found["checks"])
+
+
+def test_check_of_a_tampered_file_ends_with_3(folder, finished):
+    dataset = output.read(finished)
+    dataset["kinetic_energy"][-1] *= 1.1
+    dataset["kinetic_energy"].attrs["standard_name"] = "energy_of_my_own"
+    output.write(dataset, "tampered.nc")
+    result = atmosbox_in_process("check", "tampered.nc")
+    assert result.exit_code == 3
+    assert result.stderr == ""
+    failed = [line.split()[1] for line in result.stdout.splitlines() if line.startswith("FAILED")]
+    assert failed[0] == "balance"
+    assert failed[-1] == "conventions"
+
+
+def test_check_says_how_to_get_the_checker_of_conventions(finished, monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda *args, **kwargs: None)
+    result = atmosbox_in_process("check", str(finished))
+    assert result.exit_code == 0
+    assert "pip install 'atmosbox[test]'" in result.stdout
+    assert (
+        json.loads(atmosbox_in_process("check", str(finished), "--json").stdout)["conventions"]["passed"]
+        is None
+    )
+
+
+@posix
+def test_a_broken_checker_of_conventions_is_not_the_files_fault(tmp_path, monkeypatch):
+    broken = tmp_path / "checker"
+    broken.write_text("#!/bin/sh\necho 'no such thing' >&2\nexit 1\n", encoding="utf-8")
+    broken.chmod(0o755)
+    monkeypatch.setattr(shutil, "which", lambda *args, **kwargs: str(broken))
+    found = check.conventions(tmp_path / "x.nc")
+    assert found == (None, "compliance-checker does not work here: no such thing")
+
+
+def test_a_command_that_ends_itself_is_left_alone():
+    @terminal.guarded
+    def command():
+        raise typer.Exit(7)
+
+    with pytest.raises(typer.Exit) as ended:
+        command()
+    assert ended.value.exit_code == 7

@@ -1,0 +1,113 @@
+"""Whatever is typed or stands in a settings file: a run or one sentence, and never a traceback."""
+
+import os
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from atmosbox import runner, scenarios
+from atmosbox.cli import app
+
+NAMES = sorted({p.name for name in scenarios.names() for p in scenarios.load(name).Settings.describe()})
+
+# All that an operating system can pass: any bytes but zero.
+typed = st.one_of(
+    st.text(st.characters(exclude_characters="\0"), max_size=40),
+    st.binary(max_size=20).map(lambda raw: os.fsdecode(raw.replace(b"\0", b""))),
+)
+numbers = st.one_of(
+    st.floats().map(repr),
+    st.integers(-(10**400), 10**400).map(str),
+    st.sampled_from(["nan", "-inf", "1e999", "-0", "0x10", "1_000", "٣", "½", "1,5", "1e-400", "9" * 5000]),
+)
+units = st.sampled_from(
+    ["", "degC", "K", "hPa", " Pa", "km", "nm", "ns", "%", "K/km", "K km-1", "degC**2", "kg", "µm", "°C"]
+)
+values = st.one_of(
+    typed, st.builds(str.__add__, numbers, units), st.sampled_from(["on", "off", "maxwell", ""])
+)
+pairs = st.builds("{}={}".format, st.one_of(st.sampled_from(NAMES), typed), values)
+scenes = st.one_of(st.sampled_from([*scenarios.names(), "lifting_dry"]), typed)
+options = st.one_of(
+    st.tuples(st.just("--set"), st.one_of(pairs, pairs, pairs, typed)),
+    st.tuples(st.just("--seed"), st.one_of(numbers, typed)),
+    st.tuples(st.sampled_from(["--quiet", "--json", "--force", "--save-molecules"])),
+    st.tuples(st.sampled_from(["--from", "--config", "--out", "--no-such-option"]), typed),
+)
+toml_values = st.one_of(
+    st.floats().map(repr),
+    st.integers().map(str),
+    st.sampled_from(["true", "[]", "{}", "1979-05-27", "inf", "nan", "''", '"25degC"', "[[1]]", "0b1"]),
+    values.map(lambda text: '"' + text.replace("\\", "").replace('"', "") + '"'),
+)
+toml_lines = st.one_of(
+    st.builds(
+        "{} = {}".format, st.one_of(st.sampled_from([*NAMES, "scene", "settings.seed"]), typed), toml_values
+    ),
+    st.sampled_from(
+        ["[settings]", "[[settings]]", "[other]", "scene = 'lifting-dry'", "scene = './x.py'", "#"]
+    ),
+)
+config_files = st.one_of(
+    st.binary(max_size=200),
+    st.lists(toml_lines, max_size=6).map(lambda lines: "\n".join(lines).encode("utf-8", "surrogateescape")),
+)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def folder(tmp_path_factory):
+    """An empty folder to be in, where a run computes nothing."""
+    place = tmp_path_factory.mktemp("fuzz")
+    nothing = runner.Outcome(xr.Dataset(), (), 1.0, 1, 0.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        patch.setattr(runner, "execute", lambda *args, **kwargs: nothing)
+        yield place
+
+
+def atmosbox_run(*words):
+    """Run a command and return its status, after making sure that it failed decently if it failed."""
+    result = CliRunner().invoke(app, ["run", *words])
+    assert result.exit_code in (0, 2), result.output
+    assert "Traceback" not in result.output
+    if result.exit_code:
+        assert result.stdout == ""
+        if result.stderr.startswith("error: "):
+            assert result.stderr.count("\n") == 1
+        else:
+            assert result.stderr.startswith("Usage: ")
+    return result.exit_code
+
+
+@settings(max_examples=300)
+@given(scene=scenes, words=st.lists(options, max_size=4))
+def test_no_words_break_the_command_line(folder, scene, words):
+    atmosbox_run(scene, *(word for option in words for word in option))
+    assert list(folder.iterdir()) == []
+
+
+@settings(max_examples=300)
+@given(name=st.sampled_from(scenarios.names()), setting=st.sampled_from(NAMES), value=values)
+def test_no_value_of_a_setting_breaks_the_command_line(folder, name, setting, value):
+    atmosbox_run(name, "--set", f"{setting}={value}")
+    assert list(folder.iterdir()) == []
+
+
+@settings(max_examples=300)
+@given(content=config_files, scene=st.sampled_from(["", *scenarios.names()]))
+def test_no_settings_file_breaks_the_command_line(folder, content, scene):
+    config = Path("a.toml")
+    config.write_bytes(content)
+    try:
+        atmosbox_run(*([scene] if scene else []), "--config", "a.toml")
+        assert [path.name for path in folder.iterdir()] == ["a.toml"]
+    finally:
+        config.unlink()
+
+
+def test_the_fuzz_reaches_a_run(folder):
+    assert atmosbox_run("lifting-dry", "--set", "temperature=20degC", "--seed", "3") == 0
