@@ -1,8 +1,7 @@
 """Datasets to netCDF files and back, with the provenance from which a run can be repeated.
 
 A file appears under its name only when it is whole: it is built in memory, written beside its place under a
-hidden name, flushed to the disk and then renamed. While a run goes on, a `Checkpoint` keeps what there is so
-far in ``NAME.part.nc`` in the same way, so that a run that is killed leaves a file that opens.
+hidden name, flushed to the disk and then renamed.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import os
 import shlex
 import shutil
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -28,14 +27,15 @@ from atmosbox.errors import DiskFullError, FileError, SettingError, shown
 
 __all__ = [
     "FORMAT",
-    "Checkpoint",
     "check_writable",
     "global_attributes",
     "history_line",
     "parameters",
     "part_path",
     "read",
+    "replace_file",
     "write",
+    "write_failure",
 ]
 
 FORMAT = 1
@@ -43,7 +43,6 @@ FORMAT = 1
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the hidden name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
 LEFT_OVER = 3600.0  # seconds after which a hidden file can only be that of a run that was killed
-SHARE = 0.05  # of a run's time, which its checkpoints may take
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 AnyPath: TypeAlias = str | os.PathLike[str]
@@ -203,13 +202,26 @@ def check_writable(path: AnyPath, force: bool = False) -> Path:
     if not os.access(folder, os.W_OK | os.X_OK):
         raise FileError(f"Nothing may be written to the folder {folder}: give another place with --out.")
     if shutil.disk_usage(folder).free < SMALLEST_FILE:
-        raise _failure(OSError(errno.ENOSPC, ""), target)
+        raise write_failure(OSError(errno.ENOSPC, ""), target)
     _moment()
     return target
 
 
-def _failure(error: OSError, path: Path) -> FileError:
-    """Return the refusal that a failure to write a file amounts to."""
+def write_failure(error: OSError, path: Path) -> FileError:
+    """Return the refusal that a failure to write a file amounts to.
+
+    Parameters
+    ----------
+    error
+        What the system reported.
+    path
+        The file that was to be written.
+
+    Examples
+    --------
+    >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
+    'The disk has no room for no/run.nc: delete something, or give another --out.'
+    """
     if error.errno in NO_ROOM:
         kept = ", which stays as it was" if path.exists() else ""
         return DiskFullError(f"The disk has no room for {path}{kept}: delete something, or give another --out.")
@@ -230,8 +242,34 @@ def _image(dataset: xr.Dataset) -> memoryview:
     return whole.to_netcdf(engine="netcdf4", format="NETCDF4")
 
 
-def _replace(path: Path, dataset: xr.Dataset) -> None:
-    """Put a dataset in the place of a file, whole or not at all."""
+def replace_file(path: Path, dataset: xr.Dataset) -> None:
+    """Put a dataset in the place of a file, whole or not at all.
+
+    Parameters
+    ----------
+    path
+        The file, which `check_writable` has let through.
+    dataset
+        What `write` takes.
+
+    Raises
+    ------
+    DiskFullError
+        If the disk is full; a file that was there before is kept.
+    FileError
+        If the file cannot be written for another reason.
+    KeyError
+        If the dataset lacks the attribute ``atmosbox_parameters``.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset(attrs=global_attributes({}, title="A box", command="a test"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     replace_file(Path(folder, "run.nc"), run)
+    ...     read(f"{folder}/run.nc").title
+    'A box'
+    """
     with contextlib.suppress(OSError):
         for old in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
             if time.time() - old.stat().st_mtime > LEFT_OVER:
@@ -245,7 +283,7 @@ def _replace(path: Path, dataset: xr.Dataset) -> None:
             os.fsync(file.fileno())
         os.replace(hidden, path)
     except OSError as error:
-        raise _failure(error, path) from error
+        raise write_failure(error, path) from error
     finally:
         hidden.unlink(missing_ok=True)
 
@@ -285,7 +323,7 @@ def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
     'A box'
     """
     target = check_writable(path, force)
-    _replace(target, dataset)
+    replace_file(target, dataset)
     return target
 
 
@@ -299,122 +337,6 @@ def part_path(path: AnyPath) -> Path:
     """
     whole = Path(path)
     return whole.with_name(f"{whole.stem}.part{whole.suffix}")
-
-
-class Checkpoint:
-    """The file of a run that is not finished: call it after every frame, it writes now and then.
-
-    It writes the whole dataset so far to `part`, at most every so many seconds and so seldom that writing
-    takes less than a twentieth of the run's time. The part of an earlier run that was killed is replaced.
-
-    Parameters
-    ----------
-    path
-        The file that the finished run will have.
-    every_seconds
-        The shortest time between two writings [s].
-    force
-        Whether the finished run may replace a file.
-    clock
-        What tells the time [s].
-
-    Attributes
-    ----------
-    path, part
-        The file of the finished run, and the one of the run so far.
-    stale
-        Whether an earlier run left a part there, which the first writing will replace.
-
-    Raises
-    ------
-    FileError
-        If the file could not be written there, for one of the reasons of `check_writable`.
-
-    Examples
-    --------
-    >>> import tempfile, xarray
-    >>> so_far = xarray.Dataset(attrs=global_attributes({}, title="Half a box", command="a test"))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     checkpoint = Checkpoint(f"{folder}/run.nc", every_seconds=0.0)
-    ...     checkpoint(lambda: so_far), read(checkpoint.part).title, checkpoint.finish(so_far).name
-    (True, 'Half a box', 'run.nc')
-    """
-
-    def __init__(
-        self,
-        path: AnyPath,
-        every_seconds: float = 2.0,
-        *,
-        force: bool = False,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
-        self.path = check_writable(path, force)
-        self.part = part_path(self.path)
-        self.stale = check_writable(self.part, force=True).exists()
-        self._force = force
-        self._every = every_seconds
-        self._clock = clock
-        self._begun = self._written = clock()
-        self._spent = self._last = 0.0
-        self._saved = False
-
-    def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
-        """Write the run so far if it is time to, and return whether it was.
-
-        Parameters
-        ----------
-        make_dataset
-            Makes the dataset of the run so far; called only if it is to be written.
-
-        Raises
-        ------
-        DiskFullError
-            If the disk is full; what was written before is kept.
-        FileError
-            If the file cannot be written any more.
-        """
-        now = self._clock()
-        expected = self._spent + 1.5 * self._last  # the file has grown since
-        if now - self._written < self._every or expected > SHARE * (now - self._begun):
-            return False
-        self.save(make_dataset())
-        self._written = self._clock()
-        self._last = self._written - now
-        self._spent += self._last
-        return True
-
-    def save(self, dataset: xr.Dataset) -> Path:
-        """Write the run so far at once, for instance when it is interrupted, and return where it is."""
-        _replace(self.part, dataset)
-        self._saved = True
-        return self.part
-
-    def finish(self, dataset: xr.Dataset) -> Path:
-        """Write the finished run under its own name, remove the part, and return the file.
-
-        Raises
-        ------
-        DiskFullError
-            If the disk is full; the part that was written before is kept.
-        FileError
-            If a file of that name has appeared meanwhile; the finished run is kept as the part.
-        """
-        self.save(dataset)
-        if self.path.exists() and not self._force:
-            raise FileError(
-                f"{self.path} was made by another program during the run, which is whole in {self.part}: "
-                "move the one or the other to a new name."
-            )
-        try:
-            os.replace(self.part, self.path)
-        except OSError as error:
-            raise _failure(error, self.path) from error
-        return self.path
-
-    def abandon(self) -> None:
-        """Remove the part that this run has written, when nothing of it is worth keeping."""
-        if self._saved:
-            self.part.unlink(missing_ok=True)
 
 
 def read(path: AnyPath) -> xr.Dataset:

@@ -18,15 +18,16 @@ from atmosbox import __version__, scenarios
 from atmosbox.engine.refusal import PackingError as EnginePackingError
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.errors import EngineError, FileError, PackingError, SettingError
+from atmosbox.headline import Headline
 from atmosbox.instruments import Molecules, Readings
 from atmosbox.panels import to_json
 from atmosbox.scene import Setup
-from atmosbox.settings import Headline, Parameter, SceneSettings
+from atmosbox.settings import Parameter, SceneSettings
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from atmosbox.output import Checkpoint
+    from atmosbox.checkpoint import Checkpoint
 
 __all__ = [
     "LEDGER_LIMIT",
@@ -297,8 +298,8 @@ def execute(
     )
     recording = _Recording(prepared, setup, attributes)
     setup.parcel.advance(0.0)
-    began = time.perf_counter()
     last = 0.0
+    spent = 0.0
 
     def watch(now: float) -> None:
         nonlocal last
@@ -308,12 +309,13 @@ def execute(
 
     def outcome(status: str) -> Outcome:
         dataset, headlines = recording.dataset(status)
-        seconds = time.perf_counter() - began
-        return Outcome(dataset, headlines, seconds, setup.parcel.contacts, setup.parcel.ledger())
+        return Outcome(dataset, headlines, spent, setup.parcel.contacts, setup.parcel.ledger())
 
     try:
         while recording.frames < setup.frames:
+            began = time.perf_counter()
             recording.advance(watch)
+            spent += time.perf_counter() - began
             watch(setup.parcel.time)
             if checkpoint is not None and recording.frames < setup.frames:
                 checkpoint(lambda: recording.dataset("partial")[0])
@@ -370,7 +372,8 @@ def run(
     >>> bool(abs(box.energy_change).max() < 1e-12)
     True
     """
-    from atmosbox.output import Checkpoint, check_writable
+    from atmosbox.checkpoint import Checkpoint
+    from atmosbox.output import check_writable
 
     prepared = prepare(scene, settings, save_molecules=save_molecules)
     checkpoint = None

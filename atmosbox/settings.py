@@ -16,11 +16,7 @@ from __future__ import annotations
 
 import difflib
 import functools
-import math
-import os
-import re
 import shlex
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -28,16 +24,14 @@ from typing import Any, Literal, Self, cast
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from atmosbox.errors import ConfigError, FileError, SettingError, UnknownSettingError, shown
-from atmosbox.units import parse_quantity, parse_whole, phrase, to_si, typed
+from atmosbox.errors import SettingError, UnknownSettingError, shown
+from atmosbox.quantity import parse_quantity, parse_whole, phrase, typed
+from atmosbox.units import to_si
 
 __all__ = [
-    "Headline",
     "Parameter",
     "SceneSettings",
-    "load_config",
     "nearest",
-    "parse_set",
     "setting",
 ]
 
@@ -54,66 +48,6 @@ _SWITCH = {
     "no": False,
     "0": False,
 }
-_LARGEST_CONFIG = 1_000_000  # bytes
-
-
-@dataclass(frozen=True)
-class Headline:
-    """One number that a run is about, with its error bar and the answer of the textbook.
-
-    Parameters
-    ----------
-    name
-        Its name in the output.
-    value, standard_error
-        The measurement and its statistical error [unit].
-    theory
-        The closed-form answer [unit]; None where there is none.
-    tolerance
-        How far the model itself may be from the textbook, beyond the statistical error [unit].
-    reason
-        Why the tolerance is what it is.
-    unit
-        The SI unit of the numbers here.
-    display_unit
-        The unit in which a table shows them.
-    label
-        What a table calls it.
-
-    Examples
-    --------
-    With an error bar of 2 K, 3 K of misfit is no disagreement:
-
-    >>> warm = Headline("air_temperature", 291.0, 2.0, 288.0, 0.0, "an ideal gas", "K", "degC", "temperature")
-    >>> warm.misfit, warm.agrees
-    (3.0, True)
-    """
-
-    name: str
-    value: float
-    standard_error: float
-    theory: float | None
-    tolerance: float
-    reason: str
-    unit: str
-    display_unit: str
-    label: str
-
-    @property
-    def misfit(self) -> float | None:
-        """Measurement minus theory [unit]; None without a theory."""
-        return None if self.theory is None else self.value - self.theory
-
-    @property
-    def agrees(self) -> bool | None:
-        """Whether the misfit is within four standard errors and the tolerance; None without a theory.
-
-        A measurement or an error bar that is not a finite number agrees with nothing.
-        """
-        if self.misfit is None:
-            return None
-        allowed = 4.0 * self.standard_error + self.tolerance
-        return math.isfinite(allowed) and abs(self.misfit) <= allowed
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
@@ -447,141 +381,3 @@ def _unknown(name: str, value: object, parameters: Mapping[str, Parameter]) -> U
         usable = isinstance(value, str) and shown(value) == value
         fix = f"give --set {near}={shlex.quote(str(value)) if usable else parameters[near].typed()}"
     return UnknownSettingError(name, value, "is not a setting of this scene", fix)
-
-
-def parse_set(items: Iterable[str]) -> dict[str, str]:
-    """Return the settings of the command line's ``--set name=value``.
-
-    Parameters
-    ----------
-    items
-        The texts after each ``--set``.
-
-    Returns
-    -------
-    dict
-        The values as text, by name.
-
-    Raises
-    ------
-    SettingError
-        If a text is not a name, "=" and a value, or names a setting again.
-
-    Examples
-    --------
-    >>> parse_set(["temperature=25 degC", "pressure-top=300hPa"])
-    {'temperature': '25 degC', 'pressure_top': '300hPa'}
-    """
-    values: dict[str, str] = {}
-    for item in items:
-        name, equals, value = (part.strip() for part in item.partition("="))
-        name = name.replace("-", "_")
-        if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
-            value = value[1:-1].strip()
-        known = name if name.isascii() and name.isidentifier() else "name"
-        fix = f"give --set {known}=value, such as --set temperature=25degC"
-        if not equals:
-            raise SettingError(f"--set {item}", None, 'has no "=" between name and value', fix)
-        if not name or not value:
-            raise SettingError(f"--set {item}", None, f"has no {'value' if name else 'name'}", fix)
-        if name in values:
-            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
-        values[name] = value
-    return values
-
-
-def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Value]]:
-    r"""Return the scene and the settings that a TOML file names.
-
-    The file may hold the name of a scene and one table, and can run no code::
-
-        scene = "lifting-dry"
-
-        [settings]
-        temperature = "25degC"
-        molecules = 4000
-
-    Parameters
-    ----------
-    path
-        Path of the file.
-
-    Returns
-    -------
-    scene : str or None
-        The name of the scene, None where the file names none.
-    settings : dict
-        The values as they were written, by name.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read.
-    ConfigError
-        If it is not TOML, or holds anything else; the sentence has the line where it is known.
-
-    Examples
-    --------
-    >>> import pathlib, tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "lift.toml")
-    ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
-    ...     load_config(path)
-    ('lifting-dry', {'temperature': '25degC'})
-    """
-    where = shown(os.fspath(path), longest=4096)
-    try:
-        with open(path, "rb") as file:
-            raw = file.read(_LARGEST_CONFIG + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "not a path"
-        raise FileError(f"{where} cannot be read ({reason}): give the path of a settings file.") from error
-    text, content = _toml(raw, where)
-
-    def refusal(key: str, problem: str, fix: str) -> ConfigError:
-        return ConfigError(f"{where}{_line(text, key)} has {shown(key)} {problem}: {fix}.")
-
-    for key in sorted(content.keys() - {"scene", "settings"}):
-        near = nearest(key, ("scene", "settings"))
-        fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
-        raise refusal(key, "outside the table [settings]", fix)
-    scene, settings = content.get("scene"), content.get("settings", {})
-    if scene is not None and not (isinstance(scene, str) and scene.strip()):
-        raise refusal("scene", "without a name", 'give the name of one, such as scene = "lifting-dry"')
-    if not isinstance(settings, dict):
-        raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
-    kinds = {dict: "as a table", list: "as an array", float: "as no finite number"}
-    for key, value in settings.items():
-        if not isinstance(value, Value) or (isinstance(value, float) and not math.isfinite(value)):
-            kind = kinds.get(type(value), "as a date or a time")
-            raise refusal(key, kind, 'give one number, true, false or a text in quotes, such as "25degC"')
-    return scene and scene.strip(), settings
-
-
-def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:
-    """Return a settings file's text and content, or raise ConfigError."""
-    if raw.startswith((b"\x89HDF", b"CDF")):
-        raise ConfigError(f"{where} is a netCDF file, not a settings file: give it with --from {where}.")
-    if len(raw) > _LARGEST_CONFIG or b"\0" in raw:
-        raise ConfigError(f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8.")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = raw.count(b"\n", 0, error.start) + 1
-        raise ConfigError(f"{where}, line {line} is not UTF-8 text: save the file as UTF-8.") from error
-    try:
-        return text, tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        found = re.fullmatch(r"(.+) \(at (?:line ([0-9]+)|end).*\)", str(error))
-        what = " is not TOML"
-        if found:
-            what = f", line {found[2] or text.count(chr(10)) + 1} is not TOML ({shown(found[1])})"
-        fix = 'write one name = value a line, with text in quotes, such as temperature = "25degC"'
-        raise ConfigError(f"{where}{what}: {fix}.") from error
-
-
-def _line(text: str, key: str) -> str:
-    """Return ", line 3" for the line on which a key first stands; empty where it is not plain to see."""
-    table = r"(?:settings[ \t]*\.[ \t]*)?"
-    found = re.search(rf"^[ \t\[]*{table}[\"']?{re.escape(key)}[\"' \t]*[=.\]]", text, re.MULTILINE)
-    return f", line {text.count(chr(10), 0, found.start()) + 1}" if found else ""

@@ -22,10 +22,11 @@ from atmosbox import theory as law
 from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import maxwell_velocities, random_positions
 from atmosbox.engine.walls import HeatBath, Periodic, Specular
+from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Layers
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Setup
-from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 

@@ -16,10 +16,11 @@ import numpy as np
 
 from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import equal_speeds, random_positions
+from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Discs
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Setup
-from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import Scale
 

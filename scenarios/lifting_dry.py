@@ -24,10 +24,11 @@ from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
 from atmosbox.engine.walls import Piston, Specular
 from atmosbox.errors import SettingError
+from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Environment, Lift
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Setup
-from atmosbox.settings import Headline, SceneSettings, setting
+from atmosbox.settings import SceneSettings, setting
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 
 if TYPE_CHECKING:

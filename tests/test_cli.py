@@ -24,7 +24,7 @@ from atmosbox.cli.command import Format, Theme, _completed
 from atmosbox.cli.request import Request
 from atmosbox.cli.run import FIGURES
 from atmosbox.errors import EngineError
-from atmosbox.settings import Headline
+from atmosbox.headline import Headline
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ("list", "info", "run", "plot", "check")
@@ -337,9 +337,7 @@ def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monk
 def test_a_settings_file_never_makes_a_program_run(folder, scene):
     Path("evil.py").write_text("open('ran', 'w')", encoding="utf-8")
     Path("a.toml").write_text(f'scene = "{scene}"', encoding="utf-8")
-    assert f"atmosbox run {scene} --config a.toml" in refused(
-        atmosbox_in_process("run", "--config", "a.toml")
-    )
+    assert f"atmosbox run {scene} --config a.toml" in refused(atmosbox_in_process("run", "--config", "a.toml"))
     assert not Path("ran").exists()
 
 
@@ -500,9 +498,7 @@ def test_a_stopped_run_tells_a_program_the_file_it_left(folder, monkeypatch, opt
 @posix
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_signal_stops_a_run_and_what_is_complete_is_kept(folder, number, status):
-    process = subprocess.Popen(
-        **command_line(*LONG, "--out", "x.nc", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    )
+    process = subprocess.Popen(**command_line(*LONG, "--out", "x.nc", stdout=subprocess.PIPE, stderr=subprocess.PIPE))
     try:
         deadline = time.monotonic() + 300.0  # the engine may have to be compiled
         while not Path("x.part.nc").exists() and process.poll() is None and time.monotonic() < deadline:
@@ -649,9 +645,7 @@ def a_headline(value=288.1492, error=0.0312, theory=288.0, tolerance=0.0, unit="
 @pytest.mark.parametrize("width", [20, 40, 60, 80, 120, terminal.ENDLESS])
 def test_no_value_of_a_result_is_cut_at_any_width(width):
     wide = a_headline()
-    text = "\n".join(
-        report.headline_lines([wide, a_headline(value=-1e9, error=3e7, unit="s-1", display="s-1")], width)
-    )
+    text = "\n".join(report.headline_lines([wide, a_headline(value=-1e9, error=3e7, unit="s-1", display="s-1")], width))
     words = " ".join(text.split())
     for value in ("14.999 ± 0.031", "14.850", "+0.149 (4.8σ)", "no", "(-1.000 ± 0.030)e9", "0.000e9"):
         assert value in words
@@ -756,10 +750,7 @@ def test_check_says_how_to_get_the_checker_of_conventions(finished, monkeypatch)
     result = atmosbox_in_process("check", str(finished))
     assert result.exit_code == 0
     assert "pip install 'atmosbox[test]'" in result.stdout
-    assert (
-        json.loads(atmosbox_in_process("check", str(finished), "--json").stdout)["conventions"]["passed"]
-        is None
-    )
+    assert json.loads(atmosbox_in_process("check", str(finished), "--json").stdout)["conventions"]["passed"] is None
 
 
 @posix

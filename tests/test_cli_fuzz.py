@@ -27,9 +27,7 @@ numbers = st.one_of(
 units = st.sampled_from(
     ["", "degC", "K", "hPa", " Pa", "km", "nm", "ns", "%", "K/km", "K km-1", "degC**2", "kg", "µm", "°C"]
 )
-values = st.one_of(
-    typed, st.builds(str.__add__, numbers, units), st.sampled_from(["on", "off", "maxwell", ""])
-)
+values = st.one_of(typed, st.builds(str.__add__, numbers, units), st.sampled_from(["on", "off", "maxwell", ""]))
 pairs = st.builds("{}={}".format, st.one_of(st.sampled_from(NAMES), typed), values)
 scenes = st.one_of(st.sampled_from([*scenarios.names(), "lifting_dry"]), typed)
 options = st.one_of(
@@ -45,12 +43,8 @@ toml_values = st.one_of(
     values.map(lambda text: '"' + text.replace("\\", "").replace('"', "") + '"'),
 )
 toml_lines = st.one_of(
-    st.builds(
-        "{} = {}".format, st.one_of(st.sampled_from([*NAMES, "scene", "settings.seed"]), typed), toml_values
-    ),
-    st.sampled_from(
-        ["[settings]", "[[settings]]", "[other]", "scene = 'lifting-dry'", "scene = './x.py'", "#"]
-    ),
+    st.builds("{} = {}".format, st.one_of(st.sampled_from([*NAMES, "scene", "settings.seed"]), typed), toml_values),
+    st.sampled_from(["[settings]", "[[settings]]", "[other]", "scene = 'lifting-dry'", "scene = './x.py'", "#"]),
 )
 config_files = st.one_of(
     st.binary(max_size=200),

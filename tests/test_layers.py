@@ -24,21 +24,29 @@ class Layer:
     lazily: str = ""  # parts and libraries that only a function may import, or a type checker
 
 
-FOUNDATION = "errors units settings theory statistics"
+FOUNDATION = "errors units quantity settings config headline theory statistics"
 FACTS = Layer(f"version {FOUNDATION}", "numpy scipy pydantic", lazily="metpy pint")
 
 LAYERS = {
     "engine": Layer("", "numpy numba llvmlite"),
     **dict.fromkeys(FOUNDATION.split(), FACTS),
     "panels": Layer(),
-    "diagnostics": Layer("version engine units errors panels statistics", "numpy xarray"),
+    "variables": Layer("version engine units errors panels statistics", "numpy xarray"),
+    "diagnostics": Layer("version engine units errors panels statistics variables", "numpy xarray"),
     "output": Layer("version engine units errors panels diagnostics", "numpy xarray netCDF4"),
+    "checkpoint": Layer("version engine units errors panels diagnostics output", "numpy xarray netCDF4"),
     "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
     "instruments": Layer("engine units statistics", "numpy"),
     "scene": Layer("units", lazily="engine instruments"),
-    "a scenario": Layer("engine errors units theory statistics settings panels instruments scene", "numpy", lazily="xarray"),
+    "a scenario": Layer(
+        "engine errors units theory statistics settings headline panels instruments scene", "numpy", lazily="xarray"
+    ),
     "scenarios": Layer("errors"),
-    "runner": Layer("version engine errors units settings panels diagnostics output instruments scene scenarios", "numpy xarray"),
+    "runner": Layer(
+        "version engine errors units settings headline panels diagnostics output checkpoint instruments"
+        " scene scenarios",
+        "numpy xarray",
+    ),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
     "__main__": Layer("cli"),
     "version": Layer(lazily="runner xarray"),
@@ -183,7 +191,9 @@ def test_every_layer_of_the_table_has_a_file():
         ("atmosbox/theory.py", "from . import engine"),
         ("atmosbox/units.py", "import pint"),
         ("atmosbox/panels.py", "import numpy"),
+        ("atmosbox/variables.py", "from atmosbox.diagnostics import dataset"),
         ("atmosbox/diagnostics.py", "from atmosbox.output import write"),
+        ("atmosbox/output.py", "from atmosbox.checkpoint import Checkpoint"),
         ("atmosbox/plot.py", "from atmosbox.engine import state"),
         ("atmosbox/plot/skewt.py", "from atmosbox.engine import state"),
         ("atmosbox/runner.py", "from atmosbox.scenarios import lifting_dry"),

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -31,7 +30,7 @@ CHILD = """
 import os, sys, time
 import numpy as np
 from atmosbox.diagnostics import dataset
-from atmosbox.output import Checkpoint, global_attributes
+from atmosbox.output import global_attributes
 
 def run_so_far(frames):
     times = np.arange(1.0, frames + 1)
@@ -78,9 +77,7 @@ def filled(names, coords, companions=("_se", "_count", "_theory", "_tolerance"),
         shape = [sizes[dim] for dim in VARIABLES[name].dims]
         measured = not VARIABLES[name].ledger and VARIABLES[name].dtype == "f8"
         for suffix in ("", *companions) if measured else ("",):
-            frames[name + suffix] = (
-                random.integers(0, 2, shape) if VARIABLES[name].flags else random.random(shape)
-            )
+            frames[name + suffix] = random.integers(0, 2, shape) if VARIABLES[name].flags else random.random(shape)
     return frames
 
 
@@ -125,7 +122,11 @@ def speeds():
 
 def discs():
     coords = times(30, 0.25)
-    names = [name for name in VARIABLES if name.startswith(("disc", "kinetic_energy_", "momentum", "running", "energy_change", "box"))]
+    names = [
+        name
+        for name in VARIABLES
+        if name.startswith(("disc", "kinetic_energy_", "momentum", "running", "energy_change", "box"))
+    ]
     return dataset(filled([*ALWAYS, *names], coords, molecule=16), coords, attributes(), time_unit="ps")
 
 
@@ -258,9 +259,7 @@ def test_the_history_has_the_time_and_the_command_as_typed(monkeypatch):
 
 def test_without_a_set_date_the_time_is_now(monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    assert output.history_line("x")[:10] in {
-        time.strftime("%Y-%m-%d", time.gmtime(time.time() + s)) for s in (-9, 0)
-    }
+    assert output.history_line("x")[:10] in {time.strftime("%Y-%m-%d", time.gmtime(time.time() + s)) for s in (-9, 0)}
 
 
 @pytest.mark.parametrize("epoch", ["yesterday", "1e9", "9" * 30])
@@ -397,164 +396,16 @@ def test_an_interrupt_leaves_no_half_of_a_file(tmp_path, monkeypatch, place):
     assert not list(tmp_path.iterdir())
 
 
-# A run that is not finished
-
-
-def test_a_checkpoint_keeps_the_run_so_far_and_the_finished_run_takes_its_place(tmp_path):
-    checkpoint = output.Checkpoint(tmp_path / "run.nc", every_seconds=0.0)
-    assert checkpoint(lifting)
-    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
-    assert output.read(checkpoint.part).identical(lifting().assign_attrs(output.read(checkpoint.part).attrs))
-    assert checkpoint.finish(column()) == tmp_path / "run.nc"
-    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
-    assert "height" in output.read(tmp_path / "run.nc").dims
-
-
-def test_a_checkpoint_refuses_a_bad_place_before_the_run(tmp_path):
-    output.write(lifting(), tmp_path / "run.nc")
-    with pytest.raises(FileError, match="--force"):
-        output.Checkpoint(tmp_path / "run.nc")
-    assert output.Checkpoint(tmp_path / "run.nc", force=True).finish(column()) == tmp_path / "run.nc"
-
-
-def test_a_checkpoint_waits_and_takes_less_than_a_twentieth_of_the_time(tmp_path, monkeypatch):
-    clock = SimpleNamespace(now=100.0, writing=0.0, written=[])
-    checkpoint = output.Checkpoint(tmp_path / "run.nc", every_seconds=2.0, clock=lambda: clock.now)
-
-    def slow(_path, _dataset):
-        cost = 0.002 * (clock.now - 100.0)  # the file grows with the run
-        clock.written.append(clock.now - 100.0)
-        clock.now += cost
-        clock.writing += cost
-
-    monkeypatch.setattr(output, "_replace", slow)
-    while clock.now < 1100.0:
-        clock.now += 0.01
-        checkpoint(lambda: None)
-    gaps = np.diff(clock.written)
-    assert clock.written[0] == pytest.approx(2.0, abs=0.02)
-    assert gaps.min() >= 2.0
-    assert 0.02 * 1000.0 < clock.writing < 0.05 * 1000.0
-    assert 1000.0 - clock.written[-1] < 100.0
-
-
-def test_a_dataset_is_made_only_when_it_is_written(tmp_path):
-    checkpoint = output.Checkpoint(tmp_path / "run.nc", every_seconds=3600.0)
-    assert not checkpoint(pytest.fail)
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_full_disk_during_the_run_keeps_the_part(tmp_path, monkeypatch):
-    checkpoint = output.Checkpoint(tmp_path / "run.nc")
-    checkpoint.save(lifting())
-    monkeypatch.setattr(os, "fsync", failing(errno.ENOSPC))
-    with pytest.raises(DiskFullError, match=r"run\.part\.nc, which stays as it was"):
-        checkpoint.finish(column())
-    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
-    assert "parcel_height" in output.read(checkpoint.part)
-
-
-def test_a_file_that_appears_during_the_run_is_not_overwritten(tmp_path):
-    checkpoint = output.Checkpoint(tmp_path / "run.nc")
-    (tmp_path / "run.nc").write_text("another's")
-    with pytest.raises(FileError, match=r"run\.part\.nc"):
-        checkpoint.finish(column())
-    assert (tmp_path / "run.nc").read_text() == "another's"
-    assert "height" in output.read(checkpoint.part).dims
-
-
-def test_a_finished_run_that_cannot_take_its_name_stays_in_its_part(tmp_path):
-    checkpoint = output.Checkpoint(tmp_path / "run.nc", force=True)
-    (tmp_path / "run.nc").mkdir()
-    with pytest.raises(FileError, match="could not be written"):
-        checkpoint.finish(column())
-    assert "height" in output.read(checkpoint.part).dims
-
-
-def test_an_abandoned_run_leaves_nothing_of_its_own(tmp_path):
-    checkpoint = output.Checkpoint(tmp_path / "run.nc")
-    checkpoint.save(lifting())
-    checkpoint.abandon()
-    checkpoint.abandon()
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_part_of_an_earlier_run_is_told_of_and_kept_until_it_is_replaced(tmp_path):
-    output.Checkpoint(tmp_path / "run.nc").save(lifting())
-    checkpoint = output.Checkpoint(tmp_path / "run.nc")
-    assert checkpoint.stale
-    checkpoint.abandon()
-    assert "parcel_height" in output.read(checkpoint.part)
-    checkpoint.save(column())
-    assert "height" in output.read(checkpoint.part).dims
-
-
-@pytest.mark.parametrize(
-    ("name", "part"), [("a.b.nc", "a.b.part.nc"), ("run", "run.part"), ("d/x.nc", "d/x.part.nc")]
-)
+@pytest.mark.parametrize(("name", "part"), [("a.b.nc", "a.b.part.nc"), ("run", "run.part"), ("d/x.nc", "d/x.part.nc")])
 def test_the_part_has_the_name_of_the_file(name, part):
     assert str(output.part_path(name)) == part.replace("/", os.sep)
-
-
-def test_a_run_killed_while_it_writes_leaves_the_frames_before(tmp_path):
-    code = """
-checkpoint = Checkpoint(sys.argv[1], every_seconds=0.0)
-for frames in (3, 4):
-    checkpoint.save(run_so_far(frames))
-
-def hang(_file):
-    print("writing", flush=True)
-    time.sleep(60)
-
-os.fsync = hang
-checkpoint.save(run_so_far(5))
-"""
-    path = tmp_path / "run.nc"
-    with child(code, path) as process:
-        assert process.stdout.readline() == "writing\n"
-        process.send_signal(signal.SIGKILL)
-    assert process.returncode == -signal.SIGKILL
-    found = output.read(tmp_path / "run.part.nc")
-    assert found.sizes["elapsed_time"] == 4
-    assert found.attrs["atmosbox_status"] == "partial"
-    with pytest.raises(
-        FileError, match=r"run\.nc does not exist: a run that was stopped left .*run\.part\.nc"
-    ):
-        output.read(path)
-
-    (left,) = tmp_path.glob(".*.tmp")
-    output.Checkpoint(path).save(lifting())
-    assert left.exists()  # it could be another run's that is still going
-    os.utime(left, (0, 0))
-    output.Checkpoint(path).finish(lifting())
-    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
-
-
-def test_a_run_killed_at_any_moment_leaves_a_file_that_opens(tmp_path):
-    code = """
-checkpoint = Checkpoint(sys.argv[1])
-for frames in range(1, 10_000):
-    checkpoint.save(run_so_far(frames))
-    print(frames, flush=True)
-"""
-    for frames in (1, 4, 9):
-        with child(code, tmp_path / f"{frames}.nc") as process:
-            while int(process.stdout.readline()) < frames:
-                pass
-            time.sleep(0.003 * frames)
-            process.kill()
-        found = output.read(tmp_path / f"{frames}.part.nc")
-        assert found.sizes["elapsed_time"] >= frames
-        assert found.air_temperature.values[-1] == 300.0 + found.sizes["elapsed_time"]
 
 
 # What may be read
 
 
 def foreign(path):
-    xr.Dataset({"t": ("time", [1.0, 2.0], {"units": "days since 0000-00-00"})}).to_netcdf(
-        path, engine="netcdf4"
-    )
+    xr.Dataset({"t": ("time", [1.0, 2.0], {"units": "days since 0000-00-00"})}).to_netcdf(path, engine="netcdf4")
 
 
 def classic(path):
@@ -626,9 +477,7 @@ def test_a_file_that_was_read_is_closed_and_can_be_replaced(tmp_path):
     found = output.read(path)
     output.write(column(), path, force=True)
     assert found.identical(output.read(path)) is False
-    assert not [
-        name for name in os.listdir("/proc/self/fd") if os.path.realpath(f"/proc/self/fd/{name}") == str(path)
-    ]
+    assert not [name for name in os.listdir("/proc/self/fd") if os.path.realpath(f"/proc/self/fd/{name}") == str(path)]
 
 
 @pytest.mark.parametrize("text", [None, "", "{", "[1, 2]", json.dumps("words"), 7])

@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.cli.table import digits, measurement, number, table, wrapped
-from atmosbox.units import from_si, phrase
+from atmosbox.quantity import phrase
+from atmosbox.units import from_si
 
 if TYPE_CHECKING:
+    from atmosbox.headline import Headline
     from atmosbox.runner import Card, Outcome
-    from atmosbox.settings import Headline, Parameter
+    from atmosbox.settings import Parameter
 
 _VERDICT = {True: "yes", False: "no", None: "-"}
 
@@ -63,7 +65,7 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
 
     Examples
     --------
-    >>> from atmosbox.settings import Headline
+    >>> from atmosbox.headline import Headline
     >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.0, "none", "K", "degC", "temperature")
     >>> print("\n".join(headline_lines([warm], 100)))
     quantity            measured    theory  misfit       within error?
@@ -84,9 +86,7 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
                 may_be = number(shown["tolerance"], decimals, power)
                 notes.append(f"{headline.label}: up to {may_be}{_unit(headline)} off, for {headline.reason}.")
         unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
-        rows.append(
-            [headline.label + unit, measurement(value, error), theory, misfit, _VERDICT[headline.agrees]]
-        )
+        rows.append([headline.label + unit, measurement(value, error), theory, misfit, _VERDICT[headline.agrees]])
     header = ["quantity", "measured", "theory", "misfit", "within error?"]
     lines = table(header, rows, width) if rows else ["No frame is late enough for an average."]
     return [*lines, *(line for note in notes for line in wrapped(note, width))]
@@ -180,8 +180,7 @@ def parameter_lines(parameters: Sequence[Parameter], width: int) -> list[str]:
     """Return the table of what may be set."""
     header = ["setting", "default", "unit", "allowed", "what it is"]
     rows = [
-        [p.name, _value(p, p.default).removesuffix(f" {p.unit}"), p.unit or "-", p.allowed, p.help]
-        for p in parameters
+        [p.name, _value(p, p.default).removesuffix(f" {p.unit}"), p.unit or "-", p.allowed, p.help] for p in parameters
     ]
     return table(header, rows, width)
 
@@ -195,8 +194,5 @@ def _value(parameter: Parameter, value: bool | int | float | str) -> str:
 
 def setting_lines(settings: Mapping[str, Any], parameters: Sequence[Parameter], width: int) -> list[str]:
     """Return the values with which a scene runs, those that differ from their defaults marked."""
-    rows = [
-        [p.name, _value(p, settings[p.name]), "" if settings[p.name] == p.default else "set"]
-        for p in parameters
-    ]
+    rows = [[p.name, _value(p, settings[p.name]), "" if settings[p.name] == p.default else "set"] for p in parameters]
     return table(["setting", "value", ""], rows, width)

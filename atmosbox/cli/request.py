@@ -47,7 +47,7 @@ class Request:
         AtmosboxError
             If a file or a text cannot be understood, or two of them name different scenes.
         """
-        from atmosbox.settings import load_config, parse_set
+        from atmosbox.config import load_config, parse_set
 
         scene = self.scene
         settings: dict[str, Any] = {}
@@ -89,9 +89,7 @@ def _earlier(path: str) -> tuple[str, dict[str, Any], bool]:
     return scene, settings, made.get("save_molecules") is True
 
 
-def _agreed(
-    scene: str | None, named: str | None, option: str, path: str, error: type[AtmosboxError]
-) -> str | None:
+def _agreed(scene: str | None, named: str | None, option: str, path: str, error: type[AtmosboxError]) -> str | None:
     """Return the scene that the command line and a file agree on.
 
     A file never makes atmosbox run a program: the path of a scene must be typed.

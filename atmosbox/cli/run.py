@@ -21,7 +21,7 @@ from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, FileError, PhysicsError
 
 if TYPE_CHECKING:
-    from atmosbox.output import Checkpoint
+    from atmosbox.checkpoint import Checkpoint
     from atmosbox.runner import Interrupted, Prepared
 
 TERMINATED = 143  # what a shell reports of a program that was asked to end
@@ -84,7 +84,7 @@ def run(
         With the status of an interruption, if the run was stopped.
     """
     from atmosbox import runner
-    from atmosbox.output import Checkpoint
+    from atmosbox.checkpoint import Checkpoint
 
     scene, settings, molecules = request.gather()
     with _own_prints_to_stderr():

@@ -100,6 +100,8 @@ def choose_grid(
         If a periodic axis is too short for its molecules, who would meet their own images.
     """
     biggest = float(radii.max()) * _MARGIN
+    # the most cells along an axis that are wider than a molecule
+    most = [length[axis] / (2.002 * biggest) if biggest > 0.0 else math.inf for axis in range(3)]
     room = length[0] * (1.0 if planar else length[1]) * filled
     typical = float(radii.min())
     share = molecules * (math.pi * typical**2 if planar else 4.0 / 3.0 * math.pi * typical**3) / room
@@ -120,11 +122,11 @@ def choose_grid(
                     f"{2 * biggest:.6g}, which would meet their own images: make it longer than {4.5 * biggest:.6g}"
                 )
             n = max(n, math.ceil(length[axis] / room))
-            if exact_radius and n > length[axis] / (2.002 * biggest):
-                n = max(math.ceil(length[axis] / room), int(length[axis] / (2.002 * biggest)))
-            spanning = spanning or n > length[axis] / (2.002 * biggest)
-        elif exact_radius and biggest > 0.0:
-            n = max(1, min(n, int(length[axis] / (2.002 * biggest))))
+            if exact_radius and n > most[axis]:
+                n = max(math.ceil(length[axis] / room), int(most[axis]))
+            spanning = spanning or n > most[axis]
+        elif exact_radius and n > most[axis]:
+            n = max(1, int(most[axis]))
         number.append(n)
     edges = [np.linspace(0.0, length[axis], number[axis] + 1) for axis in range(3)]
     if math.isfinite(scale_height) and number[2] > 1:
@@ -210,10 +212,11 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
     n = len(edges) - 1
     if periodic:
         turns = np.floor(x / edges[-1]).astype(np.int64)
-        inside = np.searchsorted(edges, x - turns * edges[-1], side="right") - 1
-        return np.clip(inside, 0, n - 1) + turns * n
-    cell: NDArray[np.int64] = np.searchsorted(edges, x, side="right") - 1
-    return np.clip(cell, 0, n - 1)
+        inside = np.clip(np.searchsorted(edges, x - turns * edges[-1], side="right") - 1, 0, n - 1)
+        around: NDArray[np.int64] = inside + turns * n
+        return around
+    cell: NDArray[np.int64] = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, n - 1)
+    return cell
 
 
 @kernel

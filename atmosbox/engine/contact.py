@@ -97,17 +97,19 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 
 
 @kernel
-def share_energy(energy, rotation, other_rotation, state):
+def share_energy(energy, dimensions, rotation, other_rotation, state):
     r"""Share the energy of a contact between relative motion and the two rotations (Larsen and Borgnakke [1]_).
 
-    The shares are as gamma variates :math:`\Gamma(2) : \Gamma(\zeta_i/2) : \Gamma(\zeta_j/2)`. It is 2,
-    not 3/2, for the relative motion because hard spheres collide in proportion to their relative speed;
+    The shares are as gamma variates :math:`\Gamma((d + 1)/2) : \Gamma(\zeta_i/2) : \Gamma(\zeta_j/2)`. In space
+    it is 2, not 3/2, for the relative motion because hard spheres collide in proportion to their relative speed;
     that keeps detailed balance.
 
     Parameters
     ----------
     energy
         Relative kinetic energy plus both rotational energies [energy].
+    dimensions
+        In how many dimensions d the molecules move, 2 or 3.
     rotation, other_rotation
         Rotational degrees of freedom, 0, 2 or 3.
     state
@@ -125,10 +127,10 @@ def share_energy(energy, rotation, other_rotation, state):
     Examples
     --------
     >>> import numpy as np
-    >>> round(sum(share_energy(3.0, 2.0, 2.0, np.array([1], np.uint64))), 12)
+    >>> round(sum(share_energy(3.0, 3.0, 2.0, 2.0, np.array([1], np.uint64))), 12)
     3.0
     """
-    a = gamma(4.0, state)
+    a = gamma(dimensions + 1.0, state)
     b = gamma(rotation, state)
     c = gamma(other_rotation, state)
     scale = energy / (a + b + c)

@@ -241,7 +241,10 @@ def _meet(i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes):
         reduced_mass = mass * other_mass / (mass + other_mass)
         spin = kinds.rotational_energy
         relative = 0.5 * reduced_mass * (ux * ux + uy * uy + uz * uz)
-        shared, spin[i], spin[j] = share_energy(relative + spin[i] + spin[j], rotation, other_rotation, tallies.random)
+        dimensions = 2.0 if box.planar else 3.0
+        shared, spin[i], spin[j] = share_energy(
+            relative + spin[i] + spin[j], dimensions, rotation, other_rotation, tallies.random
+        )
         # the elastic contact turns the relative velocity u into u + d (1 + m_i / m_j); now its length is scaled
         share = 1.0 + mass / other_mass
         scale = math.sqrt(shared / relative)
@@ -423,26 +426,28 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def replan_ceiling(molecules, events, kinds, cells, calendar, box, walls, now, lowest):
-        """Plan anew, at time ``now``, the moves of all molecules that overlap the layer ``lowest`` or one above it."""
-        for column in range(cells.number_x * cells.number_y):
-            for layer in range(lowest, cells.number_z):
-                start = (column * cells.number_z + layer) * cells.stride
-                for q in range(start + 1, start + 1 + np.int64(cells.row[start])):
-                    i = np.int64(cells.row[q])
-                    event = events[i]
-                    x, y, z, vx, vy, vz = _position(molecules[i], now, box, modes)
-                    size, radius = _size_and_radius(i, molecules, kinds, modes)
-                    time, what = _next_move(
-                        np.int64(event.slot_x),
-                        np.int64(event.slot_y),
-                        np.int64(event.slot_z),
-                        now, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes,
-                    )  # fmt: skip
-                    time += now
-                    if event.contact_time < time:
-                        what = _CONTACT
-                    event.what = what
-                    schedule(calendar, i, min(time, event.contact_time))
+        """Plan anew, at time ``now``, the moves of all that may meet the ceiling, or that were to meet it.
+
+        Below ``lowest``, the lowest place of the ceiling before it is asked again, a molecule leaves its slot first.
+        """
+        for i in range(molecules.size):
+            event = events[i]
+            slot_z = np.int64(event.slot_z)
+            size, radius = _size_and_radius(i, molecules, kinds, modes)
+            if cells.boundary[size, 2, slot_z + 1] < lowest - radius and np.int64(event.what) != _CEILING:
+                continue
+            x, y, z, vx, vy, vz = _position(molecules[i], now, box, modes)
+            time, what = _next_move(
+                np.int64(event.slot_x),
+                np.int64(event.slot_y),
+                slot_z,
+                now, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes,
+            )  # fmt: skip
+            time += now
+            if event.contact_time < time:
+                what = _CONTACT
+            event.what = what
+            schedule(calendar, i, min(time, event.contact_time))
 
     @kernel(entry=True)
     def advance(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most):

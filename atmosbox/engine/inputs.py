@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from atmosbox.engine.refusal import RefusedError
 from atmosbox.engine.walls import HEAT_BATH, PISTON, WALL_NAMES
 
-__all__ = ["column", "inside", "matrix", "natural_time", "sides_of"]
+__all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "whole"]
 
 Array = NDArray[np.float64]
 
@@ -60,6 +60,40 @@ def column(values: ArrayLike, n: int, name: str, *, above: float | None = None, 
         limit = f"above {above:g}" if above is not None else f"{least:g} or above"
         raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
     return np.broadcast_to(array, (n,)).copy()
+
+
+def number(value: Any, name: str, *, least: float = -math.inf, most: float = math.inf, infinite: bool = False) -> float:
+    """Return a number within its limits, or refuse.
+
+    Examples
+    --------
+    >>> number(9.8, "gravity", least=0.0)
+    9.8
+    """
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} = {value!r} is not a number: give a number") from None
+    if math.isnan(found) or (math.isinf(found) and not infinite) or not least <= found <= most:
+        limits = f"from {least:g}" + (f" to {most:g}" if math.isfinite(most) else " up")
+        raise RefusedError(
+            f"{name} = {value!r} is impossible: give a finite number" + (f" {limits}" if math.isfinite(least) else "")
+        )
+    return found
+
+
+def whole(value: Any, name: str, *, least: int) -> int:
+    """Return a whole number that is large enough, or refuse.
+
+    Examples
+    --------
+    >>> whole(25, "layers", least=1)
+    25
+    """
+    found = number(value, name, least=least)
+    if found != math.floor(found):
+        raise RefusedError(f"{name} = {value!r} is not a whole number: give one from {least} up")
+    return int(value)
 
 
 def sides_of(length: Any) -> Array:

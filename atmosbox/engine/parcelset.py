@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from atmosbox.engine.calendar import new_calendar
 from atmosbox.engine.cells import ROW, choose_grid, size_classes
 from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, Modes, specialise
-from atmosbox.engine.inputs import column, inside, matrix, natural_time, sides_of
+from atmosbox.engine.inputs import column, inside, matrix, natural_time, number, sides_of, whole
 from atmosbox.engine.refusal import RefusedError, StalledError
-from atmosbox.engine.state import EVENT, KIND, MOLECULE, Box, Cells, Kinds, Tallies, aligned_records
+from atmosbox.engine.start import packing_fraction
+from atmosbox.engine.state import EVENT, KIND, MOLECULE, SLOT_OFFSET, Box, Cells, Kinds, Tallies, aligned_records
 from atmosbox.engine.walls import HEAT_BATH, PERIODIC, PISTON, WALL_NAMES, Specular, Wall, new_walls, wall_kT
 
 __all__ = ["Driver", "ParcelSet", "Snapshot"]
@@ -122,13 +123,15 @@ class ParcelSet:
             raise RefusedError("the rotational degrees of freedom of a molecule are 0, 2 or 3")
         spin = column(0.0 if rotational_energy is None else rotational_energy, n, "rotational_energy", least=0.0)
         sides = sides_of(length)
-        if not (math.isfinite(gravity) and gravity >= 0.0):
-            raise RefusedError(f"gravity = {gravity} must be 0 or above: it acts downward, along -z")
-        if not collision_number >= 1.0:
-            raise RefusedError(f"collision_number = {collision_number} must be 1 or above")
+        gravity = number(gravity, "gravity", least=0.0)
+        collision_number = number(collision_number, "collision_number", least=1.0, infinite=True)
+        layers = whole(layers, "layers", least=1)
+        seed = whole(seed, "seed", least=0)
         if planar and (v[:, 1] != 0.0).any():
             raise RefusedError("a plane gas has no velocity along y: make the second column of velocity 0")
-        self._walls = new_walls(tuple(walls), float(sides[2]))
+        if planar and n and np.ptp(x[:, 1]) > 0.0:
+            raise RefusedError("the centres of a plane gas lie in one plane: make the second column of position equal")
+        self._walls = new_walls(tuple(walls) if isinstance(walls, Sequence) else (), float(sides[2]))
         law = self._walls.law
         self._periodic = (law[0] == PERIODIC, law[2] == PERIODIC, law[4] == PERIODIC)
         if gravity > 0.0 and self._periodic[2]:
@@ -147,15 +150,15 @@ class ParcelSet:
         self._molecules["kind"] = kind
         self._spread = natural_time(v, sides, n, self._walls, self._mass, gravity)
         self._box = self._new_box(gravity, collision_number)
-        words = np.random.SeedSequence(int(seed)).generate_state(1, np.uint64)
+        words = np.random.SeedSequence(seed).generate_state(1, np.uint64)
         self._tallies = Tallies(
             count=np.zeros(5, np.int64),
             impulse=np.zeros(6),
             heat=np.zeros(6),
             hits=np.zeros(6, np.int64),
             work=np.zeros(6),
-            virial=np.zeros(max(int(layers), 1)),
-            layer_scale=max(int(layers), 1) / float(sides[2]),
+            virial=np.zeros(layers),
+            layer_scale=layers / float(sides[2]),
             random=words,
             progress=np.array([-math.inf, 0.0]),
         )
@@ -369,16 +372,15 @@ class ParcelSet:
         StalledError
             If events pile up without end in a vanishing time.
         """
-        if not (math.isfinite(until) and until >= self.time):
-            raise RefusedError(f"until = {until} lies before now, t = {self.time}, or is not finite")
+        until = number(until, "until")
+        if until < self.time:
+            raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         while True:
             stop = until
             if self._driver is not None:
                 stop = min(stop, (self._turn + 1) * self._driver.interval)
             local = stop - float(self._walls.epoch[0])
-            if local > self._epoch_length:
-                self._resolve(self._epoch_length, watch)
-                self._rebase()
+            if local > self._epoch_length and self._shift(local, watch):
                 continue
             self._resolve(local, watch)
             if self._driver is None or stop < (self._turn + 1) * self._driver.interval:
@@ -401,17 +403,12 @@ class ParcelSet:
         if not math.isfinite(velocity):
             raise RefusedError(f"velocity of the piston = {velocity} is not finite: give a finite number")
         self._walls.piston[:] = self.ceiling, velocity, self._now
-        top = self._cells_top
         if self.ceiling > 1.5 * self._filled or self.ceiling < 0.6 * self._filled:
             self._lay_out()
             return
-        # below the layer in which the ceiling stands no molecule can meet it before it changes its slot
-        lowest = (
-            self.ceiling if velocity >= 0.0 or self._driver is None else self.ceiling + velocity * self._driver.interval
-        )
-        lowest = 0.0 if velocity < 0.0 and self._driver is None else lowest
-        layer = int(lowest / top * self._cells.number_z) - 1
-        layer = min(max(layer, 0), self._cells.number_z - 1)
+        lowest = self.ceiling
+        if velocity < 0.0:
+            lowest += velocity * self._driver.interval if self._driver is not None else -math.inf
         self._replan(
             self._molecules,
             self._events,
@@ -421,7 +418,7 @@ class ParcelSet:
             self._box,
             self._walls,
             self._now,
-            layer,
+            lowest,
         )
 
     # ------------------------------------------------------------------ how
@@ -432,26 +429,49 @@ class ParcelSet:
 
     def _resolve(self, local: float, watch: Callable[[float], None] | None) -> None:
         """Resolve all events up to a local time."""
+        crushed = math.inf
+        if self.piston_velocity < 0.0:
+            crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
+            if crushed <= self._now:
+                raise StalledError(self._why_crushed())
+        stop = min(local, crushed)
         with np.errstate(over="ignore"):
             while True:
                 status, _ = self._advance(
                     self._molecules, self._events, self._kinds, self._cells, self._calendar,
-                    self._box, self._walls, self._tallies, local, _CHUNK,
+                    self._box, self._walls, self._tallies, stop, _CHUNK,
                 )  # fmt: skip
                 if status == ROW_FULL:
                     self._grow_rows()
                 elif status == STALLED:
+                    self._now = min(float(self._calendar.time[1]), stop)
                     raise StalledError(self._why_stalled())
                 elif status == BUSY:
                     if watch is not None:
                         watch(float(self._walls.epoch[0]) + float(self._calendar.time[1]))
                 else:
                     break
-        self._now = local
+        self._now = stop
+        if crushed < local:
+            raise StalledError(self._why_crushed())
 
-    def _rebase(self) -> None:
-        """Move the epoch on: all clocks read small numbers again, so that time keeps its digits for ever."""
-        step = self._epoch_length
+    def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
+        """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
+
+        By how much depends on events alone, never on where a run is cut.
+        """
+        if self._now < self._epoch_length:
+            self._resolve(self._epoch_length, watch)
+        ahead = float(self._calendar.time[1])
+        if self._driver is not None:
+            ahead = min(ahead, (self._turn + 1) * self._driver.interval - float(self._walls.epoch[0]))
+        if math.isinf(ahead):
+            return False
+        self._rebase(max(1.0, math.floor(ahead / self._epoch_length)) * self._epoch_length)
+        return True
+
+    def _rebase(self, step: float) -> None:
+        """Let all clocks read small numbers again, so that time keeps its digits for ever."""
         self._molecules["clock"] -= step
         self._events["contact_time"] -= step
         times = self._calendar.time
@@ -475,6 +495,7 @@ class ParcelSet:
         n = self.number
         moving = self._walls.law[5] == PISTON
         self._filled = self.ceiling
+        self._lowest_ceiling = self._crushing_height()
         self._cells_top = 1.75 * self._filled if moving else self._filled
         kT = self._mean_kT()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
@@ -501,7 +522,9 @@ class ParcelSet:
         )
         place, self._advance, self._replan, self._overlap = specialise(self._modes)
         self._events = aligned_records(n, EVENT)
-        slot = np.ndarray((n, 3), np.uint16, self._events.data, EVENT.fields["slot_x"][1], (EVENT.itemsize, 2))  # type: ignore[index]
+        slot = np.zeros((0, 3), np.uint16)
+        if n:
+            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
         stride = ROW
         while True:
             cells = math.prod(grid.number)
@@ -533,6 +556,15 @@ class ParcelSet:
             if status != ROW_FULL:
                 return
             stride *= 2
+
+    def _crushing_height(self) -> float:
+        """Return how low the ceiling may come: molecules filling 0.6 of the box, or a thousandth of the start."""
+        sigma = self._diameter
+        lowest = 1e-3 * float(self._sides[2])
+        if sigma.size:
+            filled = packing_fraction([float(self._sides[0]), float(self._sides[1]), 1.0], sigma, planar=self._planar)
+            lowest = max(lowest, filled / 0.6, 1.02 * float(sigma.max()))
+        return lowest
 
     def _classify(self, spin: Array) -> tuple[Kinds, NDArray[np.int64]]:
         """Gather equal molecules into kinds."""
@@ -577,17 +609,27 @@ class ParcelSet:
         ]
         return max([kT, *baths]) if kT > 0.0 or baths else potential / self.number
 
+    def _why_crushed(self) -> str:
+        return (
+            f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, where it would crush the molecules: "
+            "stop it earlier, or let it move more slowly"
+        )
+
     def _why_stalled(self) -> str:
-        walls = [w for w in range(6) if self._walls.law[w] == HEAT_BATH]
-        coldest = min(walls, key=lambda w: self._walls.schedule_kT[self._walls.schedule[w]], default=None)
-        if coldest is not None and self.gravity > 0.0:
-            kT = float(self._walls.schedule_kT[self._walls.schedule[coldest]])
+        """Return a sentence on why events pile up, naming what to change."""
+        baths = [w for w in range(6) if self._walls.law[w] == HEAT_BATH]
+        kT = self.wall_kT()
+        coldest = min(baths, key=lambda w: kT[w], default=None)
+        mean = 2.0 * self.energy()[0] / (3.0 * self.number)
+        if coldest is not None and (kT[coldest] <= 1e-6 * mean or kT[coldest] < 1e-100 or self.gravity > 0.0):
             cause = (
-                f"wall {WALL_NAMES[coldest]} at kT = {kT:.3g} is too cold for gravity {self.gravity:.3g}: "
-                "warm it or reduce gravity"
+                f"wall {WALL_NAMES[coldest]} at kT = {kT[coldest]:.3g} is too cold: "
+                f"warm it{', or reduce the gravity of ' + format(self.gravity, '.3g') if self.gravity else ''}"
             )
-        elif self._walls.law[5] == PISTON:
-            cause = f"the piston at {self.ceiling:.6g} crushes the molecules: stop it earlier"
+        elif self._walls.law[5] == PISTON and self.piston_velocity < 0.0:
+            cause = f"the piston, at {self.ceiling:.6g}, leaves too little room: stop it earlier"
+        elif self.gravity > 0.0:
+            cause = f"molecules come to rest: reduce the gravity of {self.gravity:.3g}, or give them more energy"
         else:
-            cause = "molecules are jammed: lower the packing fraction or the gravity"
+            cause = "molecules are jammed: lower the packing fraction"
         return f"events pile up without end at t = {self.time:.6g}: {cause}"

@@ -4,7 +4,6 @@ What cannot be packed is refused within a second, with the reason.
 """
 
 import math
-import time
 from collections.abc import Sequence
 
 import numpy as np
@@ -27,7 +26,10 @@ Array = NDArray[np.float64]
 _DENSEST = math.pi / math.sqrt(18.0)
 _DENSEST_PLANE = math.pi / math.sqrt(12.0)
 _GAP = 1e-6
-_PATIENCE = 0.7
+_ROUNDS = 8
+_PATIENCE = 12
+_DENSEST_RANDOM = 0.62
+_DENSEST_RANDOM_PLANE = 0.82
 
 
 def packing_fraction(length: Sequence[float], diameter: ArrayLike, *, planar: bool = False) -> float:
@@ -128,16 +130,15 @@ def random_positions(
     turn = sides * np.array(periodic)
     if n < 2 or sigma.max() == 0.0:
         return x
-    limit = math.inf
-    while _push_apart(x, 0.5 * sigma, low, high, turn, 8, _GAP) > 0:
-        if limit == math.inf:  # the clock starts once the kernel is compiled
-            limit = time.monotonic() + _PATIENCE + 3e-5 * n
-        if time.monotonic() > limit:
-            phi = packing_fraction(list(sides), sigma, planar=planar)
-            raise PackingError(
-                f"{n} molecules fill {phi:.3g} of the space, too much for a random start: "
-                "take fewer or smaller molecules, a larger box, or a lattice start"
-            )
+    phi = packing_fraction(list(sides), sigma, planar=planar)
+    if np.ptp(sigma) == 0.0 and phi > (_DENSEST_RANDOM_PLANE if planar else _DENSEST_RANDOM):
+        raise _too_dense(n, sides, sigma, planar)
+    best, since = math.inf, 0
+    while (pairs := _push_apart(x, 0.5 * sigma, low, high, turn, _ROUNDS, _GAP)) > 0:
+        since = 0 if pairs < 0.97 * best else since + 1
+        best = min(best, pairs)
+        if since > _PATIENCE:
+            raise _too_dense(n, sides, sigma, planar)
     return x
 
 
@@ -312,6 +313,15 @@ def rotational_energies(kT: ArrayLike, rotation: ArrayLike, rng: np.random.Gener
     return np.asarray(rng.standard_gamma(0.5 * degrees) * np.asarray(kT, np.float64))
 
 
+def _too_dense(n: int, sides: Array, sigma: Array, planar: bool) -> PackingError:
+    """Return the refusal of what only a lattice could hold."""
+    phi = packing_fraction(list(sides), sigma, planar=planar)
+    return PackingError(
+        f"{n} molecules fill {phi:.3g} of the space, too much for a random start: "
+        "take fewer or smaller molecules, a larger box, or a lattice start"
+    )
+
+
 def _refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bool], planar: bool) -> None:
     """Refuse what geometry alone forbids."""
     if not (np.isfinite(sides).all() and (sides > 0.0).all()):
@@ -335,32 +345,79 @@ def _refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, b
         )
 
 
+@kernel
+def _push_pair(x, radius, low, high, turn, gap, moves, i, j):
+    """Push two molecules apart if they overlap; return whether they did."""
+    dx = x[j, 0] - x[i, 0]
+    dy = x[j, 1] - x[i, 1]
+    dz = x[j, 2] - x[i, 2]
+    if turn[0] > 0.0:
+        dx -= turn[0] * np.rint(dx / turn[0])
+    if turn[1] > 0.0:
+        dy -= turn[1] * np.rint(dy / turn[1])
+    if turn[2] > 0.0:
+        dz -= turn[2] * np.rint(dz / turn[2])
+    touching = radius[i] + radius[j]
+    square = dx * dx + dy * dy + dz * dz
+    if square >= (touching * (1.0 + 0.5 * gap)) ** 2:
+        return 0
+    distance = math.sqrt(square)
+    wanted = touching * (1.0 + gap)
+    if distance < 1e-9 * wanted:
+        dx, dy, dz, distance = wanted * 1e-3, 0.0, wanted * 1e-3, wanted * 1.5e-3
+    # a little more than needed, the larger sphere moving less
+    push = 1.05 * (wanted - distance) / distance
+    share = radius[j] ** 3 / (radius[i] ** 3 + radius[j] ** 3)
+    for axis in range(3):
+        d = dx if axis == 0 else (dy if axis == 1 else dz)
+        x[i, axis] -= share * push * d
+        x[j, axis] += (1.0 - share) * push * d
+        for k in (i, j):
+            if turn[axis] > 0.0:
+                x[k, axis] -= turn[axis] * math.floor(x[k, axis] / turn[axis])
+            else:
+                x[k, axis] = min(max(x[k, axis], low[k, axis]), high[k, axis])
+    moves[i] = True
+    moves[j] = True
+    return 1
+
+
 @kernel(entry=True)
 def _push_apart(x, radius, low, high, turn, rounds, gap):
-    """Push overlapping molecules apart, some rounds; return how many pairs overlapped in the last one."""
+    """Push overlapping molecules apart, some rounds; return how many pairs were pushed in the last one.
+
+    Only pairs of which one has just moved are looked at again, so that late rounds cost little.
+    """
     n = radius.size
     widest = 2.0 * radius.max() * (1.0 + gap)
     number = np.ones(3, np.int64)
     origin = np.zeros(3)
     size = np.ones(3)
+    most = max(int((2.0 * n) ** 0.5), 4)
     for axis in range(3):
         if turn[axis] > 0.0:
             size[axis] = turn[axis]
         else:
             origin[axis] = low[:, axis].min()
             size[axis] = max(high[:, axis].max() - origin[axis], 1e-300)
-        most = max(int((2.0 * n) ** (1.0 / 2.0)), 4)
         number[axis] = max(1, min(int(size[axis] / widest), most))
         if turn[axis] > 0.0 and number[axis] < 3:
             number[axis] = 1
-    cells = number[0] * number[1] * number[2]
-    head = np.empty(cells, np.int64)
+    while number[0] * number[1] * number[2] > 4 * n + 64:
+        number[np.argmax(number)] = max(1, number.max() // 2)
+        for axis in range(3):
+            if turn[axis] > 0.0 and number[axis] < 3:
+                number[axis] = 1
+    head = np.empty(number[0] * number[1] * number[2], np.int64)
     follower = np.empty(n, np.int64)
     place = np.empty((n, 3), np.int64)
-    overlaps = 0
+    moved = np.ones(n, np.bool_)
+    moves = np.zeros(n, np.bool_)
+    pushed = 0
     for _ in range(rounds):
-        overlaps = 0
+        pushed = 0
         head[:] = -1
+        moves[:] = False
         for i in range(n):
             for axis in range(3):
                 k = int((x[i, axis] - origin[axis]) / size[axis] * number[axis])
@@ -369,6 +426,8 @@ def _push_apart(x, radius, low, high, turn, rounds, gap):
             follower[i] = head[c]
             head[c] = i
         for i in range(n):
+            if not moved[i]:
+                continue
             for a in range(-1, 2):
                 p = place[i, 0] + a
                 if turn[0] > 0.0 and number[0] > 1:
@@ -389,36 +448,10 @@ def _push_apart(x, radius, low, high, turn, rounds, gap):
                             continue
                         j = head[(p * number[1] + q) * number[2] + r]
                         while j >= 0:
-                            if j > i:
-                                dx = x[j, 0] - x[i, 0]
-                                dy = x[j, 1] - x[i, 1]
-                                dz = x[j, 2] - x[i, 2]
-                                if turn[0] > 0.0:
-                                    dx -= turn[0] * np.rint(dx / turn[0])
-                                if turn[1] > 0.0:
-                                    dy -= turn[1] * np.rint(dy / turn[1])
-                                if turn[2] > 0.0:
-                                    dz -= turn[2] * np.rint(dz / turn[2])
-                                wanted = (radius[i] + radius[j]) * (1.0 + gap)
-                                square = dx * dx + dy * dy + dz * dz
-                                if square < wanted * wanted:
-                                    distance = math.sqrt(square)
-                                    overlaps += 1 if distance < radius[i] + radius[j] else 0
-                                    if distance < 1e-9 * wanted:
-                                        dx, dy, dz, distance = wanted * 1e-3, 0.0, wanted * 1e-3, wanted * 1.5e-3
-                                    # a little more than needed, the larger sphere moving less
-                                    push = 1.05 * (wanted - distance) / distance
-                                    share = radius[j] ** 3 / (radius[i] ** 3 + radius[j] ** 3)
-                                    for axis in range(3):
-                                        d = dx if axis == 0 else (dy if axis == 1 else dz)
-                                        x[i, axis] -= share * push * d
-                                        x[j, axis] += (1.0 - share) * push * d
-                                        for k in (i, j):
-                                            if turn[axis] > 0.0:
-                                                x[k, axis] -= turn[axis] * math.floor(x[k, axis] / turn[axis])
-                                            else:
-                                                x[k, axis] = min(max(x[k, axis], low[k, axis]), high[k, axis])
+                            if j != i and (j > i or not moved[j]):
+                                pushed += _push_pair(x, radius, low, high, turn, gap, moves, i, j)
                             j = follower[j]
-        if overlaps == 0:
+        if pushed == 0:
             break
-    return overlaps
+        moved[:] = moves
+    return pushed

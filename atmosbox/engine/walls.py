@@ -101,6 +101,8 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
     >>> new_walls((Specular(),) * 5 + (Piston(0.1),), 2.0).piston
     array([2. , 0.1, 0. ])
     """
+    if len(walls) != 6:
+        raise RefusedError(f"{len(walls)} walls are given: give six, {', '.join(WALL_NAMES)}")
     laws = _Laws()
     velocity = 0.0
     for name, wall in zip(WALL_NAMES, walls, strict=True):
@@ -112,17 +114,25 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
             law = PERIODIC
         elif isinstance(wall, HeatBath):
             law = HEAT_BATH
-            accommodation = float(wall.accommodation)
+            try:
+                accommodation = float(wall.accommodation)
+            except (TypeError, ValueError):
+                accommodation = math.nan
             if not 0.0 <= accommodation <= 1.0:
-                raise RefusedError(f"the accommodation of wall {name} = {wall.accommodation} is outside 0 to 1")
+                raise RefusedError(
+                    f"the accommodation of wall {name} = {wall.accommodation!r} is no number from 0 to 1"
+                )
             corners = as_schedule(wall.kT, f"kT of wall {name}")
         elif isinstance(wall, Piston):
             law = PISTON
             if name != "z_high":
                 raise RefusedError(f"wall {name} cannot be a piston: only the ceiling, z_high, moves")
-            velocity = float(wall.velocity)
+            try:
+                velocity = float(wall.velocity)
+            except (TypeError, ValueError):
+                velocity = math.nan
             if not math.isfinite(velocity):
-                raise RefusedError(f"velocity of the piston = {wall.velocity} is not finite: give a finite number")
+                raise RefusedError(f"velocity of the piston = {wall.velocity!r} is not finite: give a finite number")
         else:
             raise RefusedError(f"wall {name} = {wall!r} is no law: give Specular, Periodic, HeatBath or Piston")
         laws.law.append(law)

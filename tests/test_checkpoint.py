@@ -1,0 +1,192 @@
+"""The file of a run that goes on, is killed, or is finished."""
+
+import errno
+import inspect
+import os
+import signal
+import subprocess
+import sys
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from atmosbox.checkpoint import Checkpoint
+from atmosbox.diagnostics import dataset
+from atmosbox.errors import DiskFullError, FileError
+from atmosbox.output import global_attributes, read, write
+
+
+def run_so_far(frames):
+    times = np.arange(1.0, frames + 1)
+    attrs = global_attributes({"scene": "temperature"}, title="A box", command="a test", status="partial")
+    return dataset({"air_temperature": 300.0 + times}, {"elapsed_time": times}, attrs)
+
+
+CHILD = f"""
+import os, sys, time
+import numpy as np
+from atmosbox.checkpoint import Checkpoint
+from atmosbox.diagnostics import dataset
+from atmosbox.output import global_attributes
+
+{inspect.getsource(run_so_far)}
+"""
+
+
+def child(code, *arguments, **options):
+    """Start a Python that runs this code after the definitions of CHILD."""
+    command = [sys.executable, "-W", "error", "-c", CHILD + code, *map(str, arguments)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, **options)
+
+
+def failing(number):
+    def fail(*_arguments, **_options):
+        raise OSError(number, os.strerror(number))
+
+    return fail
+
+
+def frames_in(path):
+    return read(path).sizes["elapsed_time"]
+
+
+def test_a_checkpoint_keeps_the_run_so_far_and_the_finished_run_takes_its_place(tmp_path):
+    checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=0.0)
+    assert checkpoint(lambda: run_so_far(3))
+    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
+    assert read(checkpoint.part).identical(run_so_far(3).assign_attrs(read(checkpoint.part).attrs))
+    assert checkpoint.finish(run_so_far(5)) == tmp_path / "run.nc"
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+    assert frames_in(tmp_path / "run.nc") == 5
+
+
+def test_a_checkpoint_refuses_a_bad_place_before_the_run(tmp_path):
+    write(run_so_far(3), tmp_path / "run.nc")
+    with pytest.raises(FileError, match="--force"):
+        Checkpoint(tmp_path / "run.nc")
+    assert Checkpoint(tmp_path / "run.nc", force=True).finish(run_so_far(5)) == tmp_path / "run.nc"
+
+
+def test_a_checkpoint_waits_and_takes_less_than_a_twentieth_of_the_time(tmp_path, monkeypatch):
+    clock = SimpleNamespace(now=100.0, writing=0.0, written=[])
+    checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=2.0, clock=lambda: clock.now)
+
+    def slow(_path, _dataset):
+        cost = 0.002 * (clock.now - 100.0)  # the file grows with the run
+        clock.written.append(clock.now - 100.0)
+        clock.now += cost
+        clock.writing += cost
+
+    monkeypatch.setattr("atmosbox.checkpoint.replace_file", slow)
+    while clock.now < 1100.0:
+        clock.now += 0.01
+        checkpoint(lambda: None)
+    gaps = np.diff(clock.written)
+    assert clock.written[0] == pytest.approx(2.0, abs=0.02)
+    assert gaps.min() >= 2.0
+    assert 0.02 * 1000.0 < clock.writing < 0.05 * 1000.0
+    assert 1000.0 - clock.written[-1] < 100.0
+
+
+def test_a_dataset_is_made_only_when_it_is_written(tmp_path):
+    checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=3600.0)
+    assert not checkpoint(pytest.fail)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_full_disk_during_the_run_keeps_the_part(tmp_path, monkeypatch):
+    checkpoint = Checkpoint(tmp_path / "run.nc")
+    checkpoint.save(run_so_far(3))
+    monkeypatch.setattr(os, "fsync", failing(errno.ENOSPC))
+    with pytest.raises(DiskFullError, match=r"run\.part\.nc, which stays as it was"):
+        checkpoint.finish(run_so_far(5))
+    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
+    assert frames_in(checkpoint.part) == 3
+
+
+def test_a_file_that_appears_during_the_run_is_not_overwritten(tmp_path):
+    checkpoint = Checkpoint(tmp_path / "run.nc")
+    (tmp_path / "run.nc").write_text("another's")
+    with pytest.raises(FileError, match=r"run\.part\.nc"):
+        checkpoint.finish(run_so_far(5))
+    assert (tmp_path / "run.nc").read_text() == "another's"
+    assert frames_in(checkpoint.part) == 5
+
+
+def test_a_finished_run_that_cannot_take_its_name_stays_in_its_part(tmp_path):
+    checkpoint = Checkpoint(tmp_path / "run.nc", force=True)
+    (tmp_path / "run.nc").mkdir()
+    with pytest.raises(FileError, match="could not be written"):
+        checkpoint.finish(run_so_far(5))
+    assert frames_in(checkpoint.part) == 5
+
+
+def test_an_abandoned_run_leaves_nothing_of_its_own(tmp_path):
+    checkpoint = Checkpoint(tmp_path / "run.nc")
+    checkpoint.save(run_so_far(3))
+    checkpoint.abandon()
+    checkpoint.abandon()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_part_of_an_earlier_run_is_told_of_and_kept_until_it_is_replaced(tmp_path):
+    Checkpoint(tmp_path / "run.nc").save(run_so_far(3))
+    checkpoint = Checkpoint(tmp_path / "run.nc")
+    assert checkpoint.stale
+    checkpoint.abandon()
+    assert frames_in(checkpoint.part) == 3
+    checkpoint.save(run_so_far(5))
+    assert frames_in(checkpoint.part) == 5
+
+
+def test_a_run_killed_while_it_writes_leaves_the_frames_before(tmp_path):
+    code = """
+checkpoint = Checkpoint(sys.argv[1], every_seconds=0.0)
+for frames in (3, 4):
+    checkpoint.save(run_so_far(frames))
+
+def hang(_file):
+    print("writing", flush=True)
+    time.sleep(60)
+
+os.fsync = hang
+checkpoint.save(run_so_far(5))
+"""
+    path = tmp_path / "run.nc"
+    with child(code, path) as process:
+        assert process.stdout.readline() == "writing\n"
+        process.send_signal(signal.SIGKILL)
+    assert process.returncode == -signal.SIGKILL
+    found = read(tmp_path / "run.part.nc")
+    assert found.sizes["elapsed_time"] == 4
+    assert found.attrs["atmosbox_status"] == "partial"
+    with pytest.raises(FileError, match=r"run\.nc does not exist: a run that was stopped left .*run\.part\.nc"):
+        read(path)
+
+    (left,) = tmp_path.glob(".*.tmp")
+    Checkpoint(path).save(run_so_far(3))
+    assert left.exists()  # it could be another run's that is still going
+    os.utime(left, (0, 0))
+    Checkpoint(path).finish(run_so_far(3))
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_a_run_killed_at_any_moment_leaves_a_file_that_opens(tmp_path):
+    code = """
+checkpoint = Checkpoint(sys.argv[1])
+for frames in range(1, 10_000):
+    checkpoint.save(run_so_far(frames))
+    print(frames, flush=True)
+"""
+    for frames in (1, 4, 9):
+        with child(code, tmp_path / f"{frames}.nc") as process:
+            while int(process.stdout.readline()) < frames:
+                pass
+            time.sleep(0.003 * frames)
+            process.kill()
+        found = read(tmp_path / f"{frames}.part.nc")
+        assert found.sizes["elapsed_time"] >= frames
+        assert found.air_temperature.values[-1] == 300.0 + found.sizes["elapsed_time"]

@@ -1,0 +1,176 @@
+"""What a user asks for by ``--set`` and in a settings file."""
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from atmosbox.config import load_config, parse_set
+from atmosbox.errors import ConfigError, FileError, SettingError
+from atmosbox.settings import SceneSettings, setting
+
+
+class Settings(SceneSettings):
+    molecules: int = setting(4000, "1", "number of simulated molecules", low=1, high=10_000_000)
+    temperature: float = setting(15, "degC", "temperature at the start", low=-100.0, high=500.0)
+    pressure_top: float = setting(300.0, "hPa", "pressure at which the lift ends", low=50.0, high=1000.0)
+    rotation: bool = setting(True, "", "whether molecules rotate")
+    title: str = setting("", "", "what stands above the figure")
+
+
+# --set
+
+
+def test_set_reads_name_and_value():
+    assert parse_set(["temperature=25degC", " pressure-top = 300 hPa ", "title='a = b'", 'start="bottom"']) == {
+        "temperature": "25degC",
+        "pressure_top": "300 hPa",
+        "title": "a = b",
+        "start": "bottom",
+    }
+    assert parse_set([]) == {}
+
+
+@pytest.mark.parametrize(
+    ("items", "sentence"),
+    [
+        (
+            ["temperature"],
+            '--set temperature has no "=" between name and value: '
+            "give --set temperature=value, such as --set temperature=25degC.",
+        ),
+        (["=5"], "--set =5 has no name: give --set name=value, such as --set temperature=25degC."),
+        (["a="], "--set a= has no value: give --set a=value, such as --set temperature=25degC."),
+        (["a=''"], "--set a='' has no value: give --set a=value, such as --set temperature=25degC."),
+        (["a-b=1", "a_b=2"], "a_b = 2 is given twice: give --set a_b once."),
+    ],
+)
+def test_a_malformed_set_is_refused_with_its_text(items, sentence):
+    with pytest.raises(SettingError) as caught:
+        parse_set(items)
+    assert str(caught.value) == sentence
+
+
+@given(st.lists(st.text(max_size=20) | st.builds("{}={}".format, st.text(max_size=8), st.text(max_size=8)), max_size=3))
+def test_any_set_is_read_or_refused_in_one_sentence(items):
+    try:
+        values = parse_set(items)
+        Settings.from_user(values)
+    except SettingError as error:
+        sentence = str(error)
+        assert sentence.isprintable()
+        assert sentence.endswith(".")
+
+
+# --config
+
+
+def written(tmp_path, content):
+    path = tmp_path / "lift.toml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def test_a_settings_file_names_a_scene_and_its_settings(tmp_path):
+    path = written(
+        tmp_path,
+        'scene = "lifting-dry"\r\n\r\n[settings]\r\ntemperature = "25degC" # warm\r\nmolecules = 4_000\r\n'
+        "pressure-top = 300.0\r\nrotation = false\r\n",
+    )
+    scene, settings = load_config(path)
+    assert scene == "lifting-dry"
+    assert settings == {"temperature": "25degC", "molecules": 4000, "pressure-top": 300.0, "rotation": False}
+    assert Settings.from_user(settings).changed() == {"temperature": 25.0, "rotation": False}
+    assert load_config(str(path)) == (scene, settings)
+
+
+@pytest.mark.parametrize(
+    ("content", "result"),
+    [
+        ("", (None, {})),
+        ('\ufeffscene = " sky "', ("sky", {})),
+        ("[settings]", (None, {})),
+        ("settings.seed = 5", (None, {"seed": 5})),
+    ],
+)
+def test_a_settings_file_may_leave_things_out(tmp_path, content, result):
+    assert load_config(written(tmp_path, content)) == result
+
+
+@pytest.mark.parametrize(
+    ("content", "problem", "fix"),
+    [
+        ("[settings]\nt = 25degC", ", line 2 is not TOML (", 'such as temperature = "25degC"'),
+        ("[settings]\nt = 1\nt = 2", ", line 3 is not TOML (", "write one name = value a line"),
+        ("a = " + "[" * 5000, " is not TOML: ", "write one name = value a line"),
+        ("a = " + "9" * 5000, " is not TOML: ", "write one name = value a line"),
+        (b"a = 1\n# caf\xe9", ", line 2 is not UTF-8 text", "save the file as UTF-8"),
+        ("scene = 1".encode("utf-16"), " is not a settings file", "saved as UTF-8"),
+        (b"#" * 1_000_001, " is not a settings file", "at most 1 MB"),
+        (b"\x89HDF\r\n\x1a\n", " is a netCDF file", "give it with --from"),
+        ("\ntemperature = 25\n", ", line 2 has temperature outside the table [settings]", "below a line"),
+        ("[setings]\nseed = 1", ", line 1 has setings outside the table [settings]", "name it settings"),
+        ("[plot]\nsize = 1", ", line 1 has plot outside", "below a line [settings]"),
+        ("scene = 5", ", line 1 has scene without a name", 'such as scene = "lifting-dry"'),
+        ("scene = ''", ", line 1 has scene without a name", 'such as scene = "lifting-dry"'),
+        ("settings = 5", ", line 1 has settings that is no table", "write a line [settings]"),
+        ("[[settings]]", ", line 1 has settings that is no table", "write a line [settings]"),
+        ("[settings]\n\na = [1]", ", line 3 has a as an array", "give one number"),
+        ("[settings]\n'a b' = {c = 1}", ", line 2 has a b as a table", "give one number"),
+        ("[settings.a]\nb = 1", ", line 1 has a as a table", "give one number"),
+        ("[settings]\na = 2020-01-01", ", line 2 has a as a date or a time", "give one number"),
+        ("[settings]\na = 07:32:00", ", line 2 has a as a date or a time", "give one number"),
+        ("[settings]\na = nan", ", line 2 has a as no finite number", "give one number"),
+        ("[settings]\na = -inf", ", line 2 has a as no finite number", "give one number"),
+    ],
+)  # fmt: skip
+def test_a_settings_file_that_says_something_else_is_refused_with_its_line(tmp_path, content, problem, fix):
+    path = written(tmp_path, content)
+    with pytest.raises(ConfigError) as caught:
+        load_config(path)
+    sentence = str(caught.value)
+    assert "lift.toml" in sentence
+    assert problem in sentence
+    assert fix in sentence
+    assert sentence.isprintable()
+    assert sentence.endswith(".")
+
+
+@pytest.mark.parametrize(
+    ("path", "reason"),
+    [("missing.toml", "No such file"), (".", "directory|denied"), ("a\0b", "not a path"), ("", "No such")],
+)
+def test_a_file_that_cannot_be_read_is_refused_with_its_path(tmp_path, monkeypatch, path, reason):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(FileError, match=rf"cannot be read \(.*({reason}).*\): give the path of a settings file\.$"):
+        load_config(path)
+
+
+toml = st.lists(
+    st.sampled_from(
+        ["scene", "settings", "[settings]", "[", "]", "\n", " = ", "=", ".", '"', "'", "'''", "a",
+         "temperature", "25", "degC", "{", "}", ",", "nan", "1e5", "2020-01-01", "true", "#", "\\", "\\u",
+         "é", "\r", "[[", "]]", "\ufeff"]
+    )
+).map(lambda parts: "".join(parts).encode())  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def any_file(tmp_path_factory):
+    return tmp_path_factory.mktemp("any") / "any.toml"
+
+
+@given(
+    content=st.binary(max_size=60) | st.text(max_size=60).map(lambda text: text.encode("utf-8", "surrogatepass")) | toml
+)
+@example(content=b"\xef\xbb\xbf\xef\xbb\xbf")
+def test_any_file_is_read_or_refused_in_one_sentence(any_file, content):
+    any_file.write_bytes(content)
+    try:
+        scene, settings = load_config(any_file)
+    except (ConfigError, FileError) as error:
+        sentence = str(error)
+        assert sentence.isprintable()
+        assert sentence.endswith(".")
+    else:
+        assert scene is None or scene.strip()
+        assert all(isinstance(value, bool | int | float | str) for value in settings.values())
