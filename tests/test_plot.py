@@ -617,7 +617,7 @@ def test_heavy_discs_have_a_thicker_rim(runs, drawings):
     (discs,) = [artist for artist in axes.collections if isinstance(artist, EllipseCollection)]
     rims, heavy = np.asarray(discs.get_linewidths()), run.disc_mass.values > 2 * AIR
     assert rims[heavy].min() > rims[~heavy].max()
-    assert "heavy: 4 × the mass" in written(drawings["elastic-collisions", "notes"])
+    assert "heavy half: 4 × the mass" in written(drawings["elastic-collisions", "notes"])
 
 
 def test_the_trails_of_discs_end_at_the_discs_and_fade_backwards(runs, drawings):

@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.calendar import new_calendar
 from atmosbox.engine.cells import ROW, choose_grid, size_classes
-from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, Modes, specialise
+from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, specialise
 from atmosbox.engine.inputs import column, inside, matrix, natural_time, number, sides_of, whole
+from atmosbox.engine.packing import packing_fraction
 from atmosbox.engine.refusal import RefusedError, StalledError
-from atmosbox.engine.start import packing_fraction
-from atmosbox.engine.state import EVENT, KIND, MOLECULE, SLOT_OFFSET, Box, Cells, Kinds, Tallies, aligned_records
+from atmosbox.engine.state import EVENT, KIND, MOLECULE, SLOT_OFFSET, Box, Cells, Kinds, Modes, Tallies, aligned_records
 from atmosbox.engine.walls import HEAT_BATH, PERIODIC, PISTON, WALL_NAMES, Specular, Wall, new_walls, wall_kT
 
 __all__ = ["Driver", "ParcelSet", "Snapshot"]
@@ -611,8 +611,8 @@ class ParcelSet:
 
     def _why_crushed(self) -> str:
         return (
-            f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, where it would crush the molecules: "
-            "stop it earlier, or let it move more slowly"
+            f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, where it would crush the "
+            "molecules: stop it earlier, or let it move more slowly"
         )
 
     def _why_stalled(self) -> str:

@@ -71,9 +71,9 @@ def gamma(degrees, state):
     0.0
     """
     energy = 0.0
-    if degrees >= 2.0:
-        energy -= math.log(uniform(state))
     if degrees >= 4.0:
+        energy -= math.log(uniform(state) * uniform(state))
+    elif degrees >= 2.0:
         energy -= math.log(uniform(state))
     if degrees == 1.0 or degrees == 3.0:
         normal, _ = gaussian_pair(state)

@@ -17,6 +17,7 @@ __all__ = [
     "Calendar",
     "Cells",
     "Kinds",
+    "Modes",
     "Tallies",
     "Walls",
     "aligned_records",
@@ -63,6 +64,22 @@ KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size", 
 
 Mass [mass], radius [length], rotational degrees of freedom, row of the table of cell boundaries.
 """
+
+
+class Modes(NamedTuple):
+    """What a scene requires.
+
+    Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
+    cells, periodic axes, a piston.
+    """
+
+    contacts: bool
+    gravity: bool
+    rotation: bool
+    mixed: bool
+    spanning: bool
+    periodic: bool
+    piston: bool
 
 
 class Box(NamedTuple):

@@ -19,9 +19,24 @@ def sheet(size: tuple[float, float]) -> Iterator[Figure]:
     """Return an empty figure of a size [inch], to be filled within the context."""
     import matplotlib
 
-    with style(THEMES["notes"]), matplotlib.rc_context({"font.size": 11, "axes.titlesize": 12.5, "axes.titleweight": "bold",
-            "axes.titlelocation": "left", "axes.labelsize": 11, "xtick.labelsize": 10.5, "ytick.labelsize": 10.5,
-            "legend.fontsize": 10.5, "lines.linewidth": 1.8, "lines.markersize": 6, "axes.grid": True}):  # fmt: skip
+    with (
+        style(THEMES["notes"]),
+        matplotlib.rc_context(
+            {
+                "font.size": 11,
+                "axes.titlesize": 12.5,
+                "axes.titleweight": "bold",
+                "axes.titlelocation": "left",
+                "axes.labelsize": 11,
+                "xtick.labelsize": 10.5,
+                "ytick.labelsize": 10.5,
+                "legend.fontsize": 10.5,
+                "lines.linewidth": 1.8,
+                "lines.markersize": 6,
+                "axes.grid": True,
+            }
+        ),
+    ):
         drawing = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(drawing)
         drawing.get_layout_engine().set(w_pad=0.08, h_pad=0.06, wspace=0.04)

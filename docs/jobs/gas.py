@@ -9,7 +9,7 @@ from jobs.registry import Findings, job
 from atmosbox import theory
 from atmosbox.engine.measure import temperature
 from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions, rotational_energies
+from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions
 from atmosbox.engine.walls import Periodic
 from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
 
@@ -66,7 +66,7 @@ def pressure_and_rate(packing: float, contacts: float, seed: int) -> tuple[np.nd
 
 @job("equation-of-state")
 def equation_of_state(found: Findings) -> None:
-    """Pressure and collision rate of hard spheres from a thin gas to the brink of freezing."""
+    """Measure pressure and collision rate of hard spheres from a thin gas to the brink of freezing."""
     cases = {0.01: 4e6, 0.1: 4e6, 0.3: 6e6, 0.494: 1.2e7}
     points = []
     for packing, contacts in cases.items():
@@ -74,10 +74,23 @@ def equation_of_state(found: Findings) -> None:
         density = packing * 6.0 / math.pi
         expected = float(theory.compressibility_factor(packing))
         often = float(theory.collision_rate(density, 1.0, 1.0, 1.0))
-        found.agree(f"Z at φ = {packing:g}", float(z.mean), float(z.standard_error), expected, limit=0.003 * expected,
-                    tolerance=2.0 * (expected - 1.0) / 2000)  # fmt: skip
-        found.agree(f"collisions of a molecule at φ = {packing:g}", float(rate.mean), float(rate.standard_error), often,
-                    unit="√(kT/m)/σ", limit=0.003 * often, tolerance=2.0 * often / 2000)  # fmt: skip
+        found.agree(
+            f"Z at φ = {packing:g}",
+            float(z.mean),
+            float(z.standard_error),
+            expected,
+            limit=0.003 * expected,
+            tolerance=2.0 * (expected - 1.0) / 2000,
+        )
+        found.agree(
+            f"collisions of a molecule at φ = {packing:g}",
+            float(rate.mean),
+            float(rate.standard_error),
+            often,
+            unit="√(kT/m)/σ",
+            limit=0.003 * often,
+            tolerance=2.0 * often / 2000,
+        )
         points.append((packing, float(z.mean), float(z.standard_error)))
         found.number(f"misfit-{packing:g}", f"{100.0 * (float(z.mean) / expected - 1.0):+.2f} %".replace("-", "−"))
     draw_equation_of_state(found, np.array(points))
@@ -87,27 +100,51 @@ def draw_equation_of_state(found: Findings, points: np.ndarray) -> None:
     """Draw Z against packing fraction, and how far it is from theory."""
     packing = np.linspace(0.0, 0.494, 200)
     with axes_of(2, (9.0, 4.6)) as (drawing, (left, right)):
-        left.plot(packing, theory.compressibility_factor(packing), "--", color="#1a1a1a", label="Kolafa, Labík, Malijevský 2004")
+        left.plot(
+            packing,
+            theory.compressibility_factor(packing),
+            "--",
+            color="#1a1a1a",
+            label="Kolafa, Labík, Malijevský 2004",
+        )
         left.plot(packing, 1.0 + 4.0 * packing, ":", color="#595959", label="1 + 4φ, a thin gas")
         left.plot(points[:, 0], points[:, 1], "o", label="molecules")
-        left.set(title="Spheres that take up room press harder", xlabel="packing fraction φ", ylabel="Z = p / n k T",
-                 xlim=(0.0, 0.51), ylim=(0.0, 13.5))  # fmt: skip
+        left.set(
+            title="Spheres that take up room press harder",
+            xlabel="packing fraction φ",
+            ylabel="Z = p / n k T",
+            xlim=(0.0, 0.51),
+            ylim=(0.0, 13.5),
+        )
         left.legend(loc="upper left")
         expected = theory.compressibility_factor(points[:, 0])
         right.axhline(0.0, ls="--", color="#1a1a1a", label="theory")
-        share = 100.0 * (theory.compressibility_factor(packing, "carnahan-starling") / theory.compressibility_factor(packing) - 1.0)
+        share = 100.0 * (
+            theory.compressibility_factor(packing, "carnahan-starling") / theory.compressibility_factor(packing) - 1.0
+        )
         right.plot(packing, share, "-.", color="#009e73", label="Carnahan and Starling 1969")
-        right.errorbar(points[:, 0], 100.0 * (points[:, 1] / expected - 1.0), 100.0 * points[:, 2] / expected, fmt="o",
-                       capsize=3, label="molecules")  # fmt: skip
-        right.set(title="The misfit", xlabel="packing fraction φ", ylabel="measured less theory, % of Z", xlim=(0.0, 0.51),
-                  ylim=(-0.4, 0.4))  # fmt: skip
+        right.errorbar(
+            points[:, 0],
+            100.0 * (points[:, 1] / expected - 1.0),
+            100.0 * points[:, 2] / expected,
+            fmt="o",
+            capsize=3,
+            label="molecules",
+        )
+        right.set(
+            title="The misfit",
+            xlabel="packing fraction φ",
+            ylabel="measured less theory, % of Z",
+            xlim=(0.0, 0.51),
+            ylim=(-0.4, 0.4),
+        )
         right.legend(loc="upper left")
         save(found, drawing, "equation-of-state")
 
 
 @job("maxwell")
 def maxwell(found: Findings) -> None:
-    """Two thousand molecules that start at one speed: a few collisions later their speeds are Maxwell's."""
+    """Start two thousand molecules at one speed: a few collisions later their speeds are Maxwell's."""
     n, snapshots = 2000, 100
     gas = cube(n, 0.05, 3, speeds=math.sqrt(3.0))
     contacts_pass(gas, 20.0 * n)
@@ -127,7 +164,7 @@ def maxwell(found: Findings) -> None:
 
 @job("equipartition")
 def equipartition(found: Findings) -> None:
-    """Five hundred molecules of mass 1 and as many of mass 100 start at one speed."""
+    """Start five hundred molecules of mass 1 and as many of mass 100 at one speed."""
     n = 1000
     mass = np.where(np.arange(n) < n // 2, 1.0, 100.0)
     gas = cube(n, 0.05, 5, mass=mass, speeds=1.0)
@@ -146,7 +183,7 @@ def equipartition(found: Findings) -> None:
 
 @job("larsen-borgnakke")
 def larsen_borgnakke(found: Findings) -> None:
-    """Molecules of air that start without rotation: in the end it has two fifths of the energy."""
+    """Start molecules of air without rotation: in the end it has two fifths of the energy."""
     n = 2000
     gas = cube(n, 0.02, 7, rotation=2.0)
     contacts_pass(gas, 20.0 * n)
@@ -191,7 +228,7 @@ def counted_and_expected(gas: ParcelSet, members: list[np.ndarray], contacts: fl
 
 @job("unlike-molecules")
 def unlike_molecules(found: Findings) -> None:
-    """How often molecules meet whose masses differ by a million, or whose sizes differ by a hundred."""
+    """Count how often molecules meet whose masses differ by a million, or whose sizes differ by a hundred."""
     half, few = np.arange(1000) < 500, np.arange(4010) < 10
     cases = {
         "masses 1 : 10⁶": (half, np.ones(1000), np.where(half, 1.0, 1e6), 0.05),
@@ -201,4 +238,6 @@ def unlike_molecules(found: Findings) -> None:
         gas = cube(sigma.size, packing, 9, diameter=sigma, mass=mass)
         contacts_pass(gas, 1e5)
         mean, error = block_average(counted_and_expected(gas, [first, ~first], 1e6))
-        found.agree(f"contacts over those expected, {what}", float(mean), float(error), 1.0, tolerance=0.005, limit=0.01)
+        found.agree(
+            f"contacts over those expected, {what}", float(mean), float(error), 1.0, tolerance=0.005, limit=0.01
+        )

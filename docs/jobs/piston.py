@@ -30,15 +30,22 @@ def expansion(freedom: int, seed: int) -> float:
     kT = 1.0
     turning = 2.0 if freedom == 5 else 0.0
     density = packing / share
-    rate = float(theory.collision_rate_discs(density, 1.0, kT, 1.0) if planar else theory.collision_rate(density, 1.0, kT, 1.0))
+    rate = float(
+        theory.collision_rate_discs(density, 1.0, kT, 1.0) if planar else theory.collision_rate(density, 1.0, kT, 1.0)
+    )
     duration = LENGTH_IN_FREE_TIMES / rate
     gas = ParcelSet(
-        random_positions(length, np.ones(N), rng, planar=planar, periodic=(True, False, False) if planar else (True, True, False)),
+        random_positions(
+            length, np.ones(N), rng, planar=planar, periodic=(True, False, False) if planar else (True, True, False)
+        ),
         maxwell_velocities(kT, np.ones(N), rng, planar=planar, exact=True),
         length=length,
         walls=(Periodic(),) * 2 + (Specular() if planar else Periodic(),) * 2 + (Specular(), Piston(side / duration)),
-        rotation=turning, rotational_energy=np.full(N, 0.5 * turning * kT), planar=planar, seed=seed,
-    )  # fmt: skip
+        rotation=turning,
+        rotational_energy=np.full(N, 0.5 * turning * kT),
+        planar=planar,
+        seed=seed,
+    )
     before, energy = gas.open_density / N, gas.internal_energy()
     gas.advance(duration)
     after = gas.open_density / N
@@ -51,8 +58,10 @@ def expansion(freedom: int, seed: int) -> float:
 
 @job("slow-piston")
 def slow_piston(found: Findings) -> None:
-    """Twice the volume in four hundred mean free times."""
+    """Let three gases expand to twice their volume in four hundred mean free times."""
     for freedom, what in ((2, "discs in a plane"), (3, "spheres"), (5, "spheres that rotate")):
         values = np.array([expansion(freedom, seed) for seed in SEEDS])
         error = float(values.std(ddof=1) / math.sqrt(values.size))
-        found.agree(f"γ of {what}", float(values.mean()), error, float(theory.adiabatic_index(freedom)), tolerance=0.003)
+        found.agree(
+            f"γ of {what}", float(values.mean()), error, float(theory.adiabatic_index(freedom)), tolerance=0.003
+        )

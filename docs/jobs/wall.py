@@ -17,12 +17,13 @@ from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
 
 @job("energy")
 def energy(found: Findings) -> None:
-    """A thousand molecules in gravity between reflecting walls, through ten million collisions."""
+    """Let a thousand molecules collide ten million times in gravity between reflecting walls."""
     n = 1000
     rng = np.random.default_rng(1)
     length = (20.0, 20.0, 25.0)
-    gas = ParcelSet(random_positions(length, np.ones(n), rng), maxwell_velocities(1.0, np.ones(n), rng),
-                    length=length, gravity=0.1)  # fmt: skip
+    gas = ParcelSet(
+        random_positions(length, np.ones(n), rng), maxwell_velocities(1.0, np.ones(n), rng), length=length, gravity=0.1
+    )
     start = sum(gas.energy())
     worst = 0.0
     for _ in range(100):
@@ -47,15 +48,21 @@ class Breath:
 
 @job("ledger")
 def ledger(found: Findings) -> None:
-    """Molecules that rotate, in gravity, between heat baths of unlike temperature, below a piston that moves."""
+    """Keep the books of molecules that rotate, in gravity, between unlike heat baths, below a piston that moves."""
     n = 1000
     rng = np.random.default_rng(2)
     length = (20.0, 20.0, 25.0)
     walls = (HeatBath(0.5), HeatBath(2.0), Specular(), HeatBath(1.0, accommodation=0.5), HeatBath(1.5), Piston())
     gas = ParcelSet(
-        random_positions(length, np.ones(n), rng), maxwell_velocities(1.0, np.ones(n), rng), length=length,
-        walls=walls, rotation=2.0, rotational_energy=np.ones(n), gravity=0.05, driver=Breath(25.0, 200.0),
-    )  # fmt: skip
+        random_positions(length, np.ones(n), rng),
+        maxwell_velocities(1.0, np.ones(n), rng),
+        length=length,
+        walls=walls,
+        rotation=2.0,
+        rotational_energy=np.ones(n),
+        gravity=0.05,
+        driver=Breath(25.0, 200.0),
+    )
     worst = 0.0
     for _ in range(50):
         contacts_pass(gas, 4e4)
@@ -73,7 +80,7 @@ def distance(values: np.ndarray, cumulative: np.ndarray) -> float:
 
 @job("emission")
 def emission(found: Findings) -> None:
-    """Points that rotate fall side by side onto a warm floor; each has hit it once when they are looked at."""
+    """Let points fall side by side onto a warm floor; each has hit it once when they are looked at."""
     n = 200_000
     rng = np.random.default_rng(4)
     position = rng.random((n, 3)) * [1.0, 1.0, 0.1]
@@ -88,25 +95,44 @@ def emission(found: Findings) -> None:
     snapshot = gas.snapshot()
     normal, along = np.sort(snapshot.velocity[:, 2]), np.sort(snapshot.velocity[:, 0])
     limit = float(kolmogorov_smirnov_critical(n, 0.001))
-    found.bound("distance from Rayleigh's distribution, speed away from the wall",
-                distance(normal, -np.expm1(-0.5 * normal**2)), limit)  # fmt: skip
+    found.bound(
+        "distance from Rayleigh's distribution, speed away from the wall",
+        distance(normal, -np.expm1(-0.5 * normal**2)),
+        limit,
+    )
     cumulative = np.array([0.5 * math.erfc(-u / math.sqrt(2.0)) for u in along])
     found.bound("distance from Gauss's distribution, velocity along the wall", distance(along, cumulative), limit)
     taken = 0.5 * np.sum(snapshot.velocity**2, axis=1) + snapshot.rotational_energy
-    found.agree("mean speed away from the wall", float(normal.mean()), float(normal.std() / math.sqrt(n)),
-                float(theory.emission_normal_speed(1.0, 1.0)), unit="√(kT/m)")  # fmt: skip
-    found.agree("mean energy of a molecule that leaves", float(taken.mean()), float(taken.std() / math.sqrt(n)),
-                float(theory.emission_energy(1.0, 3, 2)), unit="kT")  # fmt: skip
+    found.agree(
+        "mean speed away from the wall",
+        float(normal.mean()),
+        float(normal.std() / math.sqrt(n)),
+        float(theory.emission_normal_speed(1.0, 1.0)),
+        unit="√(kT/m)",
+    )
+    found.agree(
+        "mean energy of a molecule that leaves",
+        float(taken.mean()),
+        float(taken.std() / math.sqrt(n)),
+        float(theory.emission_energy(1.0, 3, 2)),
+        unit="kT",
+    )
 
 
 @job("slab")
 def slab(found: Findings) -> None:
-    """Points that never meet fly between a wall of 4 kT and one of 1 kT."""
+    """Let points that never meet fly between a wall of 4 kT and one of 1 kT."""
     n, layers = 4000, 8
     rng = np.random.default_rng(6)
     walls = (Specular(),) * 4 + (HeatBath(4.0), HeatBath(1.0))
-    gas = ParcelSet(rng.random((n, 3)), maxwell_velocities(2.0, np.ones(n), rng), length=(1.0, 1.0, 1.0),
-                    walls=walls, diameter=0.0, seed=6)  # fmt: skip
+    gas = ParcelSet(
+        rng.random((n, 3)),
+        maxwell_velocities(2.0, np.ones(n), rng),
+        length=(1.0, 1.0, 1.0),
+        walls=walls,
+        diameter=0.0,
+        seed=6,
+    )
     answer = theory.free_molecular_slab(4.0, 1.0, float(n), 1.0)
     gas.advance(30.0)
     heat, warmth = [], []
@@ -121,6 +147,14 @@ def slab(found: Findings) -> None:
         heat.append(0.5 * (gave[4] - gave[5]) / (gas.time - start))
         warmth.append(np.mean(seen, axis=0))
     flux, layer = block_average(heat), block_average(warmth)
-    found.agree("heat flux", float(flux.mean) / n, float(flux.standard_error) / n, float(answer.heat_flux) / n, unit="n kT √(kT/m)")
+    found.agree(
+        "heat flux",
+        float(flux.mean) / n,
+        float(flux.standard_error) / n,
+        float(answer.heat_flux) / n,
+        unit="n kT √(kT/m)",
+    )
     for name, i in (("by the warm wall", 0), ("by the cold wall", layers - 1)):
-        found.agree(f"temperature {name}", float(layer.mean[i]), float(layer.standard_error[i]), float(answer.kT), unit="kT")
+        found.agree(
+            f"temperature {name}", float(layer.mean[i]), float(layer.standard_error[i]), float(answer.kT), unit="kT"
+        )

@@ -1,0 +1,153 @@
+"""Tables that are read off the code: settings, facts, variables, attributes, layers, words of the command line."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from jobs.registry import DOCS, ROOT, Findings, job
+
+from atmosbox import diagnostics, runner, scenarios
+from atmosbox.cli.scene import summaries
+from atmosbox.output import global_attributes
+
+
+@job("scenes", quick=True)
+def scenes(found: Findings) -> None:
+    """Make the table of the scenes, each with its first line."""
+    rows = [[f"[{name}](scenes/{name}.md)", text] for name, text in summaries().items()]
+    found.table(["scene", "what it shows"], rows)
+
+
+@job("parameters", quick=True)
+def parameters(found: Findings) -> None:
+    """Make a table of the settings of each scene."""
+    for name in scenarios.names():
+        rows = [
+            [f"`{p.name}`", f"`{p.typed()}`", p.unit if p.unit not in ("", "1") else "–", p.allowed, p.help]
+            for p in scenarios.load(name).Settings.describe()
+        ]
+        found.table(["setting", "default", "unit", "allowed", "what it is"], rows, key=name)
+
+
+@job("facts", quick=True)
+def facts(found: Findings) -> None:
+    """Make a table of what is exaggerated in each scene, and by how much."""
+    for name in scenarios.names():
+        found.table(["", ""], [[what, text] for what, text in runner.card(runner.prepare(name, {})).facts], key=name)
+
+
+@job("variables", quick=True)
+def variables(found: Findings) -> None:
+    """Make the table of everything that a file may hold."""
+    rows = []
+    for name, each in diagnostics.VARIABLES.items():
+        dims = ", ".join(each.dims)
+        standard = f"`{each.standard_name}`" if each.standard_name else "–"
+        rows.append([f"`{name}`", dims, f"`{each.units}`" if each.units else "–", each.long_name, standard])
+    found.table(["variable", "dimensions", "unit", "what it is", "CF standard name"], rows)
+
+
+ATTRIBUTES = {
+    "Conventions": "`CF-1.11`",
+    "title": "title of the scene",
+    "institution": "for you to fill in",
+    "source": "atmosbox, its version and its engine",
+    "history": "when, and the command as it was typed; each later step may add a line",
+    "references": "what the engine is built on",
+    "comment": "the model card of the scene: what is modelled, left out and exaggerated",
+    "license": "`CC0-1.0`: the numbers are free for any use",
+    "date_created": "when, in UTC; `SOURCE_DATE_EPOCH` sets it, so that a file can be made again byte by byte",
+    "product_version": "version of atmosbox",
+    "atmosbox_format": "version of this layout",
+    "atmosbox_status": "`complete`, `partial` (the run is under way or was killed) or `interrupted` (by Ctrl-C)",
+    "atmosbox_parameters": "JSON: scene, settings, seed, engine, version; `--from FILE` repeats the run from it",
+    "atmosbox_panels": "JSON: what the figure shows; `atmosbox plot` needs nothing else",
+    "atmosbox_headlines": "JSON: the names of the headline numbers, in order",
+}
+
+
+@job("attributes", quick=True)
+def attributes(found: Findings) -> None:
+    """Make the table of the global attributes, and fail if a file has others."""
+    made = set(global_attributes({"engine": "exact"}, title="a", command="b", comment="c", references="d"))
+    made.add("atmosbox_headlines")
+    if made != set(ATTRIBUTES):
+        found.failures.append(f"the attributes are not those of the page: {sorted(made ^ set(ATTRIBUTES))}")
+    found.table(["attribute", "what it says"], [[f"`{name}`", text] for name, text in ATTRIBUTES.items()])
+
+
+@job("layers", quick=True)
+def layers(found: Findings) -> None:
+    """Make the table of who may import whom, as the test has it."""
+    path = ROOT / "tests" / "test_layers.py"
+    spec = importlib.util.spec_from_file_location("layers_of_atmosbox", path)
+    if spec is None or spec.loader is None:
+        raise FileNotFoundError(path)
+    sys.modules[spec.name] = module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    rows = []
+    for layer, rule in module.LAYERS.items():
+        words = [each.replace("*", "everything") or "–" for each in (rule.parts, rule.libraries, rule.lazily)]
+        rows.append([f"`{layer}`" if " " not in layer else layer, *(", ".join(text.split()) for text in words)])
+    found.table(["layer", "may import of atmosbox", "libraries", "only inside a function"], rows)
+
+
+def typed(*words: str, folder: Path | None = None) -> str:
+    """Return what atmosbox prints to stdout."""
+    environment = {**os.environ, "COLUMNS": "100", "NO_COLOR": "1", "PYTHONPATH": str(ROOT), "TERM": "dumb"}
+    command = [sys.executable, "-m", "atmosbox", *words]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False)
+    if done.returncode:
+        raise RuntimeError(f"atmosbox {' '.join(words)} ended with {done.returncode}: {done.stderr}")
+    return done.stdout.rstrip()
+
+
+def console(words: str, folder: Path | None = None) -> str:
+    """Return a command and what it prints, as a block of a page."""
+    lines = [line.rstrip() for line in typed(*words.split(), folder=folder).splitlines()]
+    return "\n".join(["```console", f"$ atmosbox {words}", *lines, "```"])
+
+
+@job("help")
+def help_texts(found: Findings) -> None:
+    """Keep what `--help` says of each command."""
+    for command in ("list", "info", "run", "plot", "check"):
+        found.text("\n".join(["```text", typed(command, "--help"), "```"]), key=command)
+
+
+@job("tour")
+def tour(found: Findings) -> None:
+    """Type the commands of the minute's tour of the README."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for key, words in {
+            "list": "list",
+            "run": "run lifting-dry --set molecules=2000 --seed 7 --out lift.nc",
+            "plot": "plot lift.nc --format pdf",
+            "check": "check lift.nc",
+        }.items():
+            found.text(console(words, folder), key=key)
+
+
+@job("own-scene")
+def own_scene(found: Findings) -> None:
+    """Show the example of a scene of one's own, and run it."""
+    path = DOCS / "examples" / "my_scene.py"
+    source = path.read_text(encoding="utf-8").rstrip()
+    found.text(f"```python\n{source}\n```", key="source")
+    found.number("lines", sum(1 for line in source.splitlines() if line.strip()))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "my_scene.py").write_text(f"{source}\n", encoding="utf-8")
+        found.text(console("run ./my_scene.py", folder), key="run")
+        from atmosbox.output import read
+        from atmosbox.plot import figure
+
+        dataset = read(folder / "my_scene.nc")
+        for check in runner.verify(dataset):
+            if not check.passed:
+                found.failures.append(f"my_scene.py: {check.sentence}")
+        found.figure(figure(dataset, "slides"), "own-scene", 100)

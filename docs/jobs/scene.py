@@ -1,0 +1,32 @@
+"""The scenes as they come: the figure that `atmosbox plot` draws, and the table that `atmosbox run` prints."""
+
+from functools import partial
+
+from jobs.registry import Findings, job
+
+from atmosbox import runner, scenarios
+from atmosbox.cli.report import headline_lines
+from atmosbox.plot import figure
+
+WIDTH = 100
+DOTS_PER_INCH = 100
+
+
+def scene(name: str, found: Findings) -> None:
+    """Run a scene with its defaults; draw it and keep what it measured."""
+    outcome = runner.execute(runner.prepare(name, {}), command=f"atmosbox run {name}")
+    if not outcome.ledger <= runner.LEDGER_LIMIT:
+        found.failures.append(f"the ledger of {name} is off by {outcome.ledger:.1e}")
+    for headline in outcome.headlines:
+        if not headline.agrees:
+            found.failures.append(
+                f"{name}: {headline.label} is {headline.value:.6g}, theory says {headline.theory:.6g}"
+            )
+    lines = headline_lines(outcome.headlines, WIDTH)
+    found.text("\n".join(["```text", *lines, "```"]))
+    shown = f"{name}-plot" if name == "lifting-dry" else name
+    found.figure(figure(outcome.dataset, "slides"), shown, DOTS_PER_INCH)
+
+
+for _name in scenarios.names():
+    job(f"scene-{_name}")(partial(scene, _name))

@@ -1,0 +1,160 @@
+"""What no contact, wall or piston may change: energy, momentum, the ledger; and nothing overlaps or escapes.
+
+These are identities of every single run, to rounding: nothing here is statistical.
+"""
+
+import numpy as np
+import pytest
+
+from atmosbox.engine.measure import momentum
+from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+
+S, P = Specular(), Periodic()
+
+
+def energy_error(gas, contacts):
+    """Return the greatest relative change of energy, seen at twenty times, and how many events there were."""
+    box = gas(400, (11.0, 11.0, 14.0), gravity=0.1, seed=1)
+    before = sum(box.energy())
+    worst = 0.0
+    for share in np.linspace(0.05, 1.0, 20):
+        while box.contacts < share * contacts:
+            box.advance(box.time + 0.002 * contacts / 400.0)
+        worst = max(worst, abs(sum(box.energy()) / before - 1.0))
+    assert box.contacts >= contacts
+    assert box.wall_hits[:6].min() > 100
+    return worst, sum(box.events.values())
+
+
+def test_energy_is_kept_to_rounding_with_gravity_and_walls(gas):
+    error, events = energy_error(gas, 3e5)
+    assert error <= 1e-12
+    assert error <= 1e-12 * np.sqrt(events)
+
+
+@pytest.mark.validate
+def test_energy_is_kept_to_rounding_over_ten_million_contacts(gas):
+    error, events = energy_error(gas, 1e7)
+    assert error <= 1e-12
+    assert error <= 1e-12 * np.sqrt(events)
+
+
+@pytest.mark.parametrize("gravity", [0.0, 0.05])
+def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
+    walls = (HeatBath(1.5), HeatBath(0.7), S, HeatBath(1.0, 0.5), S, Piston())
+    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=gravity, diameter=0.8, seed=2)
+    exchanged = 0.0
+    for stroke in range(20):
+        box.set_piston_velocity(-0.1 if stroke % 2 else 0.1)
+        heat, work = box.wall_heat, box.work
+        box.advance(box.time + 10.0)
+        exchanged += float(np.abs(box.wall_heat - heat).sum()) + abs(box.work - work)
+        assert box.ledger() <= 1e-10
+    # much more energy than there is has gone in and out
+    assert exchanged > 5.0 * sum(box.energy())
+    assert box.wall_hits[5] > 1000
+    assert box.contacts > 50_000
+
+
+BOXES = {
+    "walls and gravity": dict(number=191, length=(10.0, 10.0, 10.0), gravity=0.3),
+    "periodic and dense": dict(number=400, length=(8.2, 8.2, 8.2), walls=(P,) * 6, duration=8.0),
+    "periodic, as small as it may be": dict(number=18, length=(3.6, 3.6, 3.6), walls=(P,) * 6),
+    "periodic along two axes": dict(number=300, length=(10.0, 10.0, 12.0), walls=(P, P, P, P, S, S), gravity=0.3),
+    "three sizes and masses": dict(
+        number=150,
+        length=(14.0, 14.0, 14.0),
+        diameter=np.repeat([0.4, 1.0, 4.0], [100, 40, 10]),
+        mass=np.repeat([0.1, 1.0, 30.0], [100, 40, 10]),
+    ),
+    "heat baths": dict(number=191, length=(10.0, 10.0, 10.0), walls=(HeatBath(4.0), HeatBath(1.0), S, S, S, S)),
+    "a plane": dict(number=200, length=(20.0, 1.0, 20.0), planar=True, gravity=0.1),
+}
+
+
+@pytest.mark.parametrize("name", BOXES)
+def test_nothing_overlaps_or_escapes_at_any_time(gas, out_of_place, name):
+    options = dict(BOXES[name])
+    duration = options.pop("duration", 60.0)
+    box = gas(options.pop("number"), options.pop("length"), seed=3, **options)
+    # at times that fall on no event: the golden ratio is the least like a fraction
+    for k in range(1, 61):
+        box.advance(duration * (k - 1 + (0.6180339887498949 * k) % 1.0) / 60.0)
+        outside, overlap = out_of_place(box)
+        assert outside <= 1e-9
+        assert overlap <= 1e-9
+    assert box.contacts > 10 * box.number
+
+
+def test_nothing_overlaps_or_escapes_below_a_piston_that_pumps(gas, out_of_place):
+    box = gas(191, (8.0, 8.0, 14.0), walls=(S,) * 5 + (Piston(),), gravity=0.1, seed=4)
+    for stroke in range(40):
+        box.set_piston_velocity((-0.6, 0.7, -1.3, 1.2)[stroke % 4])
+        for _ in range(3):
+            box.advance(box.time + 0.77)
+            outside, overlap = out_of_place(box)
+            assert outside <= 1e-9
+            assert overlap <= 1e-9
+    assert box.wall_hits[5] > 100
+    assert box.contacts > 2000
+
+
+def test_momentum_stays_in_a_periodic_box(gas):
+    drift = np.array([0.3, -0.2, 0.1])
+    still = dict(number=300, length=(10.0, 10.0, 10.0), walls=(P,) * 6, seed=5)
+    box = gas(**still, velocity=gas(**still).snapshot().velocity + drift)
+    before = momentum(box, box.snapshot())
+    assert before == pytest.approx(300 * drift, rel=1e-12)
+    for _ in range(10):
+        box.advance(box.time + 25.0)
+        assert np.abs(momentum(box, box.snapshot()) - before).max() <= 1e-12 * 300
+    assert box.contacts > 100_000
+
+
+def test_momentum_changes_by_what_gravity_floor_and_ceiling_give(gas):
+    number, gravity = 300, 0.2
+    box = gas(number, (10.0, 10.0, 12.0), walls=(P, P, P, P, S, S), gravity=gravity, seed=6)
+    before = momentum(box, box.snapshot())
+    box.advance(200.0)
+    change = momentum(box, box.snapshot()) - before
+    floor, ceiling = box.wall_impulse[4:]
+    weight = number * gravity * box.time
+    assert min(floor, ceiling) > 0.01 * weight
+    assert np.abs(change[:2]).max() <= 1e-11 * number
+    assert abs(change[2] - (floor - ceiling - weight)) <= 1e-11 * weight
+
+
+def scattered_pairs():
+    """Return impact parameters in diameters, and many pairs far apart, each about to have its one contact."""
+    rng = np.random.default_rng(7)
+    b = np.sqrt(rng.random(4096))
+    azimuth = 2.0 * np.pi * rng.random(b.size)
+    corner = np.stack(np.meshgrid(*[12.0 * np.arange(16)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 4.0
+    target = corner + [3.0, 0.0, 0.0] + np.stack([0 * b, b * np.cos(azimuth), b * np.sin(azimuth)], axis=1)
+    x = np.concatenate([corner, target])
+    v = np.zeros_like(x)
+    v[: b.size, 0] = 1.0
+    return b, x, v
+
+
+@pytest.mark.parametrize("masses", [(1.0, 1.0), (1.0, 3.0), (100.0, 1.0)])
+def test_a_pair_scatters_as_mechanics_says_and_keeps_all_that_it_must(gas, masses):
+    b, x, v = scattered_pairs()
+    mass = np.repeat(masses, b.size)
+    box = gas(mass.size, (192.0,) * 3, mass=mass, seed=7, position=x, velocity=v)
+    box.advance(3.5)
+    assert box.contacts == b.size
+    after = box.snapshot()
+    m1, m2 = masses
+    (x1, x2), (v1, v2) = after.position.reshape(2, -1, 3), after.velocity.reshape(2, -1, 3)
+    p = m1 * v1 + m2 * v2
+    assert np.abs(p - [m1, 0.0, 0.0]).max() <= 1e-14 * m1
+    assert np.abs(m1 * np.sum(v1**2, axis=1) + m2 * np.sum(v2**2, axis=1) - m1).max() <= 1e-13 * m1
+    start = x.reshape(2, -1, 3)
+    origin = start[0]
+    spin = m1 * np.cross(x1 - origin, v1) + m2 * np.cross(x2 - origin, v2)
+    assert np.abs(spin).max() <= 1e-11 * m1
+    relative = v1 - v2
+    deflection = np.arccos(np.clip(relative[:, 0], -1.0, 1.0))
+    assert deflection == pytest.approx(np.pi - 2.0 * np.arcsin(b), abs=1e-6)
+    assert relative[:, 0] == pytest.approx(2.0 * b**2 - 1.0, abs=1e-11)

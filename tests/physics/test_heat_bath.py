@@ -1,0 +1,168 @@
+"""What heat baths do: hold a gas at their temperature, and carry heat from the warmer to the colder.
+
+Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these).
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from atmosbox import theory
+from atmosbox.engine.schedule import Ramp, Steps
+from atmosbox.engine.walls import HeatBath, Periodic, Specular
+from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+
+S, P = Specular(), Periodic()
+
+
+def averages(box, warm_up, step, samples, measure):
+    """Return the block average of what is measured at even times after a warm-up."""
+    box.advance(warm_up)
+    values = []
+    for _ in range(samples):
+        box.advance(box.time + step)
+        values.append(measure(box))
+    return block_average(np.array(values))
+
+
+def energies(box):
+    kinetic, rotational, _ = box.energy()
+    return np.array([kinetic, rotational]) / box.number
+
+
+@pytest.mark.parametrize("accommodation", [1.0, 0.3])
+def test_walls_give_a_gas_their_temperature_whatever_share_they_take_in(gas, accommodation):
+    kT = 1.3
+    walls = (HeatBath(kT, accommodation),) * 6
+    box = gas(300, (11.0,) * 3, walls=walls, kT=2.0, spin_kT=0.5, rotation=2, collision_number=math.inf, seed=31)
+    mean, error = averages(box, 200.0, 5.0, 2000, energies)
+    assert (error / kT < 0.005).all()
+    # without contacts that exchange it, each kind of energy comes from the walls alone
+    assert (np.abs(mean - [1.5 * kT, kT]) <= 4.0 * error).all()
+    assert box.contacts > 1e6
+    assert box.ledger() <= 1e-10
+
+
+def test_the_heat_that_walls_give_and_take_in_equilibrium_is_none_on_average(gas):
+    number, kT = 300, 1.0
+    box = gas(number, (11.0,) * 3, walls=(HeatBath(kT),) * 6, seed=32)
+    box.advance(100.0)
+    heat = []
+    hits = box.wall_hits
+    for _ in range(20):
+        before = box.wall_heat
+        box.advance(box.time + 100.0)
+        heat.append(box.wall_heat - before)
+    mean, error = block_average(np.array(heat))
+    assert (np.abs(mean) <= 4.0 * error).all()
+    # each hit exchanges 2 kT, at random
+    per_block = theory.heat_noise((box.wall_hits - hits) / 20.0, kT)
+    assert np.sqrt(np.mean((error * math.sqrt(20.0) / per_block) ** 2)) == pytest.approx(1.0, abs=0.3)
+
+
+def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
+    number, kT, layers = 2000, 0.7, 10
+    box = gas(number, (10.0, 8.0, 10.0), walls=(HeatBath(kT),) * 6, diameter=0.0, kT=2.0, seed=33)
+    box.advance(200.0)
+    counts, velocity = [], []
+    for k in range(1000):
+        box.advance(box.time + 5.0)
+        here = box.snapshot()
+        counts.append([np.histogram(here.position[:, axis], layers, (0.0, box.length[axis]))[0] for axis in range(3)])
+        # slow molecules remember for long
+        if k % 50 == 0:
+            velocity.append(here.velocity)
+    mean, error = block_average(np.array(counts))
+    assert error.max() < 0.01 * number / layers
+    # 30 layers: a false alarm once in 50 for a fresh seed
+    assert (np.abs(mean - number / layers) <= 4.0 * error).all()
+    speed = np.sqrt(np.sum(np.concatenate(velocity) ** 2, axis=1))
+    distance = stats.kstest(speed, lambda v: theory.maxwell_speed_cumulative(v, kT, 1.0)).statistic
+    assert distance < kolmogorov_smirnov_critical(speed.size, 1e-4)
+    assert box.contacts == 0
+
+
+@pytest.mark.parametrize(("hot", "accommodation", "rotation"), [(4.0, 1.0, 0), (4.0, 0.5, 0), (4.0, 1.0, 2), (1e6, 1.0, 0)])
+def test_a_very_thin_gas_between_two_walls_carries_the_heat_that_knudsen_found(gas, hot, accommodation, rotation):
+    number, cold = 1000, 1.0
+    walls = (HeatBath(hot, accommodation), HeatBath(cold, accommodation), P, P, P, P)
+    box = gas(number, (10.0,) * 3, walls=walls, diameter=0.0, kT=math.sqrt(hot * cold), rotation=rotation, seed=34)
+    truth = theory.free_molecular_slab(hot, cold, number / 1000.0, 1.0, rotation)
+    # walls that take in a part a of all pass on a / (2 - a) of the heat
+    passed = accommodation / (2.0 - accommodation)
+    # molecules are for most of the time with the cold ones
+    crossing = 10.0 / math.sqrt(cold) + 10.0 / math.sqrt(hot)
+    box.advance(20.0 * crossing)
+    rows = []
+    for _ in range(20):
+        heat, impulse, time = box.wall_heat, box.wall_impulse, box.time
+        box.advance(time + 20.0 * crossing)
+        rate = 1.0 / (100.0 * (box.time - time))
+        rows.append([*(rate * (box.wall_heat - heat)[:2]), *(rate * (box.wall_impulse - impulse)[:2])])
+    mean, error = block_average(np.array(rows))
+    exact = np.array([truth.heat_flux * passed, -truth.heat_flux * passed, truth.pressure, truth.pressure])
+    assert (error / np.abs(exact) < 0.02).all()
+    assert (np.abs(mean - exact) <= 4.0 * error).all()
+
+
+def test_a_very_thin_gas_between_two_walls_has_the_geometric_mean_temperature(gas):
+    number = 1000
+    box = gas(number, (10.0,) * 3, walls=(HeatBath(4.0), HeatBath(1.0), P, P, P, P), diameter=0.0, kT=2.0, seed=35)
+    mean, error = averages(box, 100.0, 3.0, 2000, lambda b: b.energy()[0] / (1.5 * number))
+    assert error < 0.01
+    assert abs(mean - 2.0) <= 4.0 * error
+    # a component along the slab and one across it
+    mean, error = averages(box, box.time, 3.0, 1000, lambda b: np.mean(b.snapshot().velocity ** 2, axis=0))
+    assert (np.abs(mean - 2.0) <= 4.0 * error).all()
+
+
+def test_a_gas_follows_the_temperature_of_its_walls(gas):
+    number = 300
+    ramp = Ramp(1.0, 2.0, start=100.0, end=1100.0)
+    steps = Steps([0.0, 1500.0], [1.0, 0.5])
+    box = gas(number, (10.0,) * 3, walls=(HeatBath(ramp),) * 6, diameter=0.8, seed=36)
+    # half-way up the gas lags behind by less than a relaxation time of about ten
+    for time, expected in ((50.0, 1.0), (600.0, 1.5), (1200.0, 2.0)):
+        box.advance(time)
+        assert box.wall_kT() == pytest.approx(expected, rel=1e-12)
+        values = []
+        for _ in range(100):
+            box.advance(box.time + 1.0)
+            values.append(box.energy()[0] / (1.5 * number))
+        mean, error = block_average(values, blocks=5)
+        drift = 0.05 if expected == 1.5 else 0.0
+        # few blocks, so the error is at least that of as many independent thermometers
+        error = max(error, theory.temperature_noise(number, 3.0, expected) / math.sqrt(5.0))
+        assert abs(mean - drift - expected) <= 4.0 * error + 0.02 * (expected == 1.5)
+    gained = sum(box.energy()) - 1.5 * number
+    assert box.wall_heat.sum() == pytest.approx(gained, rel=1e-9)
+    box = gas(number, (10.0,) * 3, walls=(HeatBath(steps),) * 6, diameter=0.8, seed=36)
+    box.advance(1499.0)
+    assert (box.wall_kT() == 1.0).all()
+    box.advance(1501.0)
+    assert (box.wall_kT() == 0.5).all()
+    mean, error = averages(box, 1600.0, 5.0, 400, energies)
+    assert abs(mean[0] - 0.75) <= 4.0 * error[0]
+
+
+def test_a_wall_without_a_bath_has_no_temperature(gas):
+    box = gas(5, (10.0,) * 3, walls=(HeatBath(2.0), S, P, P, S, S), seed=37)
+    assert np.isnan(box.wall_kT()[1:]).all()
+    assert box.wall_kT()[0] == 2.0
+
+
+@pytest.mark.parametrize("diameter", [0.0, 1.0])
+def test_heat_baths_of_a_plane_gas_give_each_molecule_kT(gas, diameter):
+    number, kT = 200, 1.4
+    walls = (HeatBath(kT), HeatBath(kT), S, S, HeatBath(kT), HeatBath(kT))
+    box = gas(number, (25.0, 1.0, 25.0), walls=walls, diameter=diameter, planar=True, seed=38)
+    mean, error = averages(box, 300.0, 15.0, 2000, energies)
+    assert error[0] / kT < 0.005
+    assert abs(mean[0] - kT) <= 4.0 * error[0]
+    here = box.snapshot()
+    assert (here.velocity[:, 1] == 0.0).all()
+    assert (here.position[:, 1] == 0.5).all()
+    assert box.wall_hits[[0, 1, 4, 5]].min() > 1000
+    assert box.wall_hits[[2, 3]].max() == 0

@@ -1,0 +1,190 @@
+"""How molecules move once they have met often enough: Maxwell's speeds, equal shares of energy, rates of meeting.
+
+Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these); tests of
+a distribution are Kolmogorov's at a level of 1e-4, from snapshots at least three contacts of each molecule apart.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from atmosbox import theory
+from atmosbox.engine.measure import speed_counts
+from atmosbox.engine.start import equal_speeds
+from atmosbox.engine.walls import Periodic, Specular
+from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+
+S, P = Specular(), Periodic()
+LEVEL = 1e-4
+
+
+def snapshots(box, number, contacts_apart=3.0, warm_up=20.0):
+    """Return so many snapshots, each so many contacts of every molecule after the last."""
+    half = 0.5 * box.number
+    while box.contacts < warm_up * half:
+        box.advance(box.time + 0.05 * box.length[2])
+    pace = box.time / box.contacts * contacts_apart * half * 1.2
+    taken = []
+    for _ in range(number):
+        before = box.contacts
+        box.advance(box.time + pace)
+        assert box.contacts - before >= 0.9 * contacts_apart * half
+        taken.append(box.snapshot())
+    return taken
+
+
+def maxwellian(gas, number, samples):
+    rng = np.random.default_rng(21)
+    side = (number * math.pi / 6.0 / 0.1) ** (1.0 / 3.0)
+    box = gas(number, (side,) * 3, seed=21, velocity=equal_speeds(math.sqrt(3.0), number, rng))
+
+    def distance(speed):
+        return stats.kstest(speed, lambda v: theory.maxwell_speed_cumulative(v, 1.0, 1.0)).statistic
+
+    def speeds(snapshot):
+        return np.sqrt(np.sum(snapshot.velocity**2, axis=1))
+
+    # all start with one speed, as far from Maxwell as can be
+    assert distance(speeds(box.snapshot())) > 0.5
+    taken = snapshots(box, samples)
+    found = np.concatenate([speeds(snapshot) for snapshot in taken])
+    assert distance(found) < kolmogorov_smirnov_critical(found.size, LEVEL)
+    for axis in range(3):
+        component = np.concatenate([snapshot.velocity[:, axis] for snapshot in taken])
+        assert stats.kstest(component, "norm").statistic < kolmogorov_smirnov_critical(found.size, LEVEL)
+    # and the histogram that a scene shows is that of these speeds
+    edges = np.linspace(0.0, 6.0, 25)
+    counts = sum(speed_counts(snapshot, edges) for snapshot in taken)
+    expected = found.size * np.diff(theory.maxwell_speed_cumulative(edges, 1.0, 1.0))
+    enough = expected > 10.0
+    chi_squared = np.sum((counts - expected)[enough] ** 2 / expected[enough])
+    assert stats.chi2.sf(chi_squared, enough.sum()) > LEVEL
+    return found.size
+
+
+def test_molecules_of_one_speed_become_maxwells(gas):
+    assert maxwellian(gas, 1000, 20) == 20_000
+
+
+@pytest.mark.validate
+def test_molecules_of_one_speed_become_maxwells_to_three_parts_in_a_thousand(gas):
+    assert kolmogorov_smirnov_critical(maxwellian(gas, 5000, 200), LEVEL) < 0.003
+
+
+def test_a_beam_becomes_the_same_in_all_directions(gas):
+    number = 400
+    rng = np.random.default_rng(22)
+    beam = np.zeros((number, 3))
+    beam[:, 0] = rng.choice([-1.0, 1.0], number) * math.sqrt(3.0)
+    box = gas(number, (13.0,) * 3, seed=22, velocity=beam)
+    squares = np.array([np.mean(snapshot.velocity**2, axis=0) for snapshot in snapshots(box, 400)])
+    mean, error = block_average(squares)
+    assert (error < 0.01).all()
+    assert (np.abs(mean - 1.0) <= 4.0 * error).all()
+
+
+@pytest.mark.parametrize("ratio", [4.0, 100.0])
+def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio):
+    number, heavy = 300, 60
+    mass = np.where(np.arange(number) < heavy, ratio, 1.0)
+    rng = np.random.default_rng(23)
+    velocity = equal_speeds(1.0, number, rng)
+    velocity[:heavy] = 0.0
+    velocity *= math.sqrt(3.0 * number / np.sum(mass[:, None] * velocity**2))
+    box = gas(number, (11.0,) * 3, seed=23, mass=mass, velocity=velocity)
+    energies = []
+    # a heavy molecule takes about its mass over four light ones' contacts to warm
+    for snapshot in snapshots(box, 1000, warm_up=20.0 + 5.0 * ratio):
+        energy = 0.5 * mass * np.sum(snapshot.velocity**2, axis=1)
+        energies.append([energy[:heavy].mean(), energy[heavy:].mean()])
+    mean, error = block_average(energies)
+    assert (error < 0.02).all()
+    # with walls, not momentum but only energy is shared, so each has exactly its part of it
+    assert (np.abs(mean - 1.5) <= 4.0 * error).all()
+
+
+MIXTURES = {
+    "two masses": dict(share=0.3, diameter=(1.0, 1.0), mass=(1.0, 50.0)),
+    "two sizes": dict(share=0.2, diameter=(1.0, 2.0), mass=(1.0, 1.0)),
+    "few heavy giants": dict(share=0.02, diameter=(1.0, 4.0), mass=(1.0, 64.0)),
+}
+
+
+@pytest.mark.parametrize("name", MIXTURES)
+def test_a_mixture_meets_as_often_as_theory_says(gas, name):
+    mixture, number = MIXTURES[name], 500
+    second = np.arange(number) < mixture["share"] * number
+    diameter = np.where(second, mixture["diameter"][1], mixture["diameter"][0])
+    mass = np.where(second, mixture["mass"][1], mixture["mass"][0])
+    side = float(np.sum(math.pi / 6.0 * diameter**3) / 0.1) ** (1.0 / 3.0)
+    box = gas(number, (side,) * 3, walls=(P,) * 6, seed=24, diameter=diameter, mass=mass)
+    members = np.array([np.sum(~second), np.sum(second)])
+    rate = theory.collision_rate_between(members / side**3, mixture["diameter"], mixture["mass"], 1.0)
+    # a molecule is no partner of its own
+    rate *= 1.0 - np.eye(2) / members
+    expected = 0.5 * float(np.sum(members[:, None] * rate)) * math.sqrt(number / (number - 1.0))
+    box.advance(30.0 * number / expected * 10.0)
+    rates = []
+    for _ in range(20):
+        before = box.contacts
+        box.advance(box.time + 20_000.0 / expected)
+        rates.append((box.contacts - before) / (20_000.0 / expected))
+    measured, error = block_average(rates)
+    assert box.contacts > 400_000
+    assert error / expected < 0.003
+    # the contact values of mixtures are themselves good to 1 part in 500 here
+    assert abs(measured / expected - 1.0) <= 4.0 * error / expected + 0.002
+    only_light = 0.5 * members[0] * rate[0, 0]
+    assert expected > 1.2 * only_light
+
+
+def test_all_directions_after_a_contact_are_alike(gas):
+    # cos(chi) of the deflection is even between -1 and 1 for spheres met at random
+    rng = np.random.default_rng(25)
+    pairs = 4096
+    place = 12.0 * np.stack(np.meshgrid(*[np.arange(16)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 4.0
+    towards = equal_speeds(1.0, pairs, rng)
+    across = np.cross(towards, equal_speeds(1.0, pairs, rng))
+    across *= (np.sqrt(rng.random(pairs)) / np.sqrt(np.sum(across**2, axis=1)))[:, None]
+    x = np.concatenate([place + 2.0, place + 2.0 + 2.0 * towards + across])
+    v = np.concatenate([towards, np.zeros_like(towards)])
+    box = gas(2 * pairs, (192.0,) * 3, seed=25, position=x, velocity=v)
+    box.advance(3.0)
+    assert box.contacts == pairs
+    after = box.snapshot().velocity.reshape(2, -1, 3)
+    cosine = np.sum((after[0] - after[1]) * towards, axis=1)
+    distance = stats.kstest(cosine, "uniform", args=(-1.0, 2.0)).statistic
+    assert distance < kolmogorov_smirnov_critical(pairs, LEVEL)
+
+
+def test_free_flights_are_as_long_as_those_of_a_random_walk(gas):
+    # a thin gas forgets where it has been: the chance to fly on does not depend on the way behind
+    number, side = 500, 26.0
+    box = gas(number, (side,) * 3, walls=(P,) * 6, seed=26)
+    box.advance(200.0)
+    speed = box.snapshot().velocity
+    step, unhit = 0.5, np.ones(number, bool)
+    surviving = [1.0]
+    runs = 20
+    share = np.zeros((runs, 20))
+    for run in range(runs):
+        speed, unhit = box.snapshot().velocity, np.ones(number, bool)
+        for k in range(20):
+            box.advance(box.time + step)
+            unhit &= (box.snapshot().velocity == speed).all(axis=1)
+            share[run, k] = unhit.mean()
+    surviving = share.mean(axis=0)
+    error = share.std(axis=0, ddof=1) / math.sqrt(runs)
+    speeds = np.linspace(0.0, 8.0, 4001)
+    density = theory.maxwell_speed_density(speeds, 1.0, 1.0)
+    # rate of contacts of a molecule of speed v (Chapman and Cowling 1970, section 5.4), of mean nu
+    w = speeds[1:] / math.sqrt(2.0)
+    relative = (np.exp(-(w**2)) + (2.0 * w + 1.0 / w) * math.sqrt(math.pi) / 2.0 * np.array([math.erf(a) for a in w])) / (
+        math.sqrt(8.0)
+    )
+    rate = float(theory.collision_rate(number / side**3, 1.0, 1.0, 1.0)) * relative
+    expected = [np.trapezoid(density[1:] * np.exp(-rate * step * (k + 1)), speeds[1:]) for k in range(20)]
+    assert surviving[-1] < 0.4
+    assert (np.abs(surviving - expected) <= 4.0 * error + 1.0 / number).all()
