@@ -316,7 +316,7 @@ class ParcelSet:
         m = self._molecules
         dt = self._now - m["clock"]
         position = np.stack([m["x"] + dt * m["vx"], m["y"] + dt * m["vy"], m["z"] + dt * m["vz"]], axis=1)
-        velocity = np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
+        velocity = self._velocity()
         if self.gravity > 0.0:
             position[:, 2] -= 0.5 * self.gravity * dt * dt
             velocity[:, 2] -= self.gravity * dt
@@ -325,6 +325,11 @@ class ParcelSet:
                 position[:, axis] = np.mod(position[:, axis], self._sides[axis])
         spin = np.array(self._kinds.rotational_energy) if self._rotates else np.zeros(self.number)
         return Snapshot(self.time, position, velocity, spin)
+
+    def _velocity(self) -> Array:
+        """Return the velocity of each molecule at the time of its clock [length/time]."""
+        m = self._molecules
+        return np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
 
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
@@ -446,6 +451,9 @@ class ParcelSet:
                 elif status == STALLED:
                     self._now = min(float(self._calendar.time[1]), stop)
                     raise StalledError(self._why_stalled())
+                elif self.piston_velocity < 0.0 and self._is_jammed():
+                    self._now = min(float(self._calendar.time[1]), stop)
+                    raise StalledError(self._why_crushed())
                 elif status == BUSY:
                     if watch is not None:
                         watch(float(self._walls.epoch[0]) + float(self._calendar.time[1]))
@@ -609,6 +617,16 @@ class ParcelSet:
         ]
         return max([kT, *baths]) if kT > 0.0 or baths else potential / self.number
 
+    def _is_jammed(self) -> bool:
+        """Tell whether the piston has heated the molecules a million times, as only one that crushes them can.
+
+        Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
+        """
+        kinetic = 0.5 * float(np.sum(self._mass * np.sum(self._velocity() ** 2, axis=1)))
+        baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
+        usual = self._start_energy + 2.0 * float(self._mass.sum()) * self.piston_velocity**2
+        return kinetic > 1e6 * (usual + 2.0 * self.number * max(baths, default=0.0))
+
     def _why_crushed(self) -> str:
         return (
             f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, where it would crush the "
@@ -621,13 +639,13 @@ class ParcelSet:
         kT = self.wall_kT()
         coldest = min(baths, key=lambda w: kT[w], default=None)
         mean = 2.0 * self.energy()[0] / (3.0 * self.number)
+        if self._walls.law[5] == PISTON and self.piston_velocity < 0.0:
+            return self._why_crushed()
         if coldest is not None and (kT[coldest] <= 1e-6 * mean or kT[coldest] < 1e-100 or self.gravity > 0.0):
             cause = (
                 f"wall {WALL_NAMES[coldest]} at kT = {kT[coldest]:.3g} is too cold: "
                 f"warm it{', or reduce the gravity of ' + format(self.gravity, '.3g') if self.gravity else ''}"
             )
-        elif self._walls.law[5] == PISTON and self.piston_velocity < 0.0:
-            cause = f"the piston, at {self.ceiling:.6g}, leaves too little room: stop it earlier"
         elif self.gravity > 0.0:
             cause = f"molecules come to rest: reduce the gravity of {self.gravity:.3g}, or give them more energy"
         else:

@@ -1,0 +1,231 @@
+"""A ceiling that moves: adiabats, the work it does, and a gas that follows a given pressure.
+
+Where runs are repeated with other seeds, their mean is allowed 4 standard errors from their own scatter (a false
+alarm once in 1 500 for fresh seeds, and never for these), plus what the piston's speed costs, stated with each test.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox import theory
+from atmosbox.engine.lift import FollowPressure
+from atmosbox.engine.start import lattice_positions
+from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+from atmosbox.statistics import block_average
+
+S, P = Specular(), Periodic()
+
+
+def mean_and_error(values):
+    return np.mean(values, axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(len(values))
+
+
+@pytest.mark.parametrize(("rotation", "speed"), [(0, -0.01), (2, -0.01), (3, -0.01), (2, 0.01)])
+def test_a_slow_piston_warms_or_cools_spheres_along_their_adiabat(gas, rotation, speed):
+    number, side, height, diameter = 500, 7.0, 10.0, 0.3
+    factor = 0.5 if speed < 0.0 else 2.0
+    warmings = []
+    for seed in range(12):
+        walls = (P, P, P, P, S, Piston(speed))
+        box = gas(number, (side, side, height), walls=walls, diameter=diameter, rotation=rotation, seed=seed)
+        before = sum(box.energy())
+        box.advance(height * abs(factor - 1.0) / abs(speed))
+        assert box.ceiling == pytest.approx(factor * height, rel=1e-12)
+        assert box.ledger() <= 1e-10
+        warmings.append(sum(box.energy()) / before)
+        assert box.contacts > 10_000
+    mean, error = mean_and_error(warmings)
+    filled = number * math.pi / 6.0 * diameter**3 / side**2
+    room = (filled / (factor * height - diameter), filled / (height - diameter))
+    exact = float(theory.hard_sphere_isentrope(*room, 3 + rotation))
+    assert error / exact < 0.002
+    # the piston moves at 1 % of the speed of molecules, and viscosity takes about 0.1 % for that
+    assert abs(mean / exact - 1.0) <= 4.0 * error / exact + 0.0015
+    # which is close to T V^(gamma - 1) of points, and far from that of another gamma
+    for other in {0, 2, 3} - {rotation}:
+        points = float(theory.hard_sphere_isentrope(*room, 3 + other))
+        assert abs(mean / points - 1.0) > 0.02
+
+
+def test_a_slow_piston_warms_a_plane_gas_as_gamma_2_says(gas):
+    number, side, height, diameter = 400, 60.0, 80.0, 0.3
+    warmings = []
+    for seed in range(12):
+        walls = (P, P, S, S, S, Piston(-0.02))
+        box = gas(number, (side, 1.0, height), walls=walls, diameter=diameter, planar=True, seed=seed)
+        before = sum(box.energy())
+        box.advance(0.5 * height / 0.02)
+        warmings.append(sum(box.energy()) / before)
+        assert box.contacts > 10_000
+    mean, error = mean_and_error(warmings)
+    # Z = 1 + 2 eta to this order, so T A^(gamma - 1) gains a factor e^(2 (eta - eta0))
+    covered = number * math.pi / 4.0 * diameter**2 / side
+    first, last = covered / (height - diameter), covered / (0.5 * height - diameter)
+    exact = last / first * math.exp(2.0 * (last - first))
+    assert error / exact < 0.003
+    assert abs(mean / exact - 1.0) <= 4.0 * error / exact + 0.003
+    assert mean == pytest.approx(2.0, rel=0.03)
+
+
+def test_points_below_a_piston_keep_their_sideways_motion_and_follow_the_adiabat_of_one_dimension(gas):
+    # they never meet, so nothing mixes the axes
+    number, height = 2000, 10.0
+    box = gas(number, (5.0, 5.0, height), walls=(S,) * 5 + (Piston(-0.01),), diameter=0.0, seed=51)
+    before = box.snapshot().velocity
+    box.advance(500.0)
+    after = box.snapshot().velocity
+    assert (np.abs(after[:, :2]) == np.abs(before[:, :2])).all()
+    kT = np.mean(after[:, 2] ** 2) / np.mean(before[:, 2] ** 2)
+    # v L of each is kept but for one hit more or less, 2 u in v, at random
+    assert kT == pytest.approx(4.0, abs=4.0 * 4.0 * 2.0 * 0.01 / math.sqrt(number) + 4.0 * 0.01**2 * 10.0)
+    assert box.ledger() <= 1e-12
+
+
+@pytest.mark.parametrize("gravity", [0.0, 0.1])
+def test_the_work_is_the_impulse_on_the_piston_times_its_speed(gas, gravity):
+    box = gas(300, (8.0, 8.0, 10.0), walls=(S,) * 5 + (Piston(),), gravity=gravity, diameter=0.8, seed=52)
+    expected, through = 0.0, 0.0
+    for speed in (-0.2, 0.4, -0.5, 0.05, -0.3, 0.6) * 3:
+        box.set_piston_velocity(speed)
+        impulse, work = box.wall_impulse[5], box.work
+        box.advance(box.time + 3.0)
+        gained = -(box.wall_impulse[5] - impulse) * speed
+        assert box.work - work == pytest.approx(gained, rel=1e-11, abs=1e-11)
+        expected += gained
+        through += abs(gained)
+    assert through > 0.5 * sum(box.energy())
+    assert abs(box.work - expected) <= 1e-12 * through
+    assert box.ledger() <= 1e-12
+
+
+def test_the_slow_work_at_constant_temperature_is_that_of_the_logarithm(gas):
+    number, height, kT, speed = 500, 10.0, 1.2, -0.005
+    works, heats = [], []
+    for seed in range(10):
+        walls = (HeatBath(kT),) * 4 + (S, Piston(speed))
+        box = gas(number, (4.0, 4.0, height), walls=walls, diameter=0.0, kT=kT, seed=seed)
+        start = sum(box.energy())
+        box.advance(0.5 * height / -speed)
+        works.append(box.work)
+        heats.append(box.wall_heat.sum())
+        assert box.ledger() <= 1e-10
+        assert box.work + box.wall_heat.sum() == pytest.approx(sum(box.energy()) - start, abs=1e-8)
+    mean, error = mean_and_error(works)
+    exact = -float(theory.isothermal_work(number, kT, height, 0.5 * height))
+    assert error / exact < 0.01
+    # at this speed the gas is warmer by the work of the few crossings between two hits on a bath
+    assert abs(mean / exact - 1.0) <= 4.0 * error / exact + 0.01
+    # all of it goes out as heat
+    assert np.mean(heats) == pytest.approx(-exact, rel=0.05)
+
+
+@pytest.mark.parametrize("speed", [-1.0, -0.3, 0.3, 1.0])
+def test_a_fast_piston_feels_the_pressure_of_those_that_catch_up_with_it(gas, speed):
+    number, area, height, time = 20_000, 100.0, 10.0, 1.0
+    impulses = []
+    for seed in range(20):
+        walls = (S,) * 5 + (Piston(speed),)
+        box = gas(number, (10.0, 10.0, height), walls=walls, diameter=0.0, seed=seed)
+        # so short that nobody hits it twice
+        box.advance(time)
+        impulses.append(box.wall_impulse[5])
+    mean, error = mean_and_error(impulses)
+    exact = number / height * time * float(theory.piston_pressure_ratio(speed, 1.0, 1.0))
+    assert error / exact < 0.02
+    assert abs(mean - exact) <= 4.0 * error
+    assert abs(mean / (number / height * time) - 1.0) > 0.3
+    assert area * height == pytest.approx(box.volume - 100.0 * speed * time)
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_air_whose_piston_follows_a_falling_pressure_cools_along_the_dry_adiabat(gas, periodic):
+    number, side, diameter = 1000, 10.0, 0.5
+    free_time = float(theory.mean_free_time(number / side**3, diameter, 1.0, 1.0))
+    duration = 1500.0 * free_time
+    ratios, pressures, expected = [], [], []
+    for seed in range(4):
+        box = gas(number, (side,) * 3, diameter=diameter, rotation=2, seed=seed, walls=(S,) * 5 + (Piston(),))
+        excess = 2.0 * math.pi / 3.0 * diameter**3
+        density = box.open_density if not periodic else number / (side**2 * (side - diameter))
+        start = density * (1.0 + excess * density)
+        driver = FollowPressure([0.0, 0.9 * duration], [start, 0.5 * start], mean_free_time=free_time, excess=excess)
+        walls = ((P,) * 4 if periodic else (S,) * 4) + (S, Piston())
+        box = gas(number, (side,) * 3, diameter=diameter, rotation=2, seed=seed, walls=walls, driver=driver)
+        before = sum(box.energy())
+        box.advance(0.9 * duration)
+        impulse, time = box.wall_impulse[4], box.time
+        box.advance(duration)
+        assert box.ledger() <= 1e-10
+        ratios.append(sum(box.energy()) / before)
+        # the floor feels the pressure to be followed
+        floor = (box.wall_impulse[4] - impulse) / (box.time - time)
+        pressures.append(floor / (side - (0.0 if periodic else diameter)) ** 2)
+        expected.append(driver.pressure(box))
+    mean, error = mean_and_error(ratios)
+    exact = float(theory.dry_adiabat_temperature(0.5, 1.0, 1.0, 5))
+    assert error < 0.003
+    # the adiabat of spheres differs from that of points in the second order of their packing, 0.0655 squared
+    assert abs(mean / exact - 1.0) <= 4.0 * error / exact + 0.002
+    assert np.mean(expected) == pytest.approx(0.5 * start, rel=0.01)
+    mean, error = mean_and_error(pressures)
+    assert abs(mean - 0.5 * start) <= 4.0 * error + 0.01 * start
+
+
+def test_an_approaching_piston_meets_a_molecule_at_the_right_time_and_doubles_its_own_speed_on_it(gas):
+    walls = (S,) * 5 + (Piston(),)
+    box = gas(1, (10.0,) * 3, walls=walls, diameter=0.0, seed=53, position=[[5, 5, 5]], velocity=[[0, 0, 1.0]])
+    box.set_piston_velocity(-1.0)
+    box.advance(2.4)
+    assert box.snapshot().velocity[0, 2] == 1.0
+    # they meet at z = 7.5 after 2.5, and the molecule goes down at 3
+    box.advance(4.0)
+    assert box.snapshot().velocity[0, 2] == pytest.approx(-3.0, rel=1e-14)
+    assert box.snapshot().position[0, 2] == pytest.approx(3.0, rel=1e-14)
+    assert box.work == pytest.approx(4.0, rel=1e-14)
+
+
+def test_a_piston_that_stops_early_leaves_no_hits_behind(gas):
+    number, side = 500, 20.0
+    where = lattice_positions((side,) * 3, np.ones(number))
+    at_rest = np.zeros((number, 3))
+    walls = (S,) * 5 + (Piston(-0.1),)
+    box = gas(number, (side,) * 3, walls=walls, seed=54, position=where, velocity=at_rest)
+    box.set_piston_velocity(0.0)
+    box.advance(500.0)
+    assert (box.snapshot().position == where).all()
+    assert box.energy() == (0.0, 0.0, 0.0)
+    assert set(box.events.values()) == {0}
+
+
+def test_a_piston_that_changes_its_mind_at_every_moment_does_no_harm(gas, out_of_place):
+    rng = np.random.default_rng(55)
+    box = gas(200, (6.0, 6.0, 10.0), walls=(S,) * 5 + (Piston(),), diameter=0.7, seed=55)
+    for _ in range(400):
+        # drawn back to the middle by where it is
+        box.set_piston_velocity(rng.normal(0.0, 2.0) + 0.5 * (10.0 - box.ceiling))
+        box.advance(box.time + rng.exponential(0.05))
+        outside, overlap = out_of_place(box)
+        assert outside <= 1e-9
+        assert overlap <= 1e-9
+        assert box.ledger() <= 1e-11
+    assert box.wall_hits[5] > 100
+
+
+def test_a_piston_at_rest_is_a_specular_ceiling(gas):
+    number, length = 300, (9.0, 9.0, 9.0)
+    pressures = []
+    for ceiling in (S, Piston()):
+        box = gas(number, length, walls=(S,) * 5 + (ceiling,), seed=56)
+        values = []
+        for _ in range(20):
+            impulse, time = box.wall_impulse[5], box.time
+            box.advance(time + 50.0)
+            values.append((box.wall_impulse[5] - impulse) / (box.time - time) / 81.0)
+        pressures.append(block_average(values))
+        assert box.work == 0.0
+        assert sum(box.energy()) == pytest.approx(1.5 * number, rel=1e-12)
+    (specular, e1), (piston, e2) = pressures
+    assert abs(specular - piston) <= 4.0 * math.hypot(e1, e2)
+    assert math.hypot(e1, e2) / specular < 0.01

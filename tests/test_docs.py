@@ -1,0 +1,129 @@
+"""The pages say what is so: links lead somewhere, tables are fresh, examples run as they are printed."""
+
+import importlib.util
+import itertools
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from atmosbox import runner, scenarios
+from atmosbox.output import read
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.glob("**/*.md"))]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", "MPLBACKEND": "agg"}
+
+
+def script(*words):
+    command = [sys.executable, str(DOCS / "figures.py"), *words]
+    return subprocess.run(command, capture_output=True, encoding="utf-8", env=ENVIRONMENT, check=False)
+
+
+def heading_anchor(heading):
+    """Return what a page's host makes of a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def links(page):
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    return re.findall(r"\]\((?!https?://)([^)\s]+)\)", text)
+
+
+def commands(page):
+    """Return what the blocks of a page tell to type, without comments."""
+    for block in re.findall(r"```sh\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
+        for line in block.splitlines():
+            if line.startswith("atmosbox run "):
+                yield shlex.split(line, comments=True)[2:]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_relative_link_of_a_page_leads_somewhere(page):
+    for link in links(page):
+        target, _, anchor = link.partition("#")
+        path = (page.parent / target).resolve() if target else page
+        assert path.exists(), link
+        if anchor:
+            headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+            assert anchor in map(heading_anchor, headings), link
+
+
+def test_every_scene_has_a_page_that_the_index_names():
+    assert {page.stem for page in DOCS.glob("scenes/*.md")} == set(scenarios.names())
+    index = (DOCS / "index.md").read_text(encoding="utf-8")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for name in scenarios.names():
+        assert f"(scenes/{name}.md)" in index
+        assert f"(docs/scenes/{name}.md)" in readme
+
+
+def test_every_page_is_reached_from_the_index():
+    reached, waiting = set(), [DOCS / "index.md"]
+    while waiting:
+        page = waiting.pop()
+        if page in reached:
+            continue
+        reached.add(page)
+        targets = [(page.parent / link.partition("#")[0]).resolve() for link in links(page)]
+        waiting += [target for target in targets if target.suffix == ".md" and target.is_relative_to(DOCS)]
+    assert reached == set(DOCS.glob("**/*.md"))
+
+
+def test_every_file_of_the_engine_stands_in_the_reading_order():
+    page = (DOCS / "engine.md").read_text(encoding="utf-8")
+    for path in (ROOT / "atmosbox" / "engine").glob("*.py"):
+        assert f"engine/{path.name})" in page or path.name == "__init__.py", path.name
+
+
+def test_cheap_tables_are_fresh_and_pages_and_jobs_know_each_other():
+    done = script("--quick", "--check")
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_disagreement_or_a_stale_page_ends_the_script_with_status_1(tmp_path):
+    spec = importlib.util.spec_from_file_location("docs_figures", DOCS / "figures.py")
+    figures = importlib.util.module_from_spec(spec)
+    before = sys.path[:]
+    try:
+        spec.loader.exec_module(figures)
+    finally:
+        sys.path[:] = before
+    found = figures.Findings("a")
+    found.agree("temperature", 290.0, 0.5, 288.0, limit=3.0)
+    assert found.failures == []
+    found.agree("temperature", 291.0, 0.5, 288.0)
+    found.bound("energy", 1e-9, 1e-12)
+    assert len(found.failures) == 2
+    wanted = set()
+    old = "<!-- number:a.b -->1<!-- end --> and <!-- number:c.d --><!-- end -->"
+    assert figures.page.filled(old, {"a.b": "2"}, {}, wanted) == old.replace("1", "2")
+    assert wanted == {"number:c.d"}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_run_that_a_page_suggests_is_understood(page):
+    for scene, *words in commands(page):
+        if scene in scenarios.names():
+            given = [word for option, word in itertools.pairwise(words) if option == "--set"]
+            settings = dict(word.split("=", 1) for word in given)
+            assert runner.card(runner.prepare(scene, settings)).facts
+
+
+def test_the_scene_of_the_own_scene_page_is_the_example_and_runs_as_the_page_says(tmp_path):
+    text = (DOCS / "own-scene.md").read_text(encoding="utf-8")
+    shown = next(block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "class Settings" in block)
+    assert shown.rstrip() == (DOCS / "examples" / "my_scene.py").read_text(encoding="utf-8").rstrip()
+    (tmp_path / "my_scene.py").write_text(shown, encoding="utf-8")
+    (command,) = [words for words in commands(DOCS / "own-scene.md") if words[0].endswith(".py")]
+    typed = [sys.executable, "-m", "atmosbox", "run", *command, "--json"]
+    done = subprocess.run(typed, cwd=tmp_path, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=True)
+    (headline,) = json.loads(done.stdout)["headlines"]
+    assert headline["agrees"]
+    assert all(check.passed for check in runner.verify(read(tmp_path / "my_scene.nc")))
