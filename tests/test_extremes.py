@@ -148,13 +148,17 @@ def test_a_crystal_starts_from_a_lattice_and_stays_one(packing):
     velocity = maxwell_velocities(1.0, np.ones(number), rng, exact=True)
     box = ParcelSet(sites, velocity, length=(side,) * 3, walls=(P,) * 6)
     within(box, 1.0)
-    start = box.virial.sum(), box.time
-    within(box, 5.0)
-    factor = 1.0 + (box.virial.sum() - start[0]) / (3.0 * number * (box.time - start[1]))
-    # a crystal presses by its free volume, 3 / (1 - (phi / .7405)^(1/3)) / 3 to leading order, and less than a
-    # metastable fluid
-    free = 1.0 / (1.0 - (packing / 0.740480) ** (1.0 / 3.0))
-    assert 0.8 * free < factor < 1.05 * free
+    factors = []
+    for _ in range(20):
+        before, time = box.virial.sum(), box.time
+        within(box, time + 0.5)
+        factors.append(1.0 + (box.virial.sum() - before) / (3.0 * number * (box.time - time)))
+    mean, error = block_average(factors)
+    # the pressure of the crystal, after Speedy (1998), J. Phys. Condens. Matter 10, 4387
+    share = packing / (math.pi / math.sqrt(18.0))
+    factor = 3.0 / (1.0 - share) - 0.5921 * (share - 0.7072) / (share - 0.601)
+    assert error / factor < 0.005
+    assert abs(mean - factor) <= 4.0 * error + 1.5 * factor / number
     moved = box.snapshot().position - sites
     moved -= side * np.rint(moved / side)
     moved -= moved.mean(axis=0)
@@ -202,10 +206,8 @@ def test_molecules_a_million_times_as_heavy_as_the_others_keep_the_energy():
 def test_a_light_molecule_rattles_between_a_wall_and_a_heavy_one_as_often_as_mechanics_says():
     # Galperin's count: with masses 100^k : 1 there are so many hits as pi has to k + 1 digits
     for k, hits in enumerate([3, 31, 314, 3141]):
-        box = ParcelSet(
-            [[5, 5, 5], [8, 5, 5]], [[0, 0, 0], [-1, 0, 0]], length=(200, 10, 10), mass=[1.0, 100.0**k]
-        )
-        within(box, 30.0)
+        box = ParcelSet([[5, 5, 5], [8, 5, 5]], [[0, 0, 0], [-1, 0, 0]], length=(300, 10, 10), mass=[1.0, 100.0**k])
+        within(box, 100.0)
         assert box.contacts + box.wall_hits[0] == hits
         assert box.wall_hits[1:].max() == 0
         assert sum(box.energy()) == pytest.approx(0.5 * 100.0**k, rel=1e-12)
@@ -242,7 +244,7 @@ def test_walls_a_million_times_as_hot_as_others_are_no_trouble():
         within(box, 0.2 * k)
         assert outermost(box) <= 1e-12
         assert deepest_overlap(box) <= 1e-9
-        assert box.ledger() <= 1e-12
+        assert box.ledger() <= 1e-10
     assert 10.0 < temperature(box, box.snapshot()) < 1e6
     assert box.wall_heat[0] > 0.0 > box.wall_heat[1]
 
@@ -255,20 +257,25 @@ def test_a_wall_without_a_temperature_above_zero_is_refused(kT):
 
 def test_walls_at_hardly_any_temperature_freeze_the_gas_and_nothing_else_happens():
     box = sphere_box(50, (10.0,) * 3, walls=(HeatBath(1e-300),) * 6)
-    try:
-        for until in (10.0, 1e3, 1e5):
+    before, refusals = sum(box.energy()), []
+    for until in (10.0, 1e3, 1e5):
+        try:
             within(box, until)
-            assert box.ledger() <= 1e-10
-    except StalledError as refusal:
-        assert "is too cold: warm it" in str(refusal)
+        except StalledError as refusal:
+            # somebody is caught between a wall's slow molecule and the others
+            refusals.append(str(refusal))
+        assert box.ledger() <= 1e-10
+    assert all("is too cold: warm it" in refusal for refusal in refusals)
     assert np.isfinite(box.snapshot().position).all()
-    # the slow ones never come back from the wall; few others are left
-    assert box.energy()[0] < 0.1 * 75.0
+    assert sum(box.energy()) < 0.9 * before
+    assert outermost(box) <= 1e-12
 
 
 def test_a_floor_too_cold_for_its_gravity_is_refused():
     box = sphere_box(50, (10.0,) * 3, gravity=1.0, walls=(S, S, S, S, HeatBath(1e-300), S))
-    with pytest.raises(StalledError, match=r"wall z_low at kT = 1e-300 is too cold: warm it, or reduce the gravity of 1"):
+    with pytest.raises(
+        StalledError, match=r"wall z_low at kT = 1e-300 is too cold: warm it, or reduce the gravity of 1"
+    ):
         within(box, 1000.0)
 
 
@@ -291,7 +298,9 @@ def test_gravity_a_thousand_times_too_strong_is_only_a_denser_floor(gravity):
 @pytest.mark.parametrize("heights", [[0.5], [0.5, 1.5], [0.5, 1.5, 2.5]])
 def test_molecules_at_rest_on_the_floor_in_gravity_are_refused(heights):
     where = [[5.0, 5.0, z] for z in heights]
-    with pytest.raises(StalledError, match=r"molecules come to rest: reduce the gravity of 1, or give them more energy"):
+    with pytest.raises(
+        StalledError, match=r"molecules come to rest: reduce the gravity of 1, or give them more energy"
+    ):
         within(ParcelSet(where, np.zeros((len(where), 3)), length=(10, 10, 10), gravity=1.0), 10.0)
 
 
@@ -376,7 +385,7 @@ def test_one_two_or_three_molecules_are_a_gas_too(number, walls):
 
 
 def test_one_molecule_meets_not_its_own_image():
-    box = within(ParcelSet([[1, 1, 1]], [[1.0, 0.7, 0.3]], length=(2.2, 2.2, 2.2), walls=(P,) * 6), 1000.0)
+    box = within(ParcelSet([[1, 1, 1]], [[1.0, 0.7, 0.3]], length=(2.4, 2.4, 2.4), walls=(P,) * 6), 1000.0)
     assert box.contacts == 0
     assert box.snapshot().velocity.tolist() == [[1.0, 0.7, 0.3]]
 
@@ -388,10 +397,13 @@ def many(number):
     side = (number * math.pi / 6.0 / 0.05) ** (1.0 / 3.0)
     box = sphere_box(number, (side,) * 3)
     before = sum(box.energy())
-    within(box, 1.0, 40 * number)
-    rate = 0.5 * number * float(theory.collision_rate(number / side**3, 1.0, 1.0, 1.0))
-    # pushed apart at the start, they have not yet forgotten it
-    assert box.contacts == pytest.approx(rate, rel=0.2)
+    # pushed apart at the start, they must first forget it
+    within(box, 2.0, 40 * number)
+    contacts = box.contacts
+    within(box, 3.0, 40 * number)
+    rate = 0.5 * number * float(theory.collision_rate(number / (side - 1.0) ** 3, 1.0, 1.0, 1.0))
+    rate *= theory.contact_share([side - 1.0] * 3, 1.0, number)
+    assert abs((box.contacts - contacts) / rate - 1.0) <= 4.0 / math.sqrt(rate) + 0.005
     assert sum(box.energy()) == pytest.approx(before, rel=1e-12)
     return box.memory() / number
 
@@ -464,14 +476,14 @@ def test_a_molecule_that_reaches_through_a_wall_at_the_start_is_refused(place, w
 # 21: crushed
 
 
-@pytest.mark.parametrize("number", [4, 20, 100])
+@pytest.mark.parametrize(("number", "side"), [(4, 4.0), (20, 4.0), (100, 6.0)])
 @pytest.mark.parametrize("rotation", [0, 2])
-def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(number, rotation):
+def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(number, side, rotation):
     walls = (S,) * 5 + (Piston(-0.5),)
     energy = np.full(number, 0.5 * rotation)
-    box = sphere_box(number, (4.0, 4.0, 12.0), walls=walls, rotation=rotation, rotational_energy=energy)
+    box = sphere_box(number, (side, side, 12.0), walls=walls, rotation=rotation, rotational_energy=energy)
     with pytest.raises(StalledError, match=r"the piston has come down to .* where it would crush the molecules"):
-        within(box, 24.0)
+        within(box, 24.0, 50_000_000)
     assert deepest_overlap(box) <= 1e-9
     assert outermost(box) <= 1e-9
     assert box.ledger() <= 1e-10
@@ -480,9 +492,12 @@ def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(numbe
     # and it does not go on from there
     with pytest.raises(StalledError, match="crush"):
         within(box, 30.0)
-    # but it may go back
+    # but it may go back; the gas is by now hot beyond measure, so a short while will do
     box.set_piston_velocity(0.5)
-    within(box, box.time + 1.0)
+    ceiling = box.ceiling
+    within(box, box.time + 1e-3)
+    assert box.ceiling > ceiling
+    assert box.ledger() <= 1e-10
 
 
 def test_a_piston_on_points_stops_at_a_thousandth_of_the_box():
@@ -582,7 +597,7 @@ def test_another_seed_is_another_run():
 # 24: what is no number
 
 
-GOOD = dict(position=[[1, 2, 2], [3, 2, 2]], velocity=[[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
+GOOD = {"position": [[1, 2, 2], [3, 2, 2]], "velocity": [[1, 0, 0], [-1, 0, 0]], "length": (4, 4, 4)}
 BAD = [
     ("mass", [0, -1, math.nan, math.inf, "x", None, [1, 2, 3]]),
     ("diameter", [-1, math.nan, math.inf, "x", None]),
@@ -630,9 +645,9 @@ def test_walls_that_no_box_can_have_are_refused_by_their_names(walls, words):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (dict(walls=(P,) * 6, gravity=1.0), "periodic along z cannot have gravity"),
-        (dict(planar=True, velocity=[[1, 1, 0], [0, 0, 0]]), "a plane gas has no velocity along y"),
-        (dict(planar=True, position=[[1, 2, 2], [3, 2.5, 2]]), "the centres of a plane gas lie in one plane"),
+        ({"walls": (P,) * 6, "gravity": 1.0}, "periodic along z cannot have gravity"),
+        ({"planar": True, "velocity": [[1, 1, 0], [0, 0, 0]]}, "a plane gas has no velocity along y"),
+        ({"planar": True, "position": [[1, 2, 2], [3, 2.5, 2]]}, "the centres of a plane gas lie in one plane"),
     ],
 )
 def test_boxes_that_contradict_themselves_are_refused(options, words):

@@ -44,10 +44,10 @@ def sheet(size: tuple[float, float]) -> Iterator[Figure]:
 
 
 @contextmanager
-def axes_of(number: int, size: tuple[float, float]) -> Iterator[tuple[Figure, Any]]:
+def axes_of(number: int, size: tuple[float, float], widths: Any = None) -> Iterator[tuple[Figure, Any]]:
     """Return a figure with some axes side by side."""
     with sheet(size) as drawing:
-        axes = drawing.subplots(1, number, squeeze=False)[0]
+        axes = drawing.subplots(1, number, squeeze=False, width_ratios=widths)[0]
         for each in axes:
             each.set_prop_cycle(color=DATA_COLOURS)
         yield drawing, axes

@@ -112,7 +112,7 @@ def draw_misfit(axes, data) -> None:
 def cells(found: Findings) -> None:
     """Draw how molecules belong to cells, and the boundaries that make the slots."""
     radius, edges = 0.22, np.arange(4.0)
-    with axes_of(2, (9.6, 4.7)) as (drawing, (left, right)):
+    with axes_of(2, (9.6, 4.7), (3.1, 3.58)) as (drawing, (left, right)):
         places = {(0.52, 2.45): 1, (1.05, 1.55): 2, (2.05, 1.1): 4, (1.488, 1.59): 1, (1.55, 0.5): 1, (2.6, 2.5): 1}
         colours = {1: BLUE, 2: VERMILLION, 4: "#cc79a7"}
         for edge in edges:
@@ -151,5 +151,5 @@ def draw_slots(axes, radius: float, edges: np.ndarray) -> None:
     axes.text(0.72, 1.66, "here it\nenters\ncell 1", ha="right", va="center", fontsize=10)
     for height, text in ((middle, "slot"), (low, "cells")):
         axes.text(-0.1, height, text, ha="right", va="center")
-    axes.set(title="Along each axis: slots of its centre", xlim=(-0.5, 3.08), ylim=(0.3, 3.05), aspect="equal")
+    axes.set(title="Along each axis: slots of its centre", xlim=(-0.5, 3.08), ylim=(0.02, 3.12), aspect="equal")
     axes.set_axis_off()

@@ -125,7 +125,7 @@ class Findings:
         stream = io.BytesIO()
         drawing.savefig(stream, format="png", dpi=dots_per_inch, metadata={"Software": None})
         content = stream.getvalue()
-        if len(content) > LARGEST_FIGURE // 2:
+        if len(content) > LARGEST_FIGURE:
             content = compact(content)
         if len(content) > LARGEST_FIGURE:
             self.failures.append(f"the figure {name} has {len(content)} bytes, more than {LARGEST_FIGURE}")
@@ -140,7 +140,7 @@ def compact(png: bytes) -> bytes:
     from PIL import Image
 
     picture = Image.open(io.BytesIO(png)).convert("RGB")
-    picture = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    picture = picture.quantize(256, dither=Image.Dither.NONE)
     stream = io.BytesIO()
     picture.save(stream, format="png", optimize=True)
     return stream.getvalue()

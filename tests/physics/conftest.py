@@ -11,7 +11,10 @@ from atmosbox.engine.start import maxwell_velocities, random_positions, rotation
 from atmosbox.engine.walls import Periodic, Specular
 
 
-def new_gas(number, length, *, walls=(Specular(),) * 6, seed, kT=1.0, spin_kT=None, planar=False, **options):
+SPECULAR = (Specular(),) * 6
+
+
+def new_gas(number, length, *, walls=SPECULAR, seed, kT=1.0, spin_kT=None, planar=False, **options):
     """Return a gas at random places whose kinetic energy is that of kT to rounding, whatever the seed."""
     rng = np.random.default_rng(seed)
     ones = np.ones(number)

@@ -30,7 +30,9 @@ def profile(box, edges, step, samples, warm_up):
     area = float(box.length[0] * box.length[1])
     density = block_average(np.array(counts) / (area * np.diff(edges)))
     blocks = 20
-    per_block = [np.array(a)[-samples // blocks * blocks :].reshape(blocks, -1, len(edges) - 1) for a in (energy, freedom)]
+    per_block = [
+        np.array(a)[-samples // blocks * blocks :].reshape(blocks, -1, len(edges) - 1) for a in (energy, freedom)
+    ]
     warmth = 2.0 * per_block[0].sum(axis=1) / per_block[1].sum(axis=1)
     return density, block_average(warmth), block_average(heights)
 

@@ -57,18 +57,23 @@ def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
 
 
 BOXES = {
-    "walls and gravity": dict(number=191, length=(10.0, 10.0, 10.0), gravity=0.3),
-    "periodic and dense": dict(number=400, length=(8.2, 8.2, 8.2), walls=(P,) * 6, duration=8.0),
-    "periodic, as small as it may be": dict(number=18, length=(3.6, 3.6, 3.6), walls=(P,) * 6),
-    "periodic along two axes": dict(number=300, length=(10.0, 10.0, 12.0), walls=(P, P, P, P, S, S), gravity=0.3),
-    "three sizes and masses": dict(
-        number=150,
-        length=(14.0, 14.0, 14.0),
-        diameter=np.repeat([0.4, 1.0, 4.0], [100, 40, 10]),
-        mass=np.repeat([0.1, 1.0, 30.0], [100, 40, 10]),
-    ),
-    "heat baths": dict(number=191, length=(10.0, 10.0, 10.0), walls=(HeatBath(4.0), HeatBath(1.0), S, S, S, S)),
-    "a plane": dict(number=200, length=(20.0, 1.0, 20.0), planar=True, gravity=0.1),
+    "walls and gravity": {"number": 191, "length": (10.0, 10.0, 10.0), "gravity": 0.3},
+    "periodic and dense": {"number": 400, "length": (8.2, 8.2, 8.2), "walls": (P,) * 6, "duration": 8.0},
+    "periodic, as small as it may be": {"number": 18, "length": (3.6, 3.6, 3.6), "walls": (P,) * 6},
+    "periodic along two axes": {
+        "number": 300,
+        "length": (10.0, 10.0, 12.0),
+        "walls": (P, P, P, P, S, S),
+        "gravity": 0.3,
+    },
+    "three sizes and masses": {
+        "number": 150,
+        "length": (14.0, 14.0, 14.0),
+        "diameter": np.repeat([0.4, 1.0, 4.0], [100, 40, 10]),
+        "mass": np.repeat([0.1, 1.0, 30.0], [100, 40, 10]),
+    },
+    "heat baths": {"number": 191, "length": (10.0, 10.0, 10.0), "walls": (HeatBath(4.0), HeatBath(1.0), S, S, S, S)},
+    "a plane": {"number": 200, "length": (20.0, 1.0, 20.0), "planar": True, "gravity": 0.1},
 }
 
 
@@ -101,7 +106,7 @@ def test_nothing_overlaps_or_escapes_below_a_piston_that_pumps(gas, out_of_place
 
 def test_momentum_stays_in_a_periodic_box(gas):
     drift = np.array([0.3, -0.2, 0.1])
-    still = dict(number=300, length=(10.0, 10.0, 10.0), walls=(P,) * 6, seed=5)
+    still = {"number": 300, "length": (10.0, 10.0, 10.0), "walls": (P,) * 6, "seed": 5}
     box = gas(**still, velocity=gas(**still).snapshot().velocity + drift)
     before = momentum(box, box.snapshot())
     assert before == pytest.approx(300 * drift, rel=1e-12)
@@ -130,7 +135,7 @@ def scattered_pairs():
     b = np.sqrt(rng.random(4096))
     azimuth = 2.0 * np.pi * rng.random(b.size)
     corner = np.stack(np.meshgrid(*[12.0 * np.arange(16)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 4.0
-    target = corner + [3.0, 0.0, 0.0] + np.stack([0 * b, b * np.cos(azimuth), b * np.sin(azimuth)], axis=1)
+    target = [*corner, 3.0, 0.0, 0.0, *np.stack([0 * b, b * np.cos(azimuth), b * np.sin(azimuth)], axis=1)]
     x = np.concatenate([corner, target])
     v = np.zeros_like(x)
     v[: b.size, 0] = 1.0

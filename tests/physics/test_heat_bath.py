@@ -84,7 +84,9 @@ def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
     assert box.contacts == 0
 
 
-@pytest.mark.parametrize(("hot", "accommodation", "rotation"), [(4.0, 1.0, 0), (4.0, 0.5, 0), (4.0, 1.0, 2), (1e6, 1.0, 0)])
+@pytest.mark.parametrize(
+    ("hot", "accommodation", "rotation"), [(4.0, 1.0, 0), (4.0, 0.5, 0), (4.0, 1.0, 2), (1e6, 1.0, 0)]
+)
 def test_a_very_thin_gas_between_two_walls_carries_the_heat_that_knudsen_found(gas, hot, accommodation, rotation):
     number, cold = 1000, 1.0
     walls = (HeatBath(hot, accommodation), HeatBath(cold, accommodation), P, P, P, P)

@@ -106,9 +106,9 @@ def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio):
 
 
 MIXTURES = {
-    "two masses": dict(share=0.3, diameter=(1.0, 1.0), mass=(1.0, 50.0)),
-    "two sizes": dict(share=0.2, diameter=(1.0, 2.0), mass=(1.0, 1.0)),
-    "few heavy giants": dict(share=0.02, diameter=(1.0, 4.0), mass=(1.0, 64.0)),
+    "two masses": {"share": 0.3, "diameter": (1.0, 1.0), "mass": (1.0, 50.0)},
+    "two sizes": {"share": 0.2, "diameter": (1.0, 2.0), "mass": (1.0, 1.0)},
+    "few heavy giants": {"share": 0.02, "diameter": (1.0, 4.0), "mass": (1.0, 64.0)},
 }
 
 
@@ -178,9 +178,9 @@ def test_free_flights_are_as_long_as_those_of_a_random_walk(gas):
     density = theory.maxwell_speed_density(speeds, 1.0, 1.0)
     # rate of contacts of a molecule of speed v (Chapman and Cowling 1970, section 5.4), of mean nu
     w = speeds[1:] / math.sqrt(2.0)
-    relative = (np.exp(-(w**2)) + (2.0 * w + 1.0 / w) * math.sqrt(math.pi) / 2.0 * np.array([math.erf(a) for a in w])) / (
-        math.sqrt(8.0)
-    )
+    relative = (
+        np.exp(-(w**2)) + (2.0 * w + 1.0 / w) * math.sqrt(math.pi) / 2.0 * np.array([math.erf(a) for a in w])
+    ) / (math.sqrt(8.0))
     rate = float(theory.collision_rate(number / side**3, 1.0, 1.0, 1.0)) * relative
     expected = [np.trapezoid(density[1:] * np.exp(-rate * step * (k + 1)), speeds[1:]) for k in range(20)]
     assert surviving[-1] < 0.4

@@ -124,7 +124,9 @@ def test_rotating_and_plain_molecules_come_to_one_temperature(gas):
         box.advance(box.time + 4.0)
         here = box.snapshot()
         kinetic = 0.5 * mass * np.sum(here.velocity**2, axis=1)
-        rows.append([kinetic[rotation == 0.0].mean(), kinetic[rotation == 2.0].mean(), here.rotational_energy.sum() / 200.0])
+        rows.append(
+            [kinetic[rotation == 0.0].mean(), kinetic[rotation == 2.0].mean(), here.rotational_energy.sum() / 200.0]
+        )
         assert here.rotational_energy[rotation == 0.0].max() == 0.0
     mean, error = block_average(rows)
     assert (error < 0.02).all()

@@ -1,0 +1,147 @@
+"""The pace of the exact engine: collisions per CPU second, alone or beside another engine in the same run.
+
+    python benchmarks/engine.py
+    python benchmarks/engine.py --against FOLDER --repeats 9
+
+Machines are noisy: what counts is the ratio of two engines that take turns, the median over many short slices.
+FOLDER holds a module ``exact.py`` with ``make(PX, PZ, GRAV, THERM, K)``, which returns kernels, and
+``Sim(kernels, X, V, L, g, m, PX, PZ)``, which advances equal spheres of unit diameter by ``go(nc=collisions)``
+and counts them in ``cnt[0]``.
+"""
+
+import argparse
+import gc
+import importlib
+import json
+import math
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from atmosbox.engine import HeatBath, ParcelSet, Periodic
+from atmosbox.engine.start import maxwell_velocities, random_positions
+
+RATE = {0.01: 0.138854, 0.1: 1.765845}  # collisions of a molecule per reduced time
+
+
+class Ours:
+    """Our engine in a periodic box, or in gravity between two heat baths."""
+
+    def __init__(self, x: np.ndarray, v: np.ndarray, side: float, gravity: float) -> None:
+        ends = (HeatBath(1.0), HeatBath(1.0)) if gravity else (Periodic(), Periodic())
+        self.box = ParcelSet(x, v, length=(side,) * 3, walls=(Periodic(),) * 4 + ends, gravity=gravity)
+
+    def advance(self, collisions: int) -> int:
+        """Advance by about so many collisions; return how many there were."""
+        before = self.box.contacts
+        rate = self.box.contacts / self.box.time if self.box.time else 0.0
+        self.box.advance(self.box.time + (collisions / rate if rate else 1e-3))
+        return self.box.contacts - before
+
+    def warm_up(self, time: float) -> None:
+        """Compile, and find the rate."""
+        self.box.advance(time)
+
+
+class Theirs:
+    """Another engine, from the folder named on the command line."""
+
+    def __init__(self, module: Any, x: np.ndarray, v: np.ndarray, side: float, gravity: float, phi: float) -> None:
+        walled = bool(gravity)
+        kernels = module.make(PX=True, PZ=not walled, GRAV=walled, THERM=walled, K=32)
+        self.sim = module.Sim(
+            kernels, x.copy(), v.copy(), np.array([side] * 3), g=gravity, m=4.0 if phi < 0.05 else 2.5,
+            PX=True, PZ=not walled,
+        )  # fmt: skip
+
+    def advance(self, collisions: int) -> int:
+        """Advance by so many collisions."""
+        before = int(self.sim.cnt[0])
+        self.sim.go(nc=collisions)
+        return int(self.sim.cnt[0]) - before
+
+
+def pace(advance: Callable[[int], int], collisions: int) -> float:
+    """Return collisions per CPU second of one slice."""
+    start = time.process_time()
+    done = advance(collisions)
+    return done / (time.process_time() - start)
+
+
+def measure(n: int, phi: float, case: str, repeats: int, other: Any) -> dict[str, Any]:
+    """Return the medians of one case."""
+    side = (n * math.pi / 6.0 / phi) ** (1.0 / 3.0)
+    rng = np.random.default_rng(1)
+    walled = case == "gravity"
+    x = random_positions((side,) * 3, np.ones(n), rng, periodic=(True, True, not walled))
+    v = maxwell_velocities(1.0, np.ones(n), rng, exact=True)
+    gravity = 1.0 / side if walled else 0.0
+    ours = Ours(x, v, side, gravity)
+    ours.warm_up(4.0 / RATE.get(phi, 1.0))
+    theirs = Theirs(other, x, v, side, gravity, phi) if other else None
+    if theirs:
+        theirs.advance(2 * n)
+    slice_ = max(30_000, n // 2)
+    paces, others = [], []
+    gc.disable()
+    for _ in range(repeats):
+        paces.append(pace(ours.advance, slice_))
+        if theirs:
+            others.append(pace(theirs.advance, slice_))
+    gc.enable()
+    events = ours.box.events
+    result = {
+        "case": case,
+        "packing_fraction": phi,
+        "molecules": n,
+        "collisions_per_second": float(np.median(paces)),
+        "bytes_per_molecule": ours.box.memory() / n,
+        "events_per_collision": sum(events.values()) / events["contacts"],
+    }
+    if theirs:
+        result["other_collisions_per_second"] = float(np.median(others))
+        result["ratio"] = float(np.median(np.array(paces) / np.array(others)))
+    return result
+
+
+def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
+    """Run the cases asked for and print a table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--n", type=int, nargs="+", default=[1_000, 10_000, 100_000])
+    parser.add_argument("--phi", type=float, nargs="+", default=[0.01, 0.1])
+    parser.add_argument("--cases", nargs="+", default=["periodic", "gravity"], choices=["periodic", "gravity"])
+    parser.add_argument("--repeats", type=int, default=9)
+    parser.add_argument("--against", type=Path, help="folder of another engine, to take turns with")
+    parser.add_argument("--json", type=Path, help="file for the numbers")
+    asked = parser.parse_args(arguments)
+    other = None
+    if asked.against:
+        sys.path.insert(0, str(asked.against))
+        other = importlib.import_module("exact")
+    print("| case | phi | N | thousand collisions / s | other | ratio | bytes per molecule |")
+    print("|---|---|---|---|---|---|---|")
+    results = []
+    for case in asked.cases:
+        for phi in asked.phi:
+            for n in asked.n:
+                r = measure(n, phi, case, asked.repeats, other)
+                results.append(r)
+                beside = f"{r['other_collisions_per_second'] / 1e3:.0f} | {r['ratio']:.3f}" if other else " | "
+                print(
+                    f"| {case} | {phi:g} | {n} | {r['collisions_per_second'] / 1e3:.0f} | {beside} "
+                    f"| {r['bytes_per_molecule']:.0f} |",
+                    flush=True,
+                )
+    if asked.json:
+        asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    return results
+
+
+if __name__ == "__main__":
+    main()
