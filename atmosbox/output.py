@@ -49,7 +49,7 @@ AnyPath: TypeAlias = str | os.PathLike[str]
 
 
 def _moment() -> str:
-    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that the content of a file can come out the same every time."""
+    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that the same run can have the same content."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)

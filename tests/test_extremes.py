@@ -479,23 +479,23 @@ def test_a_molecule_that_reaches_through_a_wall_at_the_start_is_refused(place, w
 @pytest.mark.parametrize(("number", "side"), [(4, 4.0), (20, 4.0), (100, 6.0)])
 @pytest.mark.parametrize("rotation", [0, 2])
 def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(number, side, rotation):
-    walls = (S,) * 5 + (Piston(-0.5),)
+    walls = (S,) * 5 + (Piston(-2.0),)
     energy = np.full(number, 0.5 * rotation)
     box = sphere_box(number, (side, side, 12.0), walls=walls, rotation=rotation, rotational_energy=energy)
     with pytest.raises(StalledError, match=r"the piston has come down to .* where it would crush the molecules"):
-        within(box, 24.0, 50_000_000)
+        within(box, 6.0, 50_000_000)
     assert deepest_overlap(box) <= 1e-9
     assert outermost(box) <= 1e-9
     assert box.ledger() <= 1e-10
     assert packing_fraction(box.length, box.diameter) <= 0.6 + 1e-9
-    assert box.time <= 24.0
+    assert box.time <= 6.0
     # and it does not go on from there
     with pytest.raises(StalledError, match="crush"):
-        within(box, 30.0)
+        within(box, 7.0)
     # but it may go back; the gas is by now hot beyond measure, so a short while will do
     box.set_piston_velocity(0.5)
-    ceiling = box.ceiling
-    within(box, box.time + 1e-3)
+    ceiling, speed = box.ceiling, math.sqrt(sum(box.energy()) / number)
+    within(box, box.time + 0.01 / speed)
     assert box.ceiling > ceiling
     assert box.ledger() <= 1e-10
 

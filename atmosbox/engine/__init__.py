@@ -1,12 +1,28 @@
 """The engine: colliding molecules, and nothing of meteorology.
 
-Read it in this order: `state` (what is known of a molecule), `motion` (free flight), `random`, `contact`
-(a pair meets), `schedule` and `walls` (one law each), `cells` (who can meet whom), `calendar` (what
-happens next), `plan`, `encounter` and `crossing` (what lies ahead of a molecule, and what becomes of it),
-`exact` (from event to event), `reference` (the same, slow and obvious: the oracle of the tests),
-`parcelset` (the box that a scene uses), `inputs` and `refusal` (what is refused), `packing` and `start`
-(how a box begins), `measure` (what is read off it), `lift` (a piston that follows a pressure), `_jit` (the one door
-to numba).
+Read it in this order:
+
+`state`      what is known of a molecule, of its box, of what lies ahead
+`motion`     free flight
+`random`     random numbers
+`contact`    two molecules meet
+`schedule`   numbers that change with time
+`walls`      what walls do, one law each
+`cells`      who can meet whom
+`calendar`   what happens next
+`plan`       what lies ahead of a molecule
+`encounter`  what an encounter does
+`crossing`   from cell to cell
+`exact`      from event to event
+`reference`  the same, slow and obvious: the oracle of the tests
+`refusal`    the errors
+`inputs`     what is refused
+`packing`    where molecules stand at the start
+`start`      how they move at the start
+`parcelset`  the box that a scene uses
+`measure`    what is read off it
+`lift`       a piston that follows a pressure
+`_jit`       the one door to numba
 
 Everything is in reduced units; the engine knows no kelvin, no file and no scenario.
 """

@@ -17,6 +17,7 @@ from typing import Any
 
 import llvmlite.ir as ir
 import numba
+import numpy as np
 from numba.core import cgutils, config, types
 from numba.extending import intrinsic
 
@@ -95,6 +96,8 @@ def kernel(function: Callable[..., Any] | None = None, *, entry: bool = False, a
     """
     if function is None:
         return lambda f: kernel(f, entry=entry, allocates=allocates)
+    if not COMPILED:
+        return np.errstate(all="ignore")(function)  # as compiled code is silent
     options = _SHARED | {"_nrt": allocates}
     if not entry:
         return numba.njit(forceinline=True, **options)(function)

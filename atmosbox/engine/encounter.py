@@ -71,9 +71,12 @@ def meet(i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes):
         spin = kinds.rotational_energy
         relative = 0.5 * reduced_mass * (ux * ux + uy * uy + uz * uz)
         dimensions = 2.0 if box.planar else 3.0
-        shared, spin[i], spin[j] = share_energy(
-            relative + spin[i] + spin[j], dimensions, rotation, other_rotation, tallies.random
-        )
+        energy = relative + spin[i] + spin[j]
+        # the lower index first: what happens must not depend on which of the two held the event
+        if i < j:
+            shared, spin[i], spin[j] = share_energy(energy, dimensions, rotation, other_rotation, tallies.random)
+        else:
+            shared, spin[j], spin[i] = share_energy(energy, dimensions, other_rotation, rotation, tallies.random)
         # the elastic contact turns the relative velocity u into u + d (1 + m_i / m_j); now its length is scaled
         share = 1.0 + mass / other_mass
         scale = math.sqrt(shared / relative)

@@ -37,8 +37,7 @@ def time_to_leave(x, v, low, high):
     """
     up = v > 0.0
     gap = (high if up else low) - x
-    t = gap / v
-    t = t if v != 0.0 else math.inf
+    t = gap / v if v != 0.0 else math.inf
     return max(t, 0.0), (1 if up else 0)
 
 

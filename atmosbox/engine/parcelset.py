@@ -138,10 +138,14 @@ class ParcelSet:
             raise RefusedError("a box that is periodic along z cannot have gravity: molecules would fall for ever")
         if driver is not None and law[5] != PISTON:
             raise RefusedError("a driver needs a piston: make wall z_high a Piston")
+        if driver is not None and not (math.isfinite(driver.interval) and driver.interval > 0.0):
+            raise RefusedError(f"interval of the driver = {driver.interval} must be finite and above 0")
         self._sides = sides
         self._planar = bool(planar)
         self._driver = driver
         x = inside(x, self._diameter, sides, self._periodic)
+        if planar:  # nothing ever moves along y
+            self._periodic = (self._periodic[0], False, self._periodic[2])
         self._kinds, kind = self._classify(spin)
         self._molecules = aligned_records(n, MOLECULE)
         for axis, name in enumerate("xyz"):
@@ -164,6 +168,7 @@ class ParcelSet:
         )
         self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
         self._now = 0.0
+        self._asked: float | None = None
         self._turn = 0
         self._cells: Cells
         self._lay_out()
@@ -191,7 +196,7 @@ class ParcelSet:
     @property
     def time(self) -> float:
         """Time since the start [time]."""
-        return float(self._walls.epoch[0]) + self._now
+        return float(self._walls.epoch[0]) + self._now if self._asked is None else self._asked
 
     @property
     def length(self) -> Array:
@@ -389,11 +394,12 @@ class ParcelSet:
                 continue
             self._resolve(local, watch)
             if self._driver is None or stop < (self._turn + 1) * self._driver.interval:
-                return
+                break
             self._turn += 1
             self._drive()
             if stop >= until:
-                return
+                break
+        self._asked = until
 
     def set_piston_velocity(self, velocity: float) -> None:
         """Let the piston move at another velocity [length/time] from now on.
@@ -405,8 +411,7 @@ class ParcelSet:
         """
         if self._walls.law[5] != PISTON:
             raise RefusedError("this box has no piston: make wall z_high a Piston")
-        if not math.isfinite(velocity):
-            raise RefusedError(f"velocity of the piston = {velocity} is not finite: give a finite number")
+        velocity = number(velocity, "velocity of the piston")
         self._walls.piston[:] = self.ceiling, velocity, self._now
         if self.ceiling > 1.5 * self._filled or self.ceiling < 0.6 * self._filled:
             self._lay_out()
@@ -434,6 +439,7 @@ class ParcelSet:
 
     def _resolve(self, local: float, watch: Callable[[float], None] | None) -> None:
         """Resolve all events up to a local time."""
+        self._asked = None
         crushed = math.inf
         if self.piston_velocity < 0.0:
             crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
@@ -446,6 +452,7 @@ class ParcelSet:
                     self._molecules, self._events, self._kinds, self._cells, self._calendar,
                     self._box, self._walls, self._tallies, stop, _CHUNK,
                 )  # fmt: skip
+                self._now = max(self._now, min(stop, float(self._calendar.time[1])))
                 if status == ROW_FULL:
                     self._grow_rows()
                 elif status == STALLED:
@@ -580,11 +587,11 @@ class ParcelSet:
             np.stack([self._mass, 0.5 * self._diameter, self._rotation], axis=1), axis=0, return_inverse=True
         )
         if not len(table):
-            table = np.array([[1.0, 0.5, 0.0]])
+            table = np.array([[1.0, 0.0, 0.0]])
         classes, self._size_radius = size_classes(table[:, 1])
         records = aligned_records(len(table), KIND)
         records["mass"], records["radius"], records["rotation"] = table.T
-        records["size"] = classes
+        records["size_class"] = classes
         self._rotates = bool((self._rotation > 0.0).any())
         return Kinds(records, spin if self._rotates else np.zeros(1)), kind.reshape(-1)
 

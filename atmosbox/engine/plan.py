@@ -20,7 +20,7 @@ def size_and_radius(i, molecules, kinds, modes):
     """Return the size class and the radius [length] of molecule i."""
     if modes.mixed:
         kind = kinds.table[molecules[i].kind]
-        return np.int64(kind.size), kind.radius
+        return np.int64(kind.size_class), kind.radius
     return np.int64(0), kinds.table[0].radius
 
 

@@ -1,5 +1,6 @@
 """Numbers that may change with time: wherever the engine takes a float, one of these is taken too."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -71,7 +72,7 @@ class Steps:
 
     def points(self) -> list[tuple[float, float]]:
         """Return the corners: two at each step."""
-        if len(self.times) != len(self.values) or not self.times:
+        if len(self.times) != len(self.values) or len(self.times) == 0:
             raise RefusedError(
                 f"steps need as many values as times, at least one: {len(self.times)} times, {len(self.values)} values"
             )
@@ -105,9 +106,13 @@ def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) 
             corners = Constant(float(value)).points()
         except (TypeError, ValueError):
             raise RefusedError(f"{name} = {value!r} is not a number: give a number, Constant, Ramp or Steps") from None
+    if not corners:
+        raise RefusedError(f"{name} = {value!r} has no points: give at least one (time, value)")
     for time, number in corners:
         if not (math.isfinite(time) and math.isfinite(number)):
             raise RefusedError(f"{name} = {number} at time {time} is not finite: give a finite number")
         if positive and not number > 0.0:
             raise RefusedError(f"{name} = {number} is not positive: give a number above 0")
+    if any(later < earlier for (earlier, _), (later, _) in itertools.pairwise(corners)):
+        raise RefusedError(f"the times of {name} must not decrease: give its points in order of time")
     return corners

@@ -59,7 +59,7 @@ contact, crossing or wall comes first.
 SLOT_OFFSET = 16
 """Where in the bytes of an `EVENT` the three slots begin."""
 
-KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size", "i8")])
+KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size_class", "i8")])
 """A kind of molecule.
 
 Mass [mass], radius [length], rotational degrees of freedom, row of the table of cell boundaries.

@@ -95,19 +95,19 @@ def layers(found: Findings) -> None:
     found.table(["layer", "may import of atmosbox", "libraries", "only inside a function"], rows)
 
 
-def typed(*words: str, folder: Path | None = None) -> str:
-    """Return what atmosbox prints to stdout."""
+def typed(*words: str, folder: Path | None = None, status: int = 0) -> str:
+    """Return what atmosbox prints to stdout, or to stderr where a status other than 0 is expected."""
     environment = {**os.environ, "COLUMNS": "100", "NO_COLOR": "1", "PYTHONPATH": str(ROOT), "TERM": "dumb"}
     command = [sys.executable, "-m", "atmosbox", *words]
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False)
-    if done.returncode:
+    if done.returncode != status:
         raise RuntimeError(f"atmosbox {' '.join(words)} ended with {done.returncode}: {done.stderr}")
-    return done.stdout.rstrip()
+    return (done.stderr if status else done.stdout).rstrip()
 
 
-def console(words: str, folder: Path | None = None) -> str:
+def console(words: str, folder: Path | None = None, status: int = 0) -> str:
     """Return a command and what it prints, as a block of a page."""
-    lines = [line.rstrip() for line in typed(*words.split(), folder=folder).splitlines()]
+    lines = [line.rstrip() for line in typed(*words.split(), folder=folder, status=status).splitlines()]
     return "\n".join(["```console", f"$ atmosbox {words}", *lines, "```"])
 
 
@@ -116,6 +116,12 @@ def help_texts(found: Findings) -> None:
     """Keep what `--help` says of each command."""
     for command in ("list", "info", "run", "plot", "check"):
         found.text("\n".join(["```text", typed(command, "--help"), "```"]), key=command)
+
+
+@job("refusal")
+def refusal(found: Findings) -> None:
+    """Type something that cannot be understood."""
+    found.text(console("run lifting-dry --set temperature=25m", status=2))
 
 
 @job("tour")

@@ -10,7 +10,6 @@ from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
 from atmosbox.engine.walls import Periodic, Specular
 
-
 SPECULAR = (Specular(),) * 6
 
 

@@ -135,7 +135,7 @@ def scattered_pairs():
     b = np.sqrt(rng.random(4096))
     azimuth = 2.0 * np.pi * rng.random(b.size)
     corner = np.stack(np.meshgrid(*[12.0 * np.arange(16)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 4.0
-    target = [*corner, 3.0, 0.0, 0.0, *np.stack([0 * b, b * np.cos(azimuth), b * np.sin(azimuth)], axis=1)]
+    target = corner + np.stack([3.0 + 0.0 * b, b * np.cos(azimuth), b * np.sin(azimuth)], axis=1)
     x = np.concatenate([corner, target])
     v = np.zeros_like(x)
     v[: b.size, 0] = 1.0

@@ -51,14 +51,14 @@ def compare(gas, row, number, contacts):
     side = (number * math.pi / 6.0 / packing) ** (1.0 / 3.0)
     box = gas(number, (side,) * 3, walls=(P,) * 6, seed=11)
     virial, meetings, speed = series(box, contacts)
-    assert box.contacts > contacts
+    assert box.contacts > 0.9 * contacts
     kinetic = box.energy()[0]
     assert kinetic == pytest.approx(1.5 * number, rel=1e-12)
 
     # Z = 1 + W / (3 (N - 1) kT), where 3 (N - 1) kT is twice the energy, because the momentum is zero
     measured, error = block_average(1.0 + virial / (2.0 * kinetic))
     # the scatter of counts and impulses, if molecules forgot at once what they did
-    assert error < 2.0 * theory.compressibility_noise(z, contacts) * z
+    assert error < 2.0 * theory.compressibility_noise(z, contacts)
     assert abs(measured - z) <= 4.0 * error + FINITE * (z - 1.0) / number
 
     # in a box of fixed energy and momentum a pair is a little faster than the mean temperature says, and a
@@ -82,7 +82,7 @@ def test_spheres_press_and_meet_as_molecular_dynamics_and_enskog_say(gas, row):
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"phi={row[0]}")
 def test_spheres_press_and_meet_to_three_parts_in_a_thousand(gas, row):
     contacts = 6e6
-    assert theory.compressibility_noise(row[1], contacts) <= 0.003
+    assert theory.compressibility_noise(row[1], contacts) / (row[1] - 1.0) <= 0.003
     compare(gas, row, 2000, contacts)
 
 

@@ -1,0 +1,45 @@
+"""The examples in the docstrings of kernels are run, although a kernel is no plain function.
+
+Doctest looks for functions and may pass over what numba made of one; here each kernel's examples are looked up by
+hand, so that none can go stale unseen.
+"""
+
+import doctest
+import importlib
+import pkgutil
+
+import pytest
+
+import atmosbox.engine
+from atmosbox.engine._jit import COMPILED
+
+MODULES = [
+    importlib.import_module(f"atmosbox.engine.{found.name}") for found in pkgutil.iter_modules(atmosbox.engine.__path__)
+]
+KERNELS = [
+    (module, name)
+    for module in MODULES
+    for name, thing in vars(module).items()
+    if hasattr(thing, "py_func") and thing.__module__ == module.__name__ and ">>>" in (thing.__doc__ or "")
+]
+
+
+@pytest.mark.skipif(not COMPILED, reason="without numba kernels are plain functions")
+def test_kernels_with_examples_are_found():
+    assert {"time_to_contact", "time_to_leave", "uniform", "resolve_wall_hit"} <= {name for _, name in KERNELS}
+
+
+@pytest.mark.parametrize(("module", "name"), KERNELS, ids=[name for _, name in KERNELS])
+def test_the_examples_of_a_kernel_hold(module, name):
+    examples = doctest.DocTestParser().get_doctest(
+        getattr(module, name).__doc__, dict(vars(module)), name, module.__file__, 0
+    )
+    report = []
+    result = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(examples, out=report.append)
+    assert result.attempted > 0
+    assert result.failed == 0, "".join(report)
+
+
+def test_the_engine_says_where_to_find_each_of_its_files():
+    listed = {line.split("`")[1] for line in atmosbox.engine.__doc__.splitlines() if line.startswith("`")}
+    assert listed == {module.__name__.rpartition(".")[2] for module in MODULES}

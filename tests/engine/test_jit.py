@@ -1,0 +1,151 @@
+"""Machine code is kept on disk, and never outlives the sources it was made from."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+import atmosbox.engine
+from atmosbox.engine import _jit
+
+ENGINE = Path(atmosbox.engine.__file__).parent
+
+CONSTANT = "FACTOR = 2.0\n"
+CALLEE = """
+from atmosbox.engine._jit import kernel
+
+@kernel
+def shifted(x):
+    return x + 1.0
+"""
+CALLER = """
+from atmosbox.engine._jit import kernel
+from atmosbox.engine.probe_callee import shifted
+from atmosbox.engine.probe_constant import FACTOR
+
+@kernel(entry=True)
+def answer(x):
+    return FACTOR * shifted(x)
+"""
+QUESTION = "from atmosbox.engine.probe_caller import answer; print(answer(3.0), sum(answer.stats.cache_hits.values()))"
+
+needs_numba = pytest.mark.skipif(not _jit.COMPILED, reason="nothing is compiled, so nothing is kept")
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """Return a package tree of its own that holds a copy of the engine and three files more."""
+    engine = tmp_path / "tree" / "atmosbox" / "engine"
+    shutil.copytree(ENGINE, engine, ignore=shutil.ignore_patterns("__pycache__"))
+    (engine.parent / "__init__.py").write_text("", encoding="utf-8")
+    (engine / "__init__.py").write_text("", encoding="utf-8")
+    (engine / "probe_constant.py").write_text(CONSTANT, encoding="utf-8")
+    (engine / "probe_callee.py").write_text(CALLEE, encoding="utf-8")
+    (engine / "probe_caller.py").write_text(CALLER, encoding="utf-8")
+    return tmp_path / "tree"
+
+
+def ask(tree, **environment):
+    """Run the kernel in a process of its own; return its answer and how often its machine code was on disk."""
+    clean = {name: value for name, value in os.environ.items() if name not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")}
+    found = subprocess.run(
+        [sys.executable, "-c", QUESTION],
+        cwd=tree,
+        env=clean | {"PYTHONPATH": str(tree)} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert found.returncode == 0, found.stderr
+    answer, hits = found.stdout.split()
+    return float(answer), int(hits)
+
+
+def edit(tree, name, old, new):
+    path = tree / "atmosbox" / "engine" / name
+    source = path.read_text(encoding="utf-8")
+    assert old in source
+    before = path.stat()
+    path.write_text(source.replace(old, new), encoding="utf-8")
+    # a clock too coarse to tell, or a checkout that sets times back, must not matter
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+@needs_numba
+def test_an_edit_in_another_file_is_seen_at_once(tree, tmp_path):
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    assert ask(tree, **cache) == (8.0, 0)
+    assert ask(tree, **cache) == (8.0, 1)
+    edit(tree, "probe_callee.py", "x + 1.0", "x + 2.0")
+    assert ask(tree, **cache) == (10.0, 0)
+    edit(tree, "probe_constant.py", "2.0", "3.0")
+    assert ask(tree, **cache) == (15.0, 0)
+    edit(tree, "probe_constant.py", "3.0", "2.0")
+    assert ask(tree, **cache) == (10.0, 1)
+
+
+@needs_numba
+def test_the_folder_that_numba_is_told_is_the_one_used(tree, tmp_path):
+    ask(tree, NUMBA_CACHE_DIR=str(tmp_path / "asked"), XDG_CACHE_HOME=str(tmp_path / "not asked"))
+    digest = _jit.source_digest(tree / "atmosbox" / "engine")
+    assert list((tmp_path / "asked" / digest).rglob("*.nbi"))
+    assert not (tmp_path / "not asked").exists()
+    assert not list(tree.rglob("*.nbi"))
+
+
+@needs_numba
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="the home of caches has another name there")
+def test_a_home_that_cannot_be_written_falls_back_to_the_temporary_folder(tree, tmp_path):
+    blocked, spare = tmp_path / "a file, not a folder", tmp_path / "spare"
+    blocked.write_text("", encoding="utf-8")
+    spare.mkdir()
+    settings = {"XDG_CACHE_HOME": str(blocked), "TMPDIR": str(spare)}
+    assert ask(tree, **settings) == (8.0, 0)
+    assert ask(tree, **settings) == (8.0, 1)
+    assert list(spare.rglob("*.nbi"))
+
+
+def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
+    blocked = tmp_path / "a file, not a folder"
+    blocked.write_text("", encoding="utf-8")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
+    assert _jit.cache_folder() is None
+    monkeypatch.setattr(_jit, "_CACHE", None)
+
+    @_jit.kernel(entry=True)
+    def twice(x):
+        return 2.0 * x
+
+    assert twice(3.0) == 6.0
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="the home of caches has another name there")
+def test_the_home_of_caches_is_tried_before_the_temporary_folder(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    folder = _jit.cache_folder()
+    assert folder is not None
+    assert folder.parent == tmp_path / "atmosbox"
+    assert folder.name == _jit.source_digest()
+    assert list(folder.iterdir()) == []
+    tried = [str(home) for home in _jit._home_of_caches()]
+    assert tried[0].startswith(str(tmp_path))
+    assert tried[1].startswith(tempfile.gettempdir())
+
+
+def test_the_digest_depends_on_every_source_and_on_its_name(tmp_path):
+    (tmp_path / "one.py").write_text("1", encoding="utf-8")
+    first = _jit.source_digest(tmp_path)
+    (tmp_path / "notes.txt").write_text("1", encoding="utf-8")
+    assert _jit.source_digest(tmp_path) == first
+    (tmp_path / "two.py").write_text("", encoding="utf-8")
+    second = _jit.source_digest(tmp_path)
+    (tmp_path / "two.py").rename(tmp_path / "three.py")
+    third = _jit.source_digest(tmp_path)
+    (tmp_path / "one.py").write_text("2", encoding="utf-8")
+    assert len({first, second, third, _jit.source_digest(tmp_path)}) == 4
+    assert _jit.source_digest() == _jit.source_digest(ENGINE)

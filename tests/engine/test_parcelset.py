@@ -1,0 +1,514 @@
+"""A parcel of air refuses what no box can have, keeps its books, and does the same however it is watched or cut.
+
+The boxes below need the kernels that `test_reference` needs, and no others: each new set costs seconds of compilation.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from atmosbox.engine import (
+    HeatBath,
+    ParcelSet,
+    Periodic,
+    Piston,
+    Ramp,
+    RefusedError,
+    Specular,
+    StalledError,
+)
+from atmosbox.engine.reference import Reference
+
+SMOOTH = (Specular(),) * 6
+TURNING = (Periodic(),) * 6
+
+
+@dataclass
+class Pulse:
+    """A driver that moves the piston out and in, and remembers when it was asked."""
+
+    interval: float = 0.75
+    speeds: tuple = (0.1, -0.15, 0.0, -0.05, 0.1)
+    asked: list = field(default_factory=list)
+
+    def velocity(self, parcel):
+        self.asked.append(parcel.time)
+        return self.speeds[round(parcel.time / self.interval) % len(self.speeds)]
+
+
+def lattice(number, sides, diameter):
+    """Return the first sites of a simple lattice that fills the box."""
+    sides = np.asarray(sides, float)
+    many = np.maximum((sides / (1.02 * diameter)).astype(int), 1)
+    index = np.stack(np.meshgrid(*map(np.arange, many), indexing="ij"), axis=-1).reshape(-1, 3)
+    chosen = np.random.default_rng(4).permutation(len(index))[:number]
+    return (index[chosen] + 0.5) * sides / many
+
+
+def box(name, number=40, **changes):
+    """Return the arguments of a box: the names are those of the sets of kernels."""
+    random = np.random.default_rng(9)
+    sides = (5.5, 5.5, 6.0)
+    made = {
+        "position": lattice(number, sides, 1.0),
+        "velocity": random.normal(size=(number, 3)),
+        "length": sides,
+        "walls": SMOOTH,
+        "seed": 77,
+    }
+    mixture = {
+        "mass": random.choice([1.0, 30.0], number),
+        "diameter": random.choice([0.1, 0.3, 1.0], number),
+    }
+    bath = HeatBath(Ramp(0.5, 2.0, start=1.0, end=9.0), accommodation=0.7)
+    if name == "equal":
+        made |= {"walls": (bath, Specular(), bath, bath, HeatBath(1.0), Specular())}
+    elif name == "piston":
+        made |= {"walls": (*(Specular(),) * 4, HeatBath(1.5), Piston()), "gravity": 0.3, "driver": Pulse()}
+    elif name == "points":
+        made |= {"walls": (*(bath,) * 2, *SMOOTH[:3], Piston()), "gravity": 0.3, "diameter": 0.0, "driver": Pulse()}
+    elif name == "mixed":
+        made |= mixture | {"walls": (bath, *SMOOTH[:5])}
+    elif name == "periodic":
+        made |= {"walls": TURNING}
+    elif name == "periodic rotation":
+        made |= mixture | {
+            "walls": TURNING,
+            "rotation": random.choice([0.0, 2.0, 3.0], number),
+            "collision_number": 2.0,
+        }
+    elif name == "everything":
+        made |= mixture | {
+            "walls": (*TURNING[:4], HeatBath(1.0), Piston()),
+            "gravity": 0.3,
+            "rotation": random.choice([0.0, 2.0, 3.0], number),
+            "driver": Pulse(),
+        }
+    return made | changes
+
+
+NAMES = ["equal", "piston", "points", "mixed", "periodic", "periodic rotation", "everything"]
+by_name = pytest.mark.parametrize("name", NAMES)
+
+
+def state(parcel):
+    """Return everything that can be read off a parcel, as bytes."""
+    now = parcel.snapshot()
+    arrays = (now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial)
+    numbers = (parcel.time, parcel.ceiling, parcel.piston_velocity, parcel.work, parcel.contacts)
+    return [array.tobytes() for array in arrays], numbers, parcel.wall_hits.tolist()
+
+
+def least_gap(parcel):
+    """Return the smallest distance of two molecules less that of contact, looking at all pairs and images."""
+    position = parcel.snapshot().position
+    away = position[:, None] - position[None, :]
+    away -= np.array(parcel.periodic) * parcel.length * np.rint(away / parcel.length)
+    touching = 0.5 * (parcel.diameter[:, None] + parcel.diameter[None, :])
+    gaps = np.sqrt(np.sum(away**2, axis=-1)) - touching
+    return gaps[np.triu_indices(len(position), 1)].min()
+
+
+# ------------------------------------------------------------------ what happens in the box
+
+
+@by_name
+def test_molecules_never_overlap_nor_leave_the_box_and_the_ledger_closes(name):
+    parcel = ParcelSet(**box(name))
+    radius = 0.5 * parcel.diameter[:, None]
+    inside = np.where(parcel.periodic, 0.0, radius)
+    for time in np.linspace(0.0, 40.0, 41)[1:]:
+        parcel.advance(time)
+        position = parcel.snapshot().position
+        assert name == "points" or least_gap(parcel) > -1e-9
+        assert (position >= inside - 1e-9).all()
+        assert (position <= parcel.length - inside + 1e-9).all()
+        assert parcel.ledger() < 1e-12
+    events = parcel.events
+    assert (events["contacts"] > 100) == (name != "points")
+    assert (events["wall_hits"] > 100) == (not all(parcel.periodic))
+    assert events["wall_hits"] == parcel.wall_hits.sum()
+
+
+@pytest.mark.parametrize("name", ["equal", "mixed", "periodic", "periodic rotation"])
+def test_every_single_contact_keeps_momentum_and_energy(name):
+    walls = TURNING if "periodic" in name else SMOOTH
+    parcel = ParcelSet(**box(name, walls=walls))
+    mass = parcel.mass[:, None]
+    before, energy = parcel.snapshot().velocity, sum(parcel.energy())
+    alone = 0
+    for time in np.arange(0.0, 6.0, 0.002)[1:]:
+        contacts, hits = parcel.contacts, parcel.wall_hits.sum()
+        parcel.advance(time)
+        after = parcel.snapshot().velocity
+        if parcel.wall_hits.sum() == hits:
+            assert np.sum(mass * after, axis=0) == pytest.approx(np.sum(mass * before, axis=0), abs=1e-10)
+        if parcel.contacts == contacts + 1 and parcel.wall_hits.sum() == hits:
+            alone += 1
+            assert (before != after).any(axis=1).sum() == 2
+        assert sum(parcel.energy()) == pytest.approx(energy, rel=1e-12)
+        before = after
+    assert alone > 40
+
+
+@pytest.mark.parametrize("name", ["equal", "piston", "mixed"])
+def test_what_the_walls_take_up_is_what_the_molecules_lose(name):
+    # smooth walls: those that give heat also pull sideways
+    parcel = ParcelSet(**box(name, driver=None, walls=(*SMOOTH[:5], Piston() if name == "piston" else Specular())))
+    mass = parcel.mass[:, None]
+    start = np.sum(mass * parcel.snapshot().velocity, axis=0)
+    parcel.advance(20.0)
+    low, high = parcel.wall_impulse[0::2], parcel.wall_impulse[1::2]
+    assert (parcel.wall_impulse > 0.0).all()
+    fallen = np.array([0.0, 0.0, parcel.gravity * 20.0 * parcel.mass.sum()])
+    assert np.sum(mass * parcel.snapshot().velocity, axis=0) - start == pytest.approx(low - high - fallen, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["piston", "points"])
+def test_a_driven_piston_is_one_constant_piston_after_another(name):
+    smooth = (*SMOOTH[:5], Piston())
+    made = box(name, number=5, walls=smooth, driver=Pulse(interval=0.5))
+    parcel = ParcelSet(**made)
+    arguments = {key: value for key, value in made.items() if key not in ("driver", "seed")}
+    hits = 0
+    for turn, speed in enumerate(np.tile(Pulse().speeds, 6)):
+        reference = Reference(**arguments | {"walls": (*SMOOTH[:5], Piston(speed))})
+        reference.advance(0.5)
+        parcel.advance(0.5 * (turn + 1))
+        now = parcel.snapshot()
+        assert now.position == pytest.approx(reference.position, abs=1e-6)
+        assert now.velocity == pytest.approx(reference.velocity, abs=1e-6)
+        length = (*arguments["length"][:2], reference.place(5))
+        assert parcel.ceiling == pytest.approx(length[2])
+        # the reference goes on from the engine's state, so that chaos never matters
+        arguments |= {"position": now.position, "velocity": now.velocity, "length": length}
+        hits = parcel.wall_hits[5]
+    assert hits > 3
+    assert parcel.work != 0.0
+
+
+def test_a_piston_that_has_given_way_is_not_met_where_it_would_have_been():
+    # the first molecule is stopped by the second while the piston comes down, and waits for it; then it goes up
+    position = np.vstack([[[0.75, 0.5, 0.5]], lattice(200, (8, 8, 8), 0.9)[:, :] + [0, 0, 0]])
+    position = position[np.r_[True, np.abs(position[1:] - position[0]).max(axis=1) > 0.9]]
+    row = np.abs(position[:, 1:] - 0.5).max(axis=1) < 0.3
+    position = np.vstack([position[:1], [[1.5, 0.5, 0.5]], position[1:][~row[1:]]])
+    velocity = np.zeros_like(position)
+    velocity[0, 0] = 1.0
+    driver = Pulse(interval=1.0, speeds=(-4.0, *(1.0,) * 20))
+    parcel = ParcelSet(
+        position, velocity, length=(8, 8, 20), diameter=0.2, walls=(*SMOOTH[:5], Piston()), driver=driver, gravity=1e-9
+    )
+    parcel.advance(12.0)
+    assert parcel.contacts >= 1
+    assert parcel.wall_hits[5] == 0
+    assert parcel.snapshot().position[:, 2].max() < 8.0
+
+
+def test_points_pass_through_each_other():
+    parcel = ParcelSet(**box("points", driver=None))
+    parcel.advance(10.0)
+    assert (parcel.contacts, parcel.virial.sum()) == (0, 0.0)
+    assert parcel.wall_hits.sum() > 100
+
+
+def test_a_crowd_in_one_cell_finds_room():
+    random = np.random.default_rng(2)
+    position = lattice(600, (10, 10, 10), 1.0)
+    velocity = (np.array([0.3, 0.3, 0.3]) - position) * random.uniform(0.97, 1.03, (600, 1))
+    parcel = ParcelSet(position, velocity, length=(10, 10, 10), diameter=0.02)
+    before = parcel.memory()
+    parcel.advance(1.2)
+    assert parcel.memory() > before
+    assert parcel.contacts > 100
+    assert least_gap(parcel) > -1e-9
+    assert parcel.ledger() < 1e-12
+
+
+# ------------------------------------------------------------------ how it is looked at and cut
+
+
+@by_name
+def test_looking_changes_nothing(name):
+    watched, alone = ParcelSet(**box(name)), ParcelSet(**box(name))
+    for time in np.linspace(0.0, 9.0, 31)[1:]:
+        watched.advance(time)
+        watched.snapshot(), watched.energy(), watched.ledger(), watched.open_density, repr(watched)
+        watched.snapshot().position[:] = math.nan
+        watched.wall_heat[:] = math.nan
+        watched.length[:] = math.nan
+    alone.advance(9.0)
+    assert watched.contacts > 10 or name == "points"
+    assert state(watched) == state(alone)
+
+
+@by_name
+def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
+    few = {"number": 8}
+    whole = ParcelSet(**box(name, **few))
+    epoch = whole._epoch_length
+    end = 3.3 * epoch
+    whole.advance(end)
+    random = np.random.default_rng(6)
+    cuts = [
+        np.linspace(0.0, end, 8)[1:],
+        [epoch, 2.0 * epoch, 3.0 * epoch, end],
+        [*np.sort(random.uniform(0.0, end, 300)), end],
+        [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
+    ]
+    assert whole._walls.epoch[0] == 3.0 * epoch
+    assert whole.events["wall_hits"] + whole.contacts > 1000
+    for times in cuts:
+        parcel = ParcelSet(**box(name, **few))
+        for time in times:
+            parcel.advance(time)
+            assert parcel.time == time
+        assert state(parcel) == state(whole)
+
+
+def test_time_reads_what_was_asked_for_even_while_nothing_happens():
+    # one slow molecule between warm walls: its first event is many epochs away
+    parcel = ParcelSet([[1, 1, 2]], [[1e-6, 0, 0]], length=(4, 4, 4), walls=(HeatBath(1.0),) * 6)
+    for time in (0.3, 3000.3, 5000.7, 6000.1, 100_000.0 / 3.0):
+        parcel.advance(time)
+        assert parcel.time == time
+        parcel.advance(time)
+
+
+def test_the_driver_is_asked_at_the_multiples_of_its_interval():
+    driver = Pulse()
+    parcel = ParcelSet(**box("piston", driver=driver))
+    for time in (0.1, 0.75, 2.0, 2.0, 4.4):
+        parcel.advance(time)
+    assert driver.asked == pytest.approx([0.0, 0.75, 1.5, 2.25, 3.0, 3.75])
+
+
+class Stop(Exception):
+    """What a watch may raise, as Ctrl-C does."""
+
+
+def test_a_run_that_is_interrupted_can_be_looked_at_and_go_on():
+    def interrupt(time):
+        seen.append(time)
+        raise Stop
+
+    seen, end = [], 1500.0
+    interrupted, whole = ParcelSet(**box("equal", number=120)), ParcelSet(**box("equal", number=120))
+    with pytest.raises(Stop):
+        interrupted.advance(end, watch=interrupt)
+    assert 0.0 < interrupted.time <= seen[0] < end
+    position = interrupted.snapshot().position
+    assert (position > 0.5 - 1e-9).all()
+    assert (position < interrupted.length - 0.5 + 1e-9).all()
+    assert least_gap(interrupted) > -1e-9
+    assert interrupted.ledger() < 1e-11
+    interrupted.advance(end)
+    whole.advance(end, watch=seen.append)
+    assert len(seen) > 2
+    assert state(interrupted) == state(whole)
+
+
+# ------------------------------------------------------------------ small and special boxes
+
+
+@pytest.mark.parametrize("number", [0, 1, 2, 3])
+@pytest.mark.parametrize("name", ["equal", "piston", "mixed", "periodic"])
+def test_a_box_may_hold_hardly_anything(name, number):
+    parcel = ParcelSet(**box(name, number=number))
+    parcel.advance(30.0)
+    assert parcel.number == len(parcel.snapshot().position) == number
+    assert parcel.ledger() < 1e-12
+    assert (parcel.events["wall_hits"] > 0) == (number > 0 and name != "periodic")
+    assert math.isfinite(parcel.degrees_of_freedom)
+    assert repr(parcel).startswith(f"<ParcelSet: {number} molecules")
+
+
+def test_an_empty_box_may_be_of_any_size():
+    parcel = ParcelSet([], [], length=(0.1, 0.1, 0.1), walls=TURNING)
+    parcel.advance(1e9)
+    assert parcel.energy() == (0.0, 0.0, 0.0)
+
+
+def test_points_may_move_in_a_periodic_box():
+    point = ParcelSet([[1, 2, 2]], [[1, 0.5, 0.25]], length=(4, 4, 4), walls=TURNING, diameter=0.0)
+    point.advance(6.0)
+    assert point.snapshot().position.tolist() == [[3.0, 1.0, 3.5]]
+
+
+def test_a_plane_gas_stays_in_its_plane():
+    sides = (5.5, 2.0, 6.0)
+    made = box("equal", number=12, length=sides, position=lattice(12, sides, 1.0), planar=True)
+    made["velocity"][:, 1] = 0.0
+    made["position"][:, 1] = 1.0
+    made["position"][:, [0, 2]] = np.stack(np.meshgrid([0.7, 2.0, 3.4, 4.8], [0.8, 2.5, 5.0]), axis=-1).reshape(-1, 2)
+    parcel = ParcelSet(**made)
+    parcel.advance(30.0)
+    assert parcel.contacts > 50
+    assert (parcel.snapshot().position[:, 1] == 1.0).all()
+    assert (parcel.snapshot().velocity[:, 1] == 0.0).all()
+    assert parcel.wall_hits[2] == parcel.wall_hits[3] == 0
+    assert parcel.volume == pytest.approx(5.5 * 6.0)
+    assert parcel.degrees_of_freedom == 2.0
+
+
+def test_a_plane_gas_may_lie_on_the_border_of_a_periodic_box():
+    walls = (Specular(), Specular(), Periodic(), Periodic(), Specular(), Specular())
+    made = {"length": (6, 6, 6), "walls": walls, "planar": True}
+    parcel = ParcelSet([[1, 0, 2], [3, 0, 2]], [[1, 0, 0], [-1, 0, 0]], **made)
+    parcel.advance(1.0)
+    assert parcel.snapshot().velocity[:, 0].tolist() == [-1.0, 1.0]
+
+
+def test_a_parcel_tells_what_it_holds():
+    parcel = ParcelSet(**box("everything"))
+    assert repr(parcel) == "<ParcelSet: 40 molecules in 5.5 x 5.5 x 6, t = 0, 0 contacts>"
+    assert parcel.length.tolist() == [5.5, 5.5, 6.0]
+    assert parcel.volume == pytest.approx(5.5 * 5.5 * 6.0)
+    assert parcel.periodic == (True, True, False)
+    assert (parcel.gravity, parcel.planar, parcel.piston_velocity) == (0.3, False, 0.1)
+    assert parcel.degrees_of_freedom == pytest.approx(3.0 + box("everything")["rotation"].mean())
+    assert set(parcel.events) == {"contacts", "entered", "left", "stale", "wall_hits"}
+    kT = parcel.wall_kT()
+    assert kT[4] == 1.0
+    assert np.isnan(np.delete(kT, 4)).all()
+    assert parcel.memory() > 40 * 64
+    parcel.advance(0.5)
+    assert parcel.ceiling == parcel.length[2] == pytest.approx(6.05)
+
+
+def test_energy_is_that_of_its_parts():
+    parcel = ParcelSet(
+        [[1, 1, 1], [1, 1, 3]], [[1, 2, 2], [0, 0, 1]], length=(4, 4, 5), mass=[2.0, 4.0], diameter=[0.5, 1.0],
+        gravity=0.5, rotation=[2.0, 0.0], rotational_energy=[3.0, 0.0], walls=(*TURNING[:4], Specular(), Piston()),
+    )  # fmt: skip
+    assert parcel.energy() == pytest.approx((9.0 + 2.0, 3.0, 0.5 * (2.0 + 12.0)))
+
+
+# ------------------------------------------------------------------ what it refuses
+
+PLACE, REST = [[1.0, 2.0, 2.0], [3.0, 2.0, 2.0]], [[0.0, 0.0, 0.0]] * 2
+NAN, INF = math.nan, math.inf
+MISPLACED = (Piston(), *SMOOTH[:5])
+HALF_TURNING = (Periodic(), *SMOOTH[:5])
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"position": [[1.0, 2.0, NAN], [3.0, 2.0, 2.0]]}, "position of molecule 0 is not finite"),
+        ({"position": [[1.0, 2.0, 2.0], [INF, 2.0, 2.0]]}, "position of molecule 1 is not finite"),
+        ({"velocity": [[0.0, 0.0, 0.0], [0.0, -INF, 0.0]]}, "velocity of molecule 1 is not finite"),
+        ({"position": [[1.0, 2.0], [3.0, 2.0]]}, r"position has shape \(2, 2\)"),
+        ({"position": [1.0, 2.0, 3.0]}, r"position has shape \(3,\)"),
+        ({"position": "here"}, "position holds something that is not a number"),
+        ({"velocity": [[0.0, 0.0, 0.0]]}, "2 positions and 1 velocities"),
+        ({"position": [[1.0, 2.0, 2.0], [1.9, 2.0, 2.0]]}, "molecules 0 and 1 overlap at the start, by 0.1 of"),
+        ({"position": [[1.0, 2.0, 2.0], [1.0, 2.0, 2.0]]}, "molecules 0 and 1 overlap at the start, by 1 of"),
+        ({"position": [[0.4, 2.0, 2.0], [3.0, 2.0, 2.0]]}, r"molecule 0 at x = 0.4 .*x_low.* 0.5 and 3.5"),
+        ({"position": [[1.0, 2.0, 2.0], [3.0, 2.0, 4.1]]}, r"molecule 1 at z = 4.1 .*z_high"),
+        ({"diameter": 5.0}, "reaches through wall"),
+        ({"mass": 0.0}, "mass = 0 .* above 0"),
+        ({"mass": [1.0, -2.0]}, "mass = -2 .* above 0"),
+        ({"mass": NAN}, "mass = nan"),
+        ({"mass": INF}, "mass = inf"),
+        ({"mass": [1.0, 2.0, 3.0]}, r"mass has shape \(3,\)"),
+        ({"mass": "heavy"}, "mass holds something that is not a number"),
+        ({"diameter": -1.0}, "diameter = -1 .* 0 or above"),
+        ({"diameter": INF}, "diameter = inf"),
+        ({"diameter": [[1.0], [1.0]]}, r"diameter has shape \(2, 1\)"),
+        ({"rotation": 1.0}, "0, 2 or 3"),
+        ({"rotation": NAN}, "rotation = nan"),
+        ({"rotational_energy": -1.0, "rotation": 2.0}, "rotational_energy = -1"),
+        ({"length": (4.0, 4.0)}, r"length = \(4.0, 4.0\): give three sides"),
+        ({"length": (4.0, 4.0, 0.0)}, "length = .* each above 0"),
+        ({"length": (4.0, NAN, 4.0)}, "length = "),
+        ({"length": (4.0, INF, 4.0)}, "length = "),
+        ({"length": "large"}, "length = 'large'"),
+        ({"gravity": -9.8}, "gravity = -9.8"),
+        ({"gravity": NAN}, "gravity = nan"),
+        ({"gravity": INF}, "gravity = inf"),
+        ({"gravity": "down"}, "gravity = 'down'"),
+        ({"gravity": 1.0, "walls": TURNING, "length": (6, 6, 6)}, "periodic along z cannot have gravity"),
+        ({"collision_number": 0.5}, "collision_number = 0.5"),
+        ({"collision_number": NAN}, "collision_number = nan"),
+        ({"planar": True, "velocity": [[0.0, 1.0, 0.0], [0.0, 0.0, 0.0]]}, "no velocity along y"),
+        ({"planar": True, "position": [[1.0, 2.0, 2.0], [3.0, 2.5, 2.0]]}, "in one plane"),
+        ({"walls": SMOOTH[:5]}, "5 walls"),
+        ({"walls": ()}, "0 walls"),
+        ({"walls": MISPLACED}, "x_low cannot be a piston"),
+        ({"walls": HALF_TURNING}, "x_low and x_high must both be periodic"),
+        ({"walls": (*SMOOTH[:5], HeatBath(-1.0))}, "kT of wall z_high = -1.0"),
+        ({"walls": (*SMOOTH[:5], "open")}, "z_high = 'open' is no law"),
+        ({"walls": TURNING, "length": (2.1, 4.0, 4.0), "position": [[1, 1, 1], [1, 3, 3]]}, "2.1 is too short"),
+        ({"driver": Pulse()}, "a driver needs a piston"),
+        ({"driver": Pulse(interval=0.0), "walls": (*SMOOTH[:5], Piston())}, "interval of the driver = 0"),
+        ({"driver": Pulse(interval=NAN), "walls": (*SMOOTH[:5], Piston())}, "interval of the driver = nan"),
+        ({"seed": -1}, "seed = -1"),
+        ({"seed": 1.5}, "seed = 1.5"),
+        ({"layers": 0}, "layers = 0"),
+    ],
+)
+def test_what_no_box_can_have_is_refused_with_its_name(changes, says):
+    with pytest.raises(RefusedError, match=says):
+        ParcelSet(**{"position": PLACE, "velocity": REST, "length": (4.0, 4.0, 4.0)} | changes)
+
+
+def test_molecules_that_touch_or_stand_at_a_wall_by_rounding_are_accepted():
+    above = math.nextafter(1.5, 0.0)
+    parcel = ParcelSet([[0.5 - 1e-15, 2, 2], [above, 2, 3.5]], REST, length=(4, 4, 4))
+    assert parcel.snapshot().position[0, 0] == 0.5
+
+
+@pytest.mark.parametrize("until", [-1.0, 0.5, NAN, INF])
+def test_time_does_not_run_backward_nor_for_ever(until):
+    parcel = ParcelSet(**box("equal", number=2))
+    parcel.advance(1.0)
+    with pytest.raises(RefusedError, match="until = "):
+        parcel.advance(until)
+    assert parcel.time == 1.0
+
+
+@pytest.mark.parametrize("velocity", [NAN, INF, -INF, "fast"])
+def test_a_piston_takes_finite_velocities_only(velocity):
+    parcel = ParcelSet(**box("piston", driver=None))
+    with pytest.raises(RefusedError, match="velocity of the piston"):
+        parcel.set_piston_velocity(velocity)
+    assert parcel.piston_velocity == 0.0
+
+
+def test_a_box_without_a_piston_has_none_to_move():
+    with pytest.raises(RefusedError, match="no piston"):
+        ParcelSet(**box("equal")).set_piston_velocity(0.1)
+
+
+def test_a_piston_may_be_moved_by_hand():
+    parcel = ParcelSet(**box("piston", driver=None))
+    parcel.advance(1.0)
+    parcel.set_piston_velocity(-0.2)
+    parcel.advance(3.0)
+    assert parcel.ceiling == pytest.approx(5.6)
+    parcel.set_piston_velocity(3.0)
+    parcel.advance(6.0)
+    parcel.set_piston_velocity(-1.0)
+    parcel.advance(7.0)
+    assert parcel.ceiling == pytest.approx(13.6)
+    assert parcel.ledger() < 1e-12
+    assert least_gap(parcel) > -1e-9
+    assert parcel.wall_hits[5] > 0
+
+
+def test_a_piston_that_would_crush_the_molecules_is_stopped_with_a_sentence():
+    parcel = ParcelSet(**box("piston", number=12, driver=None, walls=(*SMOOTH[:5], Piston(-1.0))))
+    with pytest.raises(StalledError, match="the piston"):
+        parcel.advance(100.0)
+    assert 0.0 < parcel.time < 6.0
+    assert least_gap(parcel) > -1e-9
+
+
+def test_molecules_that_come_to_rest_on_a_floor_are_told_of():
+    cold = (*SMOOTH[:4], HeatBath(1e-40), Piston())
+    made = box("piston", number=3, driver=None, walls=cold, velocity=np.zeros((3, 3)), gravity=50.0)
+    with pytest.raises(StalledError, match="z_low at kT = 1e-40 is too cold"):
+        ParcelSet(**made).advance(1e4)

@@ -1,0 +1,96 @@
+"""A schedule is a polygon in time: its corners, and what it refuses."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine.schedule import Constant, Ramp, Steps, as_schedule
+from atmosbox.engine.walls import HeatBath, Specular, new_walls, wall_kT
+
+
+def kT_at(schedule, times):
+    """Return what a wall under this schedule makes of it."""
+    walls = new_walls((*(Specular(),) * 4, HeatBath(schedule), Specular()), 1.0)
+    return [float(wall_kT(walls, 4, time)) for time in times]
+
+
+@dataclass(frozen=True)
+class Zigzag:
+    """A schedule of somebody's own."""
+
+    corners: tuple = ((1.0, 1.0), (2.0, 3.0), (4.0, 2.0))
+
+    def points(self):
+        return list(self.corners)
+
+
+def test_a_number_is_a_schedule_that_never_changes():
+    assert as_schedule(2.5, "kT") == as_schedule(Constant(2.5), "kT") == [(0.0, 2.5)]
+    assert kT_at(2.5, [-1.0, 0.0, 1e9]) == [2.5, 2.5, 2.5]
+
+
+def test_a_ramp_is_constant_before_and_after_and_even_between():
+    assert kT_at(Ramp(1.0, 3.0, start=2.0, end=6.0), [0.0, 2.0, 3.0, 5.0, 6.0, 99.0]) == [1.0, 1.0, 1.5, 2.5, 3.0, 3.0]
+
+
+def test_steps_change_at_their_times_and_hold_between():
+    steps = Steps([0.0, 5.0, 7.0], [1.0, 2.0, 4.0])
+    times = [-1.0, 0.0, math.nextafter(5.0, 0.0), 5.0, 6.9, 7.0, 1e6]
+    assert kT_at(steps, times) == [1.0, 1.0, 1.0, 2.0, 2.0, 4.0, 4.0]
+
+
+def test_steps_may_be_given_as_arrays():
+    assert Steps(np.array([0.0, 5.0]), np.array([1.0, 2.0])).points() == [(0.0, 1.0), (5.0, 1.0), (5.0, 2.0)]
+
+
+def test_a_schedule_of_somebodys_own_is_a_polygon_too():
+    times = [0.0, 1.0, 1.25, 2.0, 3.0, 4.0, 9.0]
+    corner_times, values = zip(*Zigzag().points(), strict=True)
+    assert kT_at(Zigzag(), times) == pytest.approx(np.interp(times, corner_times, values))
+
+
+def test_each_wall_follows_its_own_schedule():
+    baths = [HeatBath(1.0), HeatBath(Ramp(1.0, 2.0, start=0.0, end=4.0)), HeatBath(Zigzag())]
+    walls = new_walls((Specular(), *baths, Specular(), Specular()), 1.0)
+    assert [float(wall_kT(walls, wall, 2.0)) for wall in (1, 2, 3)] == [1.0, 1.5, 3.0]
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        0.0,
+        -1.0,
+        math.nan,
+        math.inf,
+        "warm",
+        None,
+        [1.0, 2.0],
+        Constant(-1.0),
+        Ramp(1.0, 0.0, start=0.0, end=1.0),
+        Ramp(1.0, 2.0, start=1.0, end=1.0),
+        Ramp(1.0, 2.0, start=0.0, end=math.nan),
+        Ramp(1.0, 2.0, start=-math.inf, end=1.0),
+        Steps([], []),
+        Steps([0.0, 1.0], [1.0]),
+        Steps([0.0, 0.0], [1.0, 2.0]),
+        Steps([0.0, math.nan], [1.0, 2.0]),
+        Steps([1.0, 0.0], [1.0, 2.0]),
+        Zigzag(()),
+        Zigzag(((1.0, 1.0), (0.0, 2.0))),
+    ],
+)
+def test_an_impossible_temperature_is_refused(value):
+    with pytest.raises(RefusedError):
+        as_schedule(value, "kT of wall z_low")
+
+
+def test_a_refusal_names_the_number_and_what_it_is_for():
+    with pytest.raises(RefusedError, match=r"kT of wall z_low = -3\.0 is not positive"):
+        as_schedule(-3.0, "kT of wall z_low")
+
+
+def test_what_may_be_negative_may_be():
+    assert as_schedule(-3.0, "velocity", positive=False) == [(0.0, -3.0)]
