@@ -64,9 +64,7 @@ def test_the_tree_here_and_in_the_docstring_is_complete():
 def test_the_text_of_an_error_is_its_sentence(error):
     expected = "The disk is full."
     if issubclass(error, SettingError):
-        expected = (
-            "temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=25degC."
-        )
+        expected = "temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=25degC."
     assert str(made(error)) == expected
 
 

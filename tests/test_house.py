@@ -115,9 +115,7 @@ def test_the_ci_script_is_executable_and_takes_its_command_from_the_readme():
     script = ROOT / ".ci" / "run"
     assert os.access(script, os.X_OK)
     subprocess.run(["bash", "-n", str(script)], check=True)
-    shown = subprocess.run(
-        [str(script), "--show-command"], cwd="/", capture_output=True, text=True, check=True
-    )
+    shown = subprocess.run([str(script), "--show-command"], cwd="/", capture_output=True, text=True, check=True)
     assert shown.stdout.splitlines() == block_after("Run the tests")
 
 

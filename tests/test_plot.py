@@ -80,13 +80,7 @@ def temperature():
     air = warming + 8.8 * noise(rng, 300)
     edges = np.linspace(0, 1400, 36)
     speed = (edges[1:] + edges[:-1]) / 2
-    maxwell = (
-        4
-        * np.pi
-        * (AIR / (2 * np.pi * K_B * 300)) ** 1.5
-        * speed**2
-        * np.exp(-AIR * speed**2 / (2 * K_B * 300))
-    )
+    maxwell = 4 * np.pi * (AIR / (2 * np.pi * K_B * 300)) ** 1.5 * speed**2 * np.exp(-AIR * speed**2 / (2 * K_B * 300))
     counts = rng.poisson(maxwell * 40 * 12000)
     panels = [
         Panel(
@@ -225,9 +219,7 @@ def elastic_collisions(molecules=70, frames=240):
     rng = np.random.default_rng(3)
     box, dt = 20e-9, 0.4e-12
     side = int(np.ceil(np.sqrt(molecules)))
-    places = (
-        (np.indices((side, side)).reshape(2, -1).T[rng.permutation(side**2)[:molecules]] + 0.5) * box / side
-    )
+    places = (np.indices((side, side)).reshape(2, -1).T[rng.permutation(side**2)[:molecules]] + 0.5) * box / side
     heavy = np.arange(molecules) % 2 == 1
     mass, diameter = np.where(heavy, 4 * AIR, AIR), np.where(heavy, 1.1e-9, 0.6e-9)
     velocity = np.where(heavy, 100.0, 600.0)[:, None] * rng.normal(size=(molecules, 2))
@@ -315,9 +307,7 @@ def lifting_dry():
         error="parcel_temperature_se",
         minus="adiabat_temperature",
     )
-    zero = Line(
-        "adiabat_temperature", "parcel_pressure", "dry adiabat", "theory", minus="adiabat_temperature"
-    )
+    zero = Line("adiabat_temperature", "parcel_pressure", "dry adiabat", "theory", minus="adiabat_temperature")
     log_pressure = {"y_label": "pressure", "y_unit": "hPa", "y_scale": "log", "y_invert": True}
     panels = [
         Panel("profile", "Temperature and pressure", both, "temperature", x_unit="degC", **log_pressure),
@@ -653,9 +643,7 @@ def test_a_part_of_a_variable_can_be_drawn():
 def test_two_single_numbers_are_a_point():
     panel = Panel("profile", "Cloud base", (Line("base_t", "base_p", "cloud base"),), "T", "p", "degC", "hPa")
     base = {"base_t": variable((), 288.15, "K"), "base_p": variable((), 9e4, "Pa")}
-    assert plot.figure(small([280.0], panel, **base)).axes[0].lines[0].get_xydata().tolist() == [
-        [15.0, 900.0]
-    ]
+    assert plot.figure(small([280.0], panel, **base)).axes[0].lines[0].get_xydata().tolist() == [[15.0, 900.0]]
 
 
 @pytest.mark.parametrize(
@@ -678,9 +666,7 @@ def test_misfits_are_written_in_numbers(drawings):
 
 
 def test_a_headline_is_called_by_its_long_name_and_shown_in_its_units(runs):
-    run = xr.Dataset(
-        headline("h", 8400.0, 31.0, 8430.0, "m", "", long_name="scale height", display_units="km")
-    )
+    run = xr.Dataset(headline("h", 8400.0, 31.0, 8430.0, "m", "", long_name="scale height", display_units="km"))
     assert caption.headline(run, "h") == "scale height − theory = −0.03 ± 0.03 km"
 
 
@@ -754,9 +740,7 @@ def test_the_same_run_gives_the_same_bytes_in_another_process(tmp_path, runs):
 def test_the_users_own_matplotlib_settings_neither_change_a_figure_nor_are_changed(tmp_path, suffix):
     run = small([280.0, 290.0])
     first = plot.save(run, tmp_path / f"first.{suffix}")
-    with matplotlib.rc_context(
-        {"font.size": 30.0, "lines.linewidth": 9.0, "svg.hashsalt": "x", "savefig.dpi": 50}
-    ):
+    with matplotlib.rc_context({"font.size": 30.0, "lines.linewidth": 9.0, "svg.hashsalt": "x", "savefig.dpi": 50}):
         before = dict(matplotlib.rcParams)
         second = plot.save(run, tmp_path / f"second.{suffix}")
         assert dict(matplotlib.rcParams) == before

@@ -60,9 +60,7 @@ def new_environment(folder, wheel=None):
     venv.EnvBuilder(with_pip=False, symlinks=os.name != "nt").create(folder)
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     where = "import sysconfig; print(sysconfig.get_path('purelib'))"
-    site = Path(
-        subprocess.run([python, "-c", where], capture_output=True, text=True, check=True).stdout.strip()
-    )
+    site = Path(subprocess.run([python, "-c", where], capture_output=True, text=True, check=True).stdout.strip())
     libraries = [path for path in sys.path if path.endswith(("site-packages", "dist-packages"))]
     (site / "zz_libraries.pth").write_text("\n".join(libraries), encoding="utf-8")
     if wheel is not None:
@@ -74,9 +72,7 @@ def new_environment(folder, wheel=None):
 def look(python, cwd, **variables):
     """Return where a fresh Python started in a folder finds atmosbox and the scenario of dry lifting."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | variables
-    run = subprocess.run(
-        [python, "-c", LOOK], cwd=cwd, env=environment, capture_output=True, text=True, check=False
-    )
+    run = subprocess.run([python, "-c", LOOK], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     return [Path(line).resolve() for line in run.stdout.splitlines()]
 
@@ -158,9 +154,7 @@ def test_a_wheel_does_not_look_into_the_project_of_somebody_else(tmp_path, wheel
     (tmp_path / "scenarios").mkdir()
     (tmp_path / "scenarios" / "theirs.py").write_text("", encoding="utf-8")
     code = "import atmosbox.scenarios; print(*atmosbox.scenarios.names())"
-    run = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
-    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "lifting-dry" in run.stdout.split()
     assert "theirs" not in run.stdout.split()
 
@@ -271,9 +265,7 @@ def test_an_own_file_that_fails_is_refused_with_its_line(tmp_path, source, sente
 
 def test_an_own_file_that_is_no_scenario_is_told_what_it_lacks(tmp_path):
     path = tmp_path / "my_scene.py"
-    path.write_text(
-        OWN_SCENE.replace("headlines", "headings").replace("def theory", "def theories"), encoding="utf-8"
-    )
+    path.write_text(OWN_SCENE.replace("headlines", "headings").replace("def theory", "def theories"), encoding="utf-8")
     with pytest.raises(FileError, match="does not define theory, headlines:"):
         scenarios.load(path)
 

@@ -134,9 +134,7 @@ def _load_file(path: Path) -> ModuleType:
     if os.path.isdir(path):
         raise FileError(f"{path} is a folder: give the path of the scenario's .py file in it.")
     if not os.path.exists(path):
-        raise FileError(
-            f"There is no file {path}: check its path, or take a scenario that `atmosbox list` shows."
-        )
+        raise FileError(f"There is no file {path}: check its path, or take a scenario that `atmosbox list` shows.")
     try:
         source = path.read_bytes()
     except OSError as error:

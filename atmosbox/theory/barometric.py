@@ -11,9 +11,7 @@ from numpy.typing import ArrayLike
 from atmosbox.theory._array import FloatArray, as_floats
 
 
-def _depth_in_scale_heights(
-    depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike
-) -> FloatArray:
+def _depth_in_scale_heights(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
     return as_floats(mass) * as_floats(gravity) * as_floats(depth) / as_floats(kT)
 
 
@@ -75,9 +73,7 @@ def barometric_pressure(
     >>> round(float(barometric_pressure(np.log(2.0), 1000.0, 1.0, 1.0, 1.0)), 6)
     500.0
     """
-    pressure: FloatArray = as_floats(surface_pressure) * np.exp(
-        -_depth_in_scale_heights(height, kT, mass, gravity)
-    )
+    pressure: FloatArray = as_floats(surface_pressure) * np.exp(-_depth_in_scale_heights(height, kT, mass, gravity))
     return pressure
 
 

@@ -202,9 +202,7 @@ def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> Flo
     return contact
 
 
-def collision_rate_between(
-    number_density: ArrayLike, diameter: ArrayLike, mass: ArrayLike, kT: float
-) -> FloatArray:
+def collision_rate_between(number_density: ArrayLike, diameter: ArrayLike, mass: ArrayLike, kT: float) -> FloatArray:
     r"""Return how often one molecule of each species is hit by molecules of each species of a mixture.
 
     :math:`\nu_{ij} = 2 n_j \sigma_{ij}^2 g_{ij} \sqrt{2 \pi k T / \mu_{ij}}` with :math:`\sigma_{ij}` the

@@ -18,9 +18,7 @@ DRY_AIR_GAS_CONSTANT: float = GAS_CONSTANT / DRY_AIR.molar_mass
 """Gas constant of dry air per mass [J kg^-1 K^-1]."""
 
 
-def environment_temperature(
-    height: ArrayLike, surface_temperature: ArrayLike, lapse_rate: ArrayLike
-) -> FloatArray:
+def environment_temperature(height: ArrayLike, surface_temperature: ArrayLike, lapse_rate: ArrayLike) -> FloatArray:
     r"""Return the temperature of air that cools evenly with height, :math:`T_0 - \Gamma z`.
 
     Parameters
@@ -196,7 +194,5 @@ def hypsometric_thickness(
     5399
     """
     depth = np.log(as_floats(pressure_bottom) / as_floats(pressure_top))
-    thickness: FloatArray = (
-        as_floats(specific_gas_constant) * as_floats(mean_temperature) / as_floats(gravity) * depth
-    )
+    thickness: FloatArray = as_floats(specific_gas_constant) * as_floats(mean_temperature) / as_floats(gravity) * depth
     return thickness

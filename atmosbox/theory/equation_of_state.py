@@ -154,9 +154,7 @@ def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -
     >>> [round(float(z), 4) for z in compressibility_factor([0.001, 0.2])]
     [1.004, 2.4094]
     """
-    return 1.0 + 4.0 * checked_packing_fraction(packing_fraction, form) * contact_value(
-        packing_fraction, form
-    )
+    return 1.0 + 4.0 * checked_packing_fraction(packing_fraction, form) * contact_value(packing_fraction, form)
 
 
 def inverse_compressibility(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:

@@ -37,9 +37,7 @@ def adiabatic_index(dof: ArrayLike = 5) -> FloatArray:
     return 1.0 + 2.0 / as_floats(dof)
 
 
-def adiabatic_temperature(
-    volume: ArrayLike, temperature0: ArrayLike, volume0: ArrayLike, dof: float = 5
-) -> FloatArray:
+def adiabatic_temperature(volume: ArrayLike, temperature0: ArrayLike, volume0: ArrayLike, dof: float = 5) -> FloatArray:
     r"""Return the temperature of an ideal gas whose volume is changed slowly and without heat.
 
     :math:`T V^{\gamma - 1}` stays.

@@ -122,9 +122,7 @@ def root_mean_square_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) 
     return speed
 
 
-def maxwell_speed_density(
-    speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dimensions: int = 3
-) -> FloatArray:
+def maxwell_speed_density(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
     r"""Return Maxwell's distribution of speeds: the share of molecules per interval of speed.
 
     :math:`4\pi (m/2\pi kT)^{3/2} v^2 e^{-mv^2/2kT}` in space, :math:`(m v/kT)\, e^{-mv^2/2kT}` in a plane.
@@ -171,9 +169,7 @@ def maxwell_speed_density(
     return space
 
 
-def maxwell_speed_cumulative(
-    speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dimensions: int = 3
-) -> FloatArray:
+def maxwell_speed_cumulative(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
     r"""Return the share of molecules slower than a speed.
 
     The regularised incomplete gamma function :math:`P(d/2,\, mv^2/2kT)` in d dimensions. The mean of the
@@ -276,7 +272,5 @@ def constant_energy_speed_factor(dof: ArrayLike) -> FloatArray:
     1.0084
     """
     f = as_floats(dof)
-    factor: FloatArray = np.sqrt(f / 2.0) * np.exp(
-        special.gammaln(f / 2.0) - special.gammaln((f + 1.0) / 2.0)
-    )
+    factor: FloatArray = np.sqrt(f / 2.0) * np.exp(special.gammaln(f / 2.0) - special.gammaln((f + 1.0) / 2.0))
     return factor

@@ -83,9 +83,7 @@ def test_spheres_at_multiples_of_the_close_packed_volume(volume, factor):
     assert agrees(theory.compressibility_factor(phi), factor)
 
 
-@pytest.mark.parametrize(
-    ("volume", "measured"), [(2, 5.85016), (1.8, 7.43040), (1.7, 8.60034), (1.6, 10.19388)]
-)
+@pytest.mark.parametrize(("volume", "measured"), [(2, 5.85016), (1.8, 7.43040), (1.7, 8.60034), (1.6, 10.19388)])
 def test_spheres_agree_with_the_molecular_dynamics_of_erpenbeck_and_wood(volume, measured):
     # J. Stat. Phys. 35, 321 (1984); their quoted errors are near 2e-4.
     phi = theory.packing_fraction(np.sqrt(2.0) / volume, 1.0)

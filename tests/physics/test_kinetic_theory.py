@@ -72,9 +72,7 @@ def test_the_speed_distribution_is_maxwells(dimensions, law):
     kT, mass = 2.3, 0.7
     expected = law(scale=np.sqrt(kT / mass))
     speed = np.linspace(0.0, 10.0, 41)
-    assert np.allclose(
-        theory.maxwell_speed_density(speed, kT, mass, dimensions), expected.pdf(speed), rtol=1e-12
-    )
+    assert np.allclose(theory.maxwell_speed_density(speed, kT, mass, dimensions), expected.pdf(speed), rtol=1e-12)
     share = theory.maxwell_speed_cumulative(speed, kT, mass, dimensions)
     assert np.allclose(share, expected.cdf(speed), rtol=1e-12, atol=1e-15)
     assert theory.mean_speed(kT, mass, dimensions) == pytest.approx(expected.mean(), rel=1e-12)
@@ -115,9 +113,7 @@ def test_a_heat_bath_sends_out_the_molecules_of_a_flux():
 def test_what_a_heat_bath_sends_out_balances_what_hits_it():
     # Integrals over the half of a Maxwell distribution that moves towards the wall, weighted with v_n.
     def through(power):
-        return integrate.quad(lambda v: v**power * np.exp(-(v**2) / 2.0) / np.sqrt(2.0 * np.pi), 0.0, np.inf)[
-            0
-        ]
+        return integrate.quad(lambda v: v**power * np.exp(-(v**2) / 2.0) / np.sqrt(2.0 * np.pi), 0.0, np.inf)[0]
 
     assert theory.wall_flux(1.0, 1.0, 1.0) == pytest.approx(through(1), rel=1e-10)
     assert theory.emission_normal_speed(1.0, 1.0) == pytest.approx(through(2) / through(1), rel=1e-10)
