@@ -56,9 +56,9 @@ def rounded(value: float, figures: int = 2) -> str:
         return f"{value:g}"
     if 1e-3 <= abs(value) < 1e5:
         decimals = max(figures - 1 - math.floor(math.log10(abs(value))), 0)
-        return f"{value:.{decimals}f}"
+        return f"{value:.{decimals}f}".replace("-", "−")
     mantissa, power = f"{value:.{figures - 1}e}".split("e")
-    return f"{mantissa}·10{str(int(power)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
+    return f"{mantissa.replace('-', '−')}·10{str(int(power)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
 
 
 @dataclass
@@ -103,7 +103,7 @@ class Findings:
         misfit = value - theory
         if not abs(misfit) <= allowed:
             self.failures.append(f"{what}: {value:.6g} +- {error:.2g}, but theory says {theory:.6g}")
-        shown = measurement(value, error).replace("e-", "e−")
+        shown = measurement(value, error).replace("-", "−")
         self.rows.append(
             [what + (f" [{unit}]" if unit else ""), shown, rounded(theory, 5), rounded(misfit), rounded(allowed)]
         )

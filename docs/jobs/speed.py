@@ -38,6 +38,13 @@ def speed(found: Findings) -> None:
         rows.append([name, f"{each['ratio']:.2f} ± {each['error']:.2f}", idle, f"{each['bytes']:.0f}"])
     if "nothing" in features["off"]:
         idle = features["off"]["nothing"]
-        rows.append(["nothing, to judge the others by", "–", f"{idle['ratio']:.2f} ± {idle['error']:.2f}", "–"])
+        rows.append(
+            [
+                "none; the others are relative to it",
+                "–",
+                f"{idle['ratio']:.2f} ± {idle['error']:.2f}",
+                "–",
+            ]
+        )
     head = ["feature", "time of a collision over that of the plain gas", "where it is off, over an engine without it"]
     found.table([*head, "bytes per molecule"], rows, key="features")
