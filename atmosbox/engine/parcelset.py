@@ -147,6 +147,8 @@ class ParcelSet:
         if planar:  # nothing ever moves along y
             self._periodic = (self._periodic[0], False, self._periodic[2])
         self._kinds, kind = self._classify(spin)
+        self._number = n
+        self._freedom = (2.0 if planar else 3.0) + (float(self._rotation.mean()) if n else 0.0)
         self._molecules = aligned_records(n, MOLECULE)
         for axis, name in enumerate("xyz"):
             self._molecules[name] = x[:, axis]
@@ -191,7 +193,7 @@ class ParcelSet:
     @property
     def number(self) -> int:
         """Number of molecules."""
-        return int(self._molecules.size)
+        return self._number
 
     @property
     def time(self) -> float:
@@ -227,10 +229,13 @@ class ParcelSet:
         if not self.number:
             return 0.0
         sides = self.length
-        share = np.ones(self.number)
+        alike = len(self._kinds.table) == 1
+        diameter = float(self._diameter[0]) if alike else self._diameter
+        share = 1.0 if alike else np.ones(self.number)
         for axis in (0, 2) if self._planar else (0, 1, 2):
-            share *= sides[axis] - (0.0 if self._periodic[axis] else self._diameter)
-        return float(np.sum(1.0 / share))
+            share = share * (sides[axis] - (0.0 if self._periodic[axis] else diameter))
+        each = 1.0 / share
+        return float(np.sum(np.full(self.number, each) if alike else each))
 
     @property
     def piston_velocity(self) -> float:
@@ -265,7 +270,7 @@ class ParcelSet:
     @property
     def degrees_of_freedom(self) -> float:
         """Translational and rotational degrees of freedom per molecule, on average."""
-        return (2.0 if self._planar else 3.0) + (float(self._rotation.mean()) if self.number else 0.0)
+        return self._freedom
 
     @property
     def contacts(self) -> int:
