@@ -300,9 +300,9 @@ class ParcelSet:
 
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
+        plain = getattr(wall_kT, "py_func", wall_kT)  # asked once a frame: not worth compiling
         kT = [
-            wall_kT(self._walls, w, self.time) if law == HEAT_BATH else math.nan
-            for w, law in enumerate(self._walls.law)
+            plain(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)
         ]
         return np.array(kT)
 
