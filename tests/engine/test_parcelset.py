@@ -19,7 +19,10 @@ from atmosbox.engine import (
     Specular,
     StalledError,
 )
+from atmosbox.engine._jit import COMPILED
 from atmosbox.engine.reference import Reference
+
+many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 
 SMOOTH = (Specular(),) * 6
 TURNING = (Periodic(),) * 6
@@ -214,6 +217,7 @@ def test_points_pass_through_each_other():
     assert parcel.wall_hits.sum() > 100
 
 
+@many_events
 def test_a_crowd_in_one_cell_finds_room():
     random = np.random.default_rng(2)
     position = lattice(600, (10, 10, 10), 1.0)
@@ -244,6 +248,7 @@ def test_looking_changes_nothing(name):
     assert state(watched) == state(alone)
 
 
+@many_events
 @by_name
 def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
     few = {"number": 8}
@@ -268,6 +273,7 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
         assert state(parcel) == state(whole)
 
 
+@many_events
 def test_time_reads_what_was_asked_for_even_while_nothing_happens():
     # one slow molecule between warm walls: its first event is many epochs away
     parcel = ParcelSet([[1, 1, 2]], [[1e-6, 0, 0]], length=(4, 4, 4), walls=(HeatBath(1.0),) * 6)
@@ -289,6 +295,7 @@ class Stop(Exception):
     """What a watch may raise, as Ctrl-C does."""
 
 
+@many_events
 def test_a_run_that_is_interrupted_can_be_looked_at_and_go_on():
     def interrupt(time):
         seen.append(time)
@@ -499,6 +506,7 @@ def test_a_piston_may_be_moved_by_hand():
     assert parcel.wall_hits[5] > 0
 
 
+@many_events
 def test_a_piston_that_would_crush_the_molecules_is_stopped_with_a_sentence():
     parcel = ParcelSet(**box("piston", number=12, driver=None, walls=(*SMOOTH[:5], Piston(-1.0))))
     with pytest.raises(StalledError, match="the piston"):
@@ -507,6 +515,7 @@ def test_a_piston_that_would_crush_the_molecules_is_stopped_with_a_sentence():
     assert least_gap(parcel) > -1e-9
 
 
+@many_events
 def test_molecules_that_come_to_rest_on_a_floor_are_told_of():
     cold = (*SMOOTH[:4], HeatBath(1e-40), Piston())
     made = box("piston", number=3, driver=None, walls=cold, velocity=np.zeros((3, 3)), gravity=50.0)

@@ -63,7 +63,7 @@ def places(random, sides, diameter, periodic, planar):
         for _ in range(200):
             centre = low + random.random(3) * (sides - 2.0 * low)
             if planar:
-                centre[1] = 0.5 * sides[1]
+                centre[1] = 0.0 if periodic[1] else 0.5 * sides[1]
             apart = [centre - other for other in centres]
             apart = [r - periodic * sides * np.rint(r / sides) for r in apart]
             if all(math.sqrt(r @ r) > 0.5 * (sigma + s) for r, s in zip(apart, diameter, strict=False)):
@@ -79,7 +79,7 @@ def boxes(draw, family):
     """Return the arguments that `ParcelSet` and `Reference` share."""
     random = np.random.default_rng(draw(st.integers(0, 2**32)))
     number = draw(st.sampled_from(family.numbers)) + family.mixed
-    planar = draw(st.booleans()) and "y" not in family.periodic and not family.rotation
+    planar = draw(st.booleans())
     if family.mixed:
         diameter = 10.0 ** random.uniform(-1.0, 0.0, number)
         diameter[:2] = 1.0, 0.4
