@@ -53,7 +53,8 @@ class Checkpoint:
     Examples
     --------
     >>> import tempfile, xarray
-    >>> from atmosbox.output import global_attributes, read
+    >>> from atmosbox.output import read
+    >>> from atmosbox.provenance import global_attributes
     >>> so_far = xarray.Dataset(attrs=global_attributes({}, title="Half a box", command="a test"))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     checkpoint = Checkpoint(f"{folder}/run.nc", every_seconds=0.0)

@@ -14,7 +14,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from atmosbox.errors import ConfigError, FileError, SettingError, shown
-from atmosbox.settings import Value, nearest
+from atmosbox.parameter import Value
+from atmosbox.spelling import nearest
 
 __all__ = ["load_config", "parse_set"]
 
@@ -62,12 +63,13 @@ def parse_set(items: Iterable[str]) -> dict[str, str]:
     return values
 
 
-def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Value]]:
-    r"""Return the scene and the settings that a TOML file names.
+def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Value], str | None]:
+    r"""Return the scene, the settings and the engine that a TOML file names.
 
-    The file may hold the name of a scene and one table, and can run no code::
+    The file may hold the names of a scene and of an engine, and one table, and can run no code::
 
         scene = "lifting-dry"
+        engine = "exact"
 
         [settings]
         temperature = "25degC"
@@ -84,6 +86,8 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
         The name of the scene, None where the file names none.
     settings : dict
         The values as they were written, by name.
+    engine : str or None
+        The name of the engine, with its options; None where the file names none.
 
     Raises
     ------
@@ -99,7 +103,7 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
     ...     path = pathlib.Path(folder, "lift.toml")
     ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
     ...     load_config(path)
-    ('lifting-dry', {'temperature': '25degC'})
+    ('lifting-dry', {'temperature': '25degC'}, None)
     """
     where = shown(os.fspath(path), longest=4096)
     try:
@@ -113,13 +117,16 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
     def refusal(key: str, problem: str, fix: str) -> ConfigError:
         return ConfigError(f"{where}{_line(text, key)} has {shown(key)} {problem}: {fix}.")
 
-    for key in sorted(content.keys() - {"scene", "settings"}):
-        near = nearest(key, ("scene", "settings"))
+    for key in sorted(content.keys() - {"scene", "settings", "engine"}):
+        near = nearest(key, ("scene", "settings", "engine"))
         fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
         raise refusal(key, "outside the table [settings]", fix)
     scene, settings = content.get("scene"), content.get("settings", {})
     if scene is not None and not (isinstance(scene, str) and scene.strip()):
         raise refusal("scene", "without a name", 'give the name of one, such as scene = "lifting-dry"')
+    engine = content.get("engine")
+    if engine is not None and not (isinstance(engine, str) and engine.strip()):
+        raise refusal("engine", "without a name", 'give the name of one, such as engine = "exact"')
     if not isinstance(settings, dict):
         raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
     kinds = {dict: "as a table", list: "as an array", float: "as no finite number"}
@@ -127,7 +134,7 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
         if not isinstance(value, Value) or (isinstance(value, float) and not math.isfinite(value)):
             kind = kinds.get(type(value), "as a date or a time")
             raise refusal(key, kind, 'give one number, true, false or a text in quotes, such as "25degC"')
-    return scene and scene.strip(), settings
+    return scene and scene.strip(), settings, engine and engine.strip()
 
 
 def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:

@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from atmosbox.declaration import SUFFIXES, Variable, derived
 from atmosbox.errors import EngineError
-from atmosbox.variables import SUFFIXES, VARIABLES, Variable, derived, variable
+from atmosbox.variables import VARIABLES, variable
 
 __all__ = ["VARIABLES", "Variable", "dataset", "headline_variables", "variable"]
 

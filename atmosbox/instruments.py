@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.measure import layer_sample, momentum, speed_counts, temperature
-from atmosbox.engine.parcelset import ParcelSet, Snapshot
+from atmosbox.engine.parcel import Parcel, Snapshot
 from atmosbox.statistics import block_average
 from atmosbox.units import Scale
 
@@ -35,23 +35,24 @@ class Readings(dict[str, Any]):
 class Instrument(Protocol):
     """What every instrument does."""
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """See the molecules at a sample."""
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close a frame."""
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return what has been measured; averages leave out the first ``settle`` frames."""
 
 
-def open_faces(parcel: ParcelSet) -> Array:
+def open_faces(parcel: Parcel) -> Array:
     """Return the area of each wall that the centres of the molecules can reach [length^2; of a plane gas, length].
 
     Zero where a periodic axis has no wall.
 
     Examples
     --------
+    >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 3))
     >>> open_faces(pair)
     array([6., 6., 6., 6., 9., 9.])
@@ -82,11 +83,11 @@ class Air:
         self._time = 0.0
         self._rows: list[dict[str, Any]] = []
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the thermometer."""
         self._kT.append(temperature(parcel, snapshot))
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the barometer and the ledger."""
         area = open_faces(parcel)
         lasted = parcel.time - self._time
@@ -158,12 +159,12 @@ class Layers:
         self._height = 1.0
         self._mass = 1.0
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules of each layer and the energy of their disordered motion."""
         self._sum += np.stack(layer_sample(parcel, snapshot, self._number))
         self._looks += 1
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close the sums of a frame."""
         lasted = parcel.time - self._time
         rate = (parcel.virial - self._virial) / lasted
@@ -224,12 +225,12 @@ class Speeds:
         self._seen = 0
         self._frames: list[Array] = []
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count by speed."""
         self._counts += speed_counts(snapshot, self._edges)
         self._seen += parcel.number
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close the counts of a frame."""
         self._frames.append(self._counts / max(self._seen, 1) / np.diff(self._edges))
         self._counts = np.zeros_like(self._counts)
@@ -266,12 +267,10 @@ class Environment:
 
 
 class Lift:
-    """A parcel on its way up: temperature and pressure of parcel and environment against height.
+    r"""A parcel on its way up: temperature and pressure of parcel and environment against height.
 
-    The temperature is that of all energy, which has no noise; what scatters from run to run is the work
-    that the piston exchanged. Its scatter shows in the entropy per molecule, s/k = (f/2 + 1) ln T - ln p,
-    which an adiabat would keep: the standard error is that of a sum of independent steps, from block to
-    block of the ascent.
+    The temperature is that of all energy, which has no noise at rest. Two things scatter from run to run: the
+    work that the piston exchanged, which adds up, and what the barometer says at the moment, which does not.
 
     Parameters
     ----------
@@ -279,46 +278,72 @@ class Lift:
         The driver of the piston, which knows the pressure of the parcel.
     environment
         The air around.
+
+    Notes
+    -----
+    The work shows in the entropy per molecule of spheres of density n and temperature T, with the measured
+    :math:`(Z - 1)/n = b + c n`,
+
+    .. math:: s / k = (f/2) \ln T - \ln n - b n - c n^2 / 2 ,
+
+    which an adiabat would keep. A finite speed makes it drift, and chance makes it walk at random. By the
+    fluctuation-dissipation theorem drift and variance go together: both grow as
+
+    .. math:: w = \int (d \ln n / dt)^2\, (h / \sqrt{T})\, dt ,
+
+    the square of the rate of expansion times the time that sound takes through the height h. The steps of s
+    over 20 blocks of the ascent, less their share of the drift, give the variance of the walk; w tells how much
+    of it has been gathered by when. To it comes the variance of the barometer, that of n (Z - 1)/n about its
+    straight line.
+
+    References
+    ----------
+    .. [1] Jarzynski, C. (1997), doi:10.1103/PhysRevLett.78.2690: work lost on the way is half the variance of
+       the work, over kT.
     """
 
     def __init__(self, driver: FollowPressure, environment: Environment) -> None:
         self._driver = driver
         self._environment = environment
         self._rows: list[tuple[float, ...]] = []
-        self._heat_capacity = 3.5
+        self._freedom = 5.0
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Need no look at single molecules."""
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the state of the parcel at the end of a frame."""
-        freedom = parcel.degrees_of_freedom
-        self._heat_capacity = 0.5 * freedom + 1.0
-        kT = 2.0 * parcel.internal_energy() / (freedom * parcel.number)
-        pressure = self._driver.pressure(parcel)
-        self._rows.append((parcel.time, kT, pressure, parcel.volume, parcel.ceiling, parcel.piston_velocity))
+        self._freedom = parcel.degrees_of_freedom
+        kT = 2.0 * parcel.internal_energy() / (self._freedom * parcel.number)
+        self._rows.append(
+            (
+                parcel.time,
+                kT,
+                self._driver.pressure(parcel),
+                parcel.open_density,
+                parcel.volume,
+                parcel.ceiling,
+                parcel.piston_velocity,
+            )
+        )
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the series of parcel and environment."""
         if not self._rows:
             return Readings()
-        time, kT, pressure, volume, ceiling, velocity = np.array(self._rows).T
+        time, kT, pressure, density, volume, ceiling, velocity = np.array(self._rows).T
+        heat_capacity = 0.5 * self._freedom + 1.0
+        spread = _entropy_spread(time, kT, pressure, density, ceiling, self._freedom) / heat_capacity
         seconds = time * scale.time
         parcel_temperature = kT * scale.temperature
         parcel_pressure = pressure * scale.pressure
-        entropy = self._heat_capacity * np.log(kT) - np.log(pressure)
-        blocks = max(2, min(_BLOCKS, len(entropy) // 4))
-        corners = np.linspace(0, len(entropy) - 1, blocks + 1).astype(int)
-        step = np.diff(entropy[corners])
-        scatter = float(np.std(step, ddof=1)) if len(entropy) > blocks else math.nan
-        spread = scatter * np.sqrt(blocks * (np.arange(len(entropy)) + 1.0) / len(entropy)) / self._heat_capacity
         surroundings = self._environment
         return Readings(
             parcel_temperature=parcel_temperature,
             parcel_temperature_se=parcel_temperature * spread,
             parcel_pressure=parcel_pressure,
             parcel_potential_temperature=parcel_temperature
-            * (_REFERENCE_PRESSURE / parcel_pressure) ** (1.0 / self._heat_capacity),
+            * (_REFERENCE_PRESSURE / parcel_pressure) ** (1.0 / heat_capacity),
             parcel_volume=volume * scale.length**3 * scale.weight,
             parcel_height=np.array([surroundings.height(t) for t in seconds]),
             environment_temperature=np.array([surroundings.temperature(t) for t in seconds]),
@@ -327,6 +352,38 @@ class Lift:
             piston_height=ceiling * scale.length,
             piston_velocity=velocity * scale.velocity,
         )
+
+
+def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, height: Array, freedom: float) -> Array:
+    """Return how far chance takes (f/2 + 1) ln T - ln p of a rising parcel, by time; see `Lift`.
+
+    Examples
+    --------
+    Three moments at least are needed:
+
+    >>> two = np.array([1.0, 2.0])
+    >>> _entropy_spread(two, two, two, two, two, 5.0)
+    array([nan, nan])
+    """
+    if len(time) < 3:
+        return np.full(len(time), math.nan)
+    excess = (pressure / (density * kT) - 1.0) / density
+    slope = np.cov(density, excess)[0, 1] / np.var(density, ddof=1) if np.ptp(density) > 0.0 else 0.0
+    smooth = np.mean(excess) + slope * (density - np.mean(density))
+    at_zero = smooth[0] - slope * density[0]
+    barometer = density * (excess - smooth) / (1.0 + excess * density)
+    entropy = 0.5 * freedom * np.log(kT) - np.log(density) - at_zero * density - 0.5 * slope * density**2
+    crossing = np.convolve(height / np.sqrt(kT), [0.5, 0.5], "valid")
+    gathered = np.diff(np.log(density)) ** 2 / np.diff(time) * crossing
+    gathered = np.concatenate([gathered[:1] * time[0] / (time[1] - time[0]), gathered]).cumsum()
+    blocks = min(_BLOCKS, len(time) - 1)
+    corners = np.linspace(0, len(time) - 1, blocks + 1).astype(int)
+    step, share = np.diff(entropy[corners]), np.diff(gathered[corners])
+    if not share.sum() > 0.0:
+        return np.full(len(time), math.nan)
+    chance = step - step.sum() * share / share.sum()
+    walk = np.sum(chance**2) / (share.sum() - np.sum(share**2) / share.sum()) * gathered
+    return np.asarray(np.sqrt(walk + np.var(barometer, ddof=2)))
 
 
 class Discs:
@@ -341,10 +398,10 @@ class Discs:
         self._diameter = np.zeros(0)
         self._length = np.zeros(3)
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Need no look between frames."""
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Remember all discs."""
         outward = parcel.wall_impulse
         self._given.append(np.array([outward[0] - outward[1], outward[2] - outward[3], outward[4] - outward[5]]))
@@ -391,10 +448,10 @@ class Molecules:
         self._position: list[NDArray[np.float32]] = []
         self._speed: list[NDArray[np.float32]] = []
 
-    def look(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Need no look between frames."""
 
-    def close(self, parcel: ParcelSet, snapshot: Snapshot) -> None:
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Remember all molecules, in single precision."""
         self._position.append(snapshot.position.astype(np.float32))
         self._speed.append(np.sqrt(np.sum(snapshot.velocity**2, axis=1)).astype(np.float32))

@@ -1,4 +1,4 @@
-"""Datasets to netCDF files and back, with the provenance from which a run can be repeated.
+"""Datasets to netCDF files and back.
 
 A file appears under its name only when it is whole: it is built in memory, written beside its place under a
 hidden name, flushed to the disk and then renamed.
@@ -9,148 +9,28 @@ from __future__ import annotations
 import contextlib
 import errno
 import glob
-import json
 import os
 import shlex
 import shutil
 import time
-from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import netCDF4
 import xarray as xr
 
 from atmosbox import __version__
-from atmosbox.errors import DiskFullError, FileError, SettingError, shown
+from atmosbox.errors import DiskFullError, FileError, shown
+from atmosbox.provenance import FORMAT, moment
 
-__all__ = [
-    "FORMAT",
-    "check_writable",
-    "global_attributes",
-    "history_line",
-    "parameters",
-    "part_path",
-    "read",
-    "replace_file",
-    "write",
-    "write_failure",
-]
+__all__ = ["check_writable", "part_path", "read", "replace_file", "write", "write_failure"]
 
-FORMAT = 1
-"""The version of the layout of the files, in the attribute ``atmosbox_format``."""
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the hidden name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
 LEFT_OVER = 3600.0  # seconds after which a hidden file can only be that of a run that was killed
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 AnyPath: TypeAlias = str | os.PathLike[str]
-
-
-def _moment() -> str:
-    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that the same run can have the same content."""
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    try:
-        moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
-    except (ValueError, OverflowError, OSError):
-        problem, fix = "is not a number of seconds since 1970", "type unset SOURCE_DATE_EPOCH"
-        raise SettingError("SOURCE_DATE_EPOCH", epoch, problem, fix) from None
-    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")
-
-
-def history_line(command: str | Sequence[str]) -> str:
-    """Return the line that a step adds to a file's history: the time in UTC and the command.
-
-    Parameters
-    ----------
-    command
-        The command as typed, or its words.
-
-    Returns
-    -------
-    str
-        For example ``2026-11-21T11:18:00Z: atmosbox run lifting-dry --seed 7``.
-
-    Raises
-    ------
-    SettingError
-        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
-
-    Examples
-    --------
-    >>> history_line(["atmosbox", "plot", "my run.nc"]).partition(": ")[2]
-    "atmosbox plot 'my run.nc'"
-    """
-    return f"{_moment()}: {command if isinstance(command, str) else shlex.join(command)}"
-
-
-def global_attributes(
-    parameters: Mapping[str, Any],
-    *,
-    title: str,
-    command: str | Sequence[str],
-    comment: str = "",
-    references: str = "",
-    panels: str = "[]",
-    status: str = "complete",
-) -> dict[str, Any]:
-    """Return what a file says about itself: what it is, where it comes from and how to repeat it.
-
-    Parameters
-    ----------
-    parameters
-        Everything that makes the run, as JSON can hold it: ``scene``, ``settings``, ``engine``, ``version``.
-    title
-        What the file holds, in a line.
-    command
-        The command that made it, as typed, or its words.
-    comment
-        The assumptions of the scene.
-    references
-        What the scene is built on.
-    panels
-        The scene's figure, as JSON.
-    status
-        ``complete``, ``partial`` or ``interrupted``.
-
-    Returns
-    -------
-    dict
-        The global attributes by their names.
-
-    Raises
-    ------
-    SettingError
-        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
-
-    Examples
-    --------
-    >>> made = global_attributes(
-    ...     {"scene": "temperature", "engine": "exact"}, title="A box", command="atmosbox run temperature"
-    ... )
-    >>> made["Conventions"], made["atmosbox_parameters"]
-    ('CF-1.11', '{"scene": "temperature", "engine": "exact"}')
-    """
-    version = str(parameters.get("version", __version__))
-    engine = parameters.get("engine")
-    attributes: dict[str, Any] = {
-        "Conventions": "CF-1.11",
-        "title": title,
-        "institution": "not stated; a simulation for teaching",
-        "source": f"atmosbox {version}, colliding hard spheres" + (f", {engine} engine" if engine else ""),
-        "history": history_line(command),
-        "references": references,
-        "comment": comment,
-        "license": "CC0-1.0",
-        "date_created": _moment(),
-        "product_version": version,
-        "atmosbox_format": FORMAT,
-        "atmosbox_status": status,
-        "atmosbox_parameters": json.dumps(dict(parameters), allow_nan=False),
-        "atmosbox_panels": panels,
-    }
-    return {name: value for name, value in attributes.items() if value != ""}
 
 
 def check_writable(path: AnyPath, force: bool = False) -> Path:
@@ -203,7 +83,7 @@ def check_writable(path: AnyPath, force: bool = False) -> Path:
         raise FileError(f"Nothing may be written to the folder {folder}: give another place with --out.")
     if shutil.disk_usage(folder).free < SMALLEST_FILE:
         raise write_failure(OSError(errno.ENOSPC, ""), target)
-    _moment()
+    moment()
     return target
 
 
@@ -264,6 +144,7 @@ def replace_file(path: Path, dataset: xr.Dataset) -> None:
     Examples
     --------
     >>> import tempfile
+    >>> from atmosbox.provenance import global_attributes
     >>> run = xr.Dataset(attrs=global_attributes({}, title="A box", command="a test"))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     replace_file(Path(folder, "run.nc"), run)
@@ -294,7 +175,7 @@ def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
     Parameters
     ----------
     dataset
-        What `atmosbox.diagnostics.dataset` made, with the attributes of `global_attributes`.
+        What `atmosbox.diagnostics.dataset` made, with the attributes of `atmosbox.provenance.global_attributes`.
     path
         The file.
     force
@@ -317,6 +198,7 @@ def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
     Examples
     --------
     >>> import tempfile, xarray
+    >>> from atmosbox.provenance import global_attributes
     >>> attributes = global_attributes({"scene": "temperature"}, title="A box", command="a test")
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     read(write(xarray.Dataset(attrs=attributes), f"{folder}/run.nc")).title
@@ -391,37 +273,3 @@ def read(path: AnyPath) -> xr.Dataset:
         raise
     except (OSError, RuntimeError, ValueError) as error:
         raise FileError(f"{source} is no netCDF file, or a damaged one: {fix}.") from error
-
-
-def parameters(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return everything that made a run, from which it can be repeated.
-
-    Parameters
-    ----------
-    dataset
-        A run.
-
-    Returns
-    -------
-    dict
-        ``scene``, ``settings``, ``engine`` and ``version``, as `global_attributes` was given them.
-
-    Raises
-    ------
-    FileError
-        If the dataset does not say, or says something that is not JSON.
-
-    Examples
-    --------
-    >>> made = global_attributes({"scene": "temperature"}, title="A box", command="a test")
-    >>> parameters(xr.Dataset(attrs=made))
-    {'scene': 'temperature'}
-    """
-    try:
-        found = json.loads(dataset.attrs["atmosbox_parameters"])
-    except (KeyError, TypeError, ValueError):
-        found = None
-    if not isinstance(found, dict):
-        name = dataset.encoding.get("source", "This dataset")
-        raise FileError(f"{name} does not say which run it holds: give a file that atmosbox run has written.")
-    return found

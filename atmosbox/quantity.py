@@ -1,7 +1,7 @@
 """What a user types, such as "25 degC" or 4e3, as a number in the unit of the setting it is for.
 
 A bare number is in the unit in which the setting is documented; every refusal is one sentence that names the
-setting, the value and what to type instead. The units themselves stand in :mod:`atmosbox.units`.
+setting, the value and what to type instead. The units themselves stand in :mod:`atmosbox.conversion`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from numbers import Integral, Real
 
+from atmosbox.conversion import MEASURES, SIGNS, declared_unit, known_unit, to_si
 from atmosbox.errors import SettingError, UnitError, shown
-from atmosbox.units import MEASURES, SIGNS, declared_unit, known_unit, to_si
 
 __all__ = ["parse_quantity", "parse_whole", "phrase", "typed"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
 import os
@@ -15,14 +16,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from atmosbox import __version__, scenarios
+from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.refusal import PackingError as EnginePackingError
 from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.engines import EXACT, EngineChoice, choose
 from atmosbox.errors import EngineError, FileError, PackingError, SettingError
 from atmosbox.headline import Headline
 from atmosbox.instruments import Molecules, Readings
 from atmosbox.panels import to_json
+from atmosbox.parameter import Parameter
 from atmosbox.scene import Setup
-from atmosbox.settings import Parameter, SceneSettings
+from atmosbox.settings import SceneSettings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,6 +65,7 @@ class Prepared:
     module: ModuleType
     settings: SceneSettings
     save_molecules: bool = False
+    engine: EngineChoice = EXACT
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -68,7 +73,7 @@ class Prepared:
         return {
             "scene": self.scene,
             "settings": self.settings.as_dict(),
-            "engine": "exact",
+            "engine": str(self.engine),
             "version": __version__,
             "save_molecules": self.save_molecules,
         }
@@ -110,7 +115,13 @@ class Interrupted(KeyboardInterrupt):
         self.outcome = outcome
 
 
-def prepare(scene: str | os.PathLike[str], settings: Mapping[str, Any], *, save_molecules: bool = False) -> Prepared:
+def prepare(
+    scene: str | os.PathLike[str],
+    settings: Mapping[str, Any],
+    *,
+    engine: str | EngineChoice = EXACT,
+    save_molecules: bool = False,
+) -> Prepared:
     """Load a scenario and check its settings; nothing is computed yet.
 
     Parameters
@@ -119,6 +130,8 @@ def prepare(scene: str | os.PathLike[str], settings: Mapping[str, Any], *, save_
         A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
     settings
         Values by name, numbers in the documented unit or texts with a unit.
+    engine
+        What lets time pass, with its options: ``exact``, or ``stepped:delta=0.02``.
     save_molecules
         Whether places and speeds of all molecules are kept in every frame.
 
@@ -139,12 +152,19 @@ def prepare(scene: str | os.PathLike[str], settings: Mapping[str, Any], *, save_
     """
     module = scenarios.load(scene)
     checked = module.Settings.from_user(settings)
+    chosen = choose(engine)
+    if chosen.name != EXACT.name and "engine" not in inspect.signature(module.build).parameters:
+        raise SettingError(
+            "engine", str(chosen), f"is not for the scene {os.fspath(scene)}, whose build takes no engine",
+            f"give --engine {EXACT}, or let its build take one: build(settings, engine)",
+        )  # fmt: skip
     name = str(scene) if os.fspath(scene) not in scenarios.names() else os.fspath(scene)
     return Prepared(
         name.replace("_", "-") if name.replace("_", "-") in scenarios.names() else name,
         module,
         checked,
         save_molecules,
+        chosen,
     )
 
 
@@ -165,13 +185,20 @@ def card(prepared: Prepared) -> Card:
 def _build(prepared: Prepared) -> Setup:
     """Build the box, in the words of a user where it cannot be built."""
     try:
-        setup: Setup = prepared.module.build(prepared.settings)
+        with_engine = "engine" in inspect.signature(prepared.module.build).parameters
+        setup: Setup = prepared.module.build(prepared.settings, *([prepared.engine] if with_engine else []))
+        if isinstance(setup.parcel, MarchingParcel):
+            setup.parcel.divide(setup.frame / setup.samples)
     except EnginePackingError as error:
         molecules = getattr(prepared.settings, "molecules", None)
         raise PackingError("molecules", molecules, "do not fit", str(error)) from error
     except (RefusedError, ValueError) as error:
         if isinstance(error, SettingError):
             raise
+        if prepared.engine.name != EXACT.name:
+            raise SettingError(
+                "engine", str(prepared.engine), f"cannot do {prepared.scene}: {error}", f"or give --engine {EXACT}"
+            ) from error
         raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
     if prepared.save_molecules:
         needed = 16.0 * setup.parcel.number * setup.frames
@@ -281,7 +308,7 @@ def execute(
     >>> outcome.ledger < LEDGER_LIMIT
     True
     """
-    from atmosbox.output import global_attributes
+    from atmosbox.provenance import global_attributes
 
     tell = progress or (lambda share, word: None)
     tell(0.0, "compiling the engine, once")
@@ -338,6 +365,7 @@ def run(
     *,
     out: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
+    engine: str | EngineChoice = EXACT,
     save_molecules: bool = False,
     **settings: Any,
 ) -> xr.Dataset:
@@ -351,6 +379,8 @@ def run(
         Where to write the netCDF file; nothing is written without it. An existing file is never replaced.
     progress
         Called with the share that is done and a word on what goes on.
+    engine
+        What lets time pass, with its options: ``exact``, or ``stepped:delta=0.02``.
     save_molecules
         Whether places and speeds of all molecules are kept in every frame.
     **settings
@@ -375,7 +405,7 @@ def run(
     from atmosbox.checkpoint import Checkpoint
     from atmosbox.output import check_writable
 
-    prepared = prepare(scene, settings, save_molecules=save_molecules)
+    prepared = prepare(scene, settings, engine=engine, save_molecules=save_molecules)
     checkpoint = None
     if out is not None:
         check_writable(Path(out))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from atmosbox.units import Scale
 
 if TYPE_CHECKING:
-    from atmosbox.engine.parcelset import ParcelSet
+    from atmosbox.engine.parcel import Parcel
     from atmosbox.instruments import Instrument
 
 __all__ = ["Setup"]
@@ -53,7 +53,7 @@ class Setup:
     2.0
     """
 
-    parcel: ParcelSet
+    parcel: Parcel
     scale: Scale
     duration: float
     frames: int

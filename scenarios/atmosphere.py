@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import maxwell_velocities, random_positions
 from atmosbox.engine.walls import HeatBath, Periodic, Specular
+from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Layers
 from atmosbox.panels import Line, Panel
@@ -88,7 +88,7 @@ class Column:
         return np.asarray(law.hydrostatic_layers(edges, self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter))
 
 
-def build(settings: Settings) -> Setup:
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the column."""
     column = Column(settings)
     n = settings.molecules
@@ -101,7 +101,7 @@ def build(settings: Settings) -> Setup:
         )
     else:
         position = random_positions(length, np.full(n, column.diameter), rng, periodic=sides, scale_height=1.0)
-    parcel = ParcelSet(
+    parcel = engine.make(
         position,
         maxwell_velocities(1.0, np.ones(n), rng, exact=True),
         length=length,

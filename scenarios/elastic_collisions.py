@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import equal_speeds, random_positions
+from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Discs
 from atmosbox.panels import Line, Panel
@@ -43,7 +43,7 @@ class Settings(SceneSettings):
     duration: float = setting(60.0, "s", "how long to watch", low=0.1, high=1e6)
 
 
-def build(settings: Settings) -> Setup:
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the discs on their table."""
     si = settings.si
     n = settings.molecules
@@ -54,7 +54,7 @@ def build(settings: Settings) -> Setup:
     diameter = np.sqrt(4.0 * area / math.pi)
     thickness = 2.0 * float(diameter.max())
     length = (1.0, thickness, 1.0)
-    parcel = ParcelSet(
+    parcel = engine.make(
         random_positions(length, diameter, rng, planar=True),
         equal_speeds(1.0, n, rng, planar=True),
         length=length,
@@ -138,18 +138,19 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the table, the energies, and what was kept."""
+    unlike = settings.mass_ratio > 1.0
     return (
         Panel("discs", "The table at the end", x_unit="m"),
         Panel(
             "line",
-            "Light and heavy: the same energy",
+            "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
             (
-                Line("elapsed_time", "running_energy_light", "light half"),
-                Line("elapsed_time", "running_energy_heavy", "heavy half"),
+                Line("elapsed_time", "running_energy_light", "light half" if unlike else "one half"),
+                Line("elapsed_time", "running_energy_heavy", "heavy half" if unlike else "the other"),
                 Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),
             ),
             x_label="time",
-            y_label="energy, mean since the start",
+            y_label="energy, mean so far",
             x_scale="log",
             headlines=("energy_of_light_discs",),
         ),

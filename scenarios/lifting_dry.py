@@ -20,9 +20,9 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engine.lift import FollowPressure
-from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
 from atmosbox.engine.walls import Piston, Specular
+from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Environment, Lift
@@ -101,7 +101,7 @@ def _environment(settings: Settings, duration: float) -> Environment:
     )
 
 
-def build(settings: Settings) -> Setup:
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the parcel at the ground with its piston."""
     n = settings.molecules
     rng = np.random.default_rng(settings.seed)
@@ -117,7 +117,7 @@ def build(settings: Settings) -> Setup:
     times = np.linspace(0.0, duration, 400)
     pressures = np.array([environment.pressure(t * scale.time) for t in times]) / scale.pressure
     driver = FollowPressure(list(times), list(pressures), mean_free_time=mean_free_time, excess=excess)
-    parcel = ParcelSet(
+    parcel = engine.make(
         random_positions(length, np.ones(n), rng),
         maxwell_velocities(1.0, np.ones(n), rng, exact=True),
         length=length,
@@ -233,11 +233,10 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="hPa",
             y_scale="log",
             y_invert=True,
-            headlines=tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings)),
         ),
         Panel(
             "profile",
-            "9.8 K per kilometre",
+            f"{1000.0 * float(law.dry_lapse_rate(dof=5 if settings.rotation else 3)):.1f} K per kilometre",
             (
                 Line(parcel, "parcel_height", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_height", adiabat, "theory"),
@@ -262,5 +261,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="hPa",
             y_scale="log",
             y_invert=True,
+            headlines=tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings)),
         ),
     )

@@ -15,7 +15,8 @@ import pytest
 from atmosbox.checkpoint import Checkpoint
 from atmosbox.diagnostics import dataset
 from atmosbox.errors import DiskFullError, FileError
-from atmosbox.output import global_attributes, read, write
+from atmosbox.output import read, write
+from atmosbox.provenance import global_attributes
 
 
 def run_so_far(frames):
@@ -29,7 +30,7 @@ import os, sys, time
 import numpy as np
 from atmosbox.checkpoint import Checkpoint
 from atmosbox.diagnostics import dataset
-from atmosbox.output import global_attributes
+from atmosbox.provenance import global_attributes
 
 {inspect.getsource(run_so_far)}
 """

@@ -18,7 +18,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox import output, runner, scenarios
+from atmosbox import output, provenance, runner, scenarios
 from atmosbox.cli import app, check, progress, report, table, terminal
 from atmosbox.cli.command import Format, Theme, _completed
 from atmosbox.cli.request import Request
@@ -323,7 +323,7 @@ def test_an_earlier_run_is_repeated_bit_for_bit(folder, finished):
 
 def test_an_earlier_run_that_saved_its_molecules_does_so_again(folder):
     atmosbox_in_process(*SHORT, "--save-molecules")
-    assert Request(None, source=f"{SCENE}.nc").gather()[2] is True
+    assert Request(None, source=f"{SCENE}.nc").gather()[3] is True
 
 
 def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):
@@ -385,7 +385,7 @@ def test_bad_input_is_one_sentence_and_leaves_nothing_behind(folder, no_computin
 
 
 def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):
-    attributes = output.global_attributes({"scene": SCENE}, title="A box", command="a test")
+    attributes = provenance.global_attributes({"scene": SCENE}, title="A box", command="a test")
     output.write(xr.Dataset(attrs=attributes), "old.nc")
     assert "does not say" in refused(atmosbox_in_process("run", "--from", "old.nc"))
 

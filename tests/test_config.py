@@ -76,20 +76,21 @@ def test_a_settings_file_names_a_scene_and_its_settings(tmp_path):
         'scene = "lifting-dry"\r\n\r\n[settings]\r\ntemperature = "25degC" # warm\r\nmolecules = 4_000\r\n'
         "pressure-top = 300.0\r\nrotation = false\r\n",
     )
-    scene, settings = load_config(path)
+    scene, settings, engine = load_config(path)
     assert scene == "lifting-dry"
     assert settings == {"temperature": "25degC", "molecules": 4000, "pressure-top": 300.0, "rotation": False}
     assert Settings.from_user(settings).changed() == {"temperature": 25.0, "rotation": False}
-    assert load_config(str(path)) == (scene, settings)
+    assert load_config(str(path)) == (scene, settings, engine)
 
 
 @pytest.mark.parametrize(
     ("content", "result"),
     [
-        ("", (None, {})),
-        ('\ufeffscene = " sky "', ("sky", {})),
-        ("[settings]", (None, {})),
-        ("settings.seed = 5", (None, {"seed": 5})),
+        ("", (None, {}, None)),
+        ('\ufeffscene = " sky "', ("sky", {}, None)),
+        ("[settings]", (None, {}, None)),
+        ("settings.seed = 5", (None, {"seed": 5}, None)),
+        ('engine = "stepped:delta=0.1"', (None, {}, "stepped:delta=0.1")),
     ],
 )
 def test_a_settings_file_may_leave_things_out(tmp_path, content, result):
@@ -166,7 +167,7 @@ def any_file(tmp_path_factory):
 def test_any_file_is_read_or_refused_in_one_sentence(any_file, content):
     any_file.write_bytes(content)
     try:
-        scene, settings = load_config(any_file)
+        scene, settings, _ = load_config(any_file)
     except (ConfigError, FileError) as error:
         sentence = str(error)
         assert sentence.isprintable()

@@ -24,27 +24,32 @@ class Layer:
     lazily: str = ""  # parts and libraries that only a function may import, or a type checker
 
 
-FOUNDATION = "errors units quantity settings config headline theory statistics"
+FOUNDATION = "errors units conversion quantity spelling parameter settings config headline theory statistics"
 FACTS = Layer(f"version {FOUNDATION}", "numpy scipy pydantic", lazily="metpy pint")
 
 LAYERS = {
     "engine": Layer("", "numpy numba llvmlite"),
     **dict.fromkeys(FOUNDATION.split(), FACTS),
     "panels": Layer(),
-    "variables": Layer("version engine units errors panels statistics", "numpy xarray"),
-    "diagnostics": Layer("version engine units errors panels statistics variables", "numpy xarray"),
-    "output": Layer("version engine units errors panels diagnostics", "numpy xarray netCDF4"),
+    "engines": Layer("errors parameter spelling", lazily="engine numpy xarray"),
+    "declaration": Layer("", "numpy"),
+    "variables": Layer("declaration"),
+    "diagnostics": Layer("version engine units errors panels statistics declaration variables", "numpy xarray"),
+    "provenance": Layer("version errors", lazily="xarray"),
+    "output": Layer("version engine units errors panels diagnostics provenance", "numpy xarray netCDF4"),
     "checkpoint": Layer("version engine units errors panels diagnostics output", "numpy xarray netCDF4"),
     "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
     "instruments": Layer("engine units statistics", "numpy"),
     "scene": Layer("units", lazily="engine instruments"),
     "a scenario": Layer(
-        "engine errors units theory statistics settings headline panels instruments scene", "numpy", lazily="xarray"
+        "engine engines errors units theory statistics settings headline panels instruments scene",
+        "numpy",
+        lazily="xarray",
     ),
     "scenarios": Layer("errors"),
     "runner": Layer(
-        "version engine errors units settings headline panels diagnostics output checkpoint instruments"
-        " scene scenarios",
+        "version engine engines errors units parameter settings headline panels diagnostics provenance output"
+        " checkpoint instruments scene scenarios",
         "numpy xarray",
     ),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
@@ -189,10 +194,13 @@ def test_every_layer_of_the_table_has_a_file():
         ("atmosbox/theory.py", "import metpy.calc"),
         ("atmosbox/theory.py", "from metpy.calc import lcl"),
         ("atmosbox/theory.py", "from . import engine"),
-        ("atmosbox/units.py", "import pint"),
         ("atmosbox/panels.py", "import numpy"),
+        ("atmosbox/conversion.py", "import pint"),
+        ("atmosbox/declaration.py", "from atmosbox.variables import VARIABLES"),
         ("atmosbox/variables.py", "from atmosbox.diagnostics import dataset"),
         ("atmosbox/diagnostics.py", "from atmosbox.output import write"),
+        ("atmosbox/provenance.py", "import xarray"),
+        ("atmosbox/provenance.py", "from atmosbox.output import read"),
         ("atmosbox/output.py", "from atmosbox.checkpoint import Checkpoint"),
         ("atmosbox/plot.py", "from atmosbox.engine import state"),
         ("atmosbox/plot/skewt.py", "from atmosbox.engine import state"),

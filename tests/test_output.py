@@ -1,11 +1,9 @@
 """Files: complete or absent, CF throughout, and read again as they were written."""
 
 import errno
-import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,9 +12,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from atmosbox import output
+from atmosbox import output, provenance
 from atmosbox.diagnostics import VARIABLES, dataset
-from atmosbox.errors import DiskFullError, FileError, SettingError
+from atmosbox.errors import DiskFullError, FileError
 
 CHECKER = """
 import sys
@@ -30,7 +28,7 @@ CHILD = """
 import os, sys, time
 import numpy as np
 from atmosbox.diagnostics import dataset
-from atmosbox.output import global_attributes
+from atmosbox.provenance import global_attributes
 
 def run_so_far(frames):
     times = np.arange(1.0, frames + 1)
@@ -42,7 +40,7 @@ def run_so_far(frames):
 def attributes(**extra):
     parameters = {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
     words = {"title": "Lifted air", "comment": "No ice, pas de glace à 25 °C.", "references": "doi:10.1000/1"}
-    return output.global_attributes(parameters, command=["atmosbox", "run", "lifting-dry"], **words) | extra
+    return provenance.global_attributes(parameters, command=["atmosbox", "run", "lifting-dry"], **words) | extra
 
 
 def headline(name, value, unit, **fields):
@@ -199,7 +197,7 @@ def test_steps_below_a_nanosecond_stay_apart(tmp_path):
 
 def test_a_file_that_is_read_changed_and_written_again_still_passes(tmp_path):
     run = output.read(output.write(molecules(), tmp_path / "run.nc"))
-    run.attrs["history"] += "\n" + output.history_line("atmosbox plot run.nc")
+    run.attrs["history"] += "\n" + provenance.history_line("atmosbox plot run.nc")
     path = output.write(run.isel(elapsed_time=slice(0, 10)), tmp_path / "again.nc")
     check_cf(path)
     assert output.read(path).attrs["history"].count("\n") == 1
@@ -228,45 +226,9 @@ def test_a_run_without_frames_can_be_written(tmp_path):
     assert output.read(output.write(empty, tmp_path / "run.nc")).sizes["elapsed_time"] == 0
 
 
-def test_the_attributes_name_all_that_a_reader_asks_for():
-    found = attributes()
-    asked = "title institution source history references comment license date_created product_version"
-    assert all(found[name] for name in asked.split())
-    assert found["Conventions"] == "CF-1.11"
-    assert found["atmosbox_format"] == output.FORMAT
-    assert found["atmosbox_status"] == "complete"
-    assert "exact" in found["source"]
-
-
 def test_the_parameters_come_back_from_the_file(tmp_path):
-    found = output.parameters(output.read(output.write(lifting(), tmp_path / "run.nc")))
+    found = provenance.parameters(output.read(output.write(lifting(), tmp_path / "run.nc")))
     assert found == {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
-
-
-def test_parameters_that_json_cannot_hold_are_refused():
-    with pytest.raises(ValueError, match="JSON"):
-        output.global_attributes({"temperature": float("nan")}, title="A box", command="a test")
-
-
-def test_the_history_has_the_time_and_the_command_as_typed(monkeypatch):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    words = ["atmosbox", "run", "lifting-dry", "--set", "temperature=25 degC"]
-    line = "2023-11-14T22:13:20Z: atmosbox run lifting-dry --set 'temperature=25 degC'"
-    assert output.history_line(words) == line
-    assert output.history_line("atmosbox list") == "2023-11-14T22:13:20Z: atmosbox list"
-    assert attributes()["date_created"] == "2023-11-14T22:13:20Z"
-
-
-def test_without_a_set_date_the_time_is_now(monkeypatch):
-    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    assert output.history_line("x")[:10] in {time.strftime("%Y-%m-%d", time.gmtime(time.time() + s)) for s in (-9, 0)}
-
-
-@pytest.mark.parametrize("epoch", ["yesterday", "1e9", "9" * 30])
-def test_a_set_date_that_is_none_is_refused(monkeypatch, epoch):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
-    with pytest.raises(SettingError, match="SOURCE_DATE_EPOCH"):
-        output.history_line("x")
 
 
 def test_the_same_run_with_a_set_date_has_the_same_content(tmp_path, monkeypatch):
@@ -416,7 +378,7 @@ def classic(path):
 
 
 def newer(path):
-    output.write(lifting().assign_attrs(atmosbox_format=output.FORMAT + 1), path)
+    output.write(lifting().assign_attrs(atmosbox_format=provenance.FORMAT + 1), path)
 
 
 def strange(path):
@@ -480,10 +442,3 @@ def test_a_file_that_was_read_is_closed_and_can_be_replaced(tmp_path):
     output.write(column(), path, force=True)
     assert found.identical(output.read(path)) is False
     assert not [name for name in os.listdir("/proc/self/fd") if os.path.realpath(f"/proc/self/fd/{name}") == str(path)]
-
-
-@pytest.mark.parametrize("text", [None, "", "{", "[1, 2]", json.dumps("words"), 7])
-def test_parameters_that_are_damaged_are_refused(text):
-    attrs = {} if text is None else {"atmosbox_parameters": text}
-    with pytest.raises(FileError, match="does not say which run it holds"):
-        output.parameters(xr.Dataset(attrs=attrs))

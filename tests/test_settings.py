@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from pydantic import Field, ValidationError
 
 from atmosbox.errors import SettingError, UnitError, UnknownSettingError
-from atmosbox.settings import Parameter, SceneSettings, nearest, setting
+from atmosbox.parameter import Parameter
+from atmosbox.settings import SceneSettings, setting
 
 
 class Settings(SceneSettings):
@@ -120,21 +121,6 @@ def test_settings_cannot_be_changed():
 def test_making_settings_checks_them_as_from_user_does():
     with pytest.raises(SettingError, match="is above the highest allowed"):
         Settings(temperature=1e4)
-
-
-@pytest.mark.parametrize("word", ["on", "ON", "true", "True", "yes", " 1 ", 1, True])
-def test_words_that_turn_a_switch_on(word):
-    assert Settings(rotation=word).rotation is True
-
-
-@pytest.mark.parametrize("word", ["off", "Off", "false", "no", "0", 0, False])
-def test_words_that_turn_a_switch_off(word):
-    assert Settings(rotation=word).rotation is False
-
-
-@pytest.mark.parametrize("word", ["", "maybe", 2, 1.0, None, 10**400])
-def test_other_words_do_not_turn_a_switch(word):
-    assert refusal(rotation=word).endswith("is neither on nor off: give --set rotation=on.")
 
 
 def test_a_value_out_of_range_is_refused_with_range_and_fix():
@@ -312,27 +298,6 @@ def test_importing_the_settings_imports_nothing_heavy():
         "assert not {'pint', 'numpy', 'scipy', 'numba', 'xarray', 'metpy'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[1], check=True, timeout=60)
-
-
-# Names
-
-
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
-        ("temprature", "temperature"),
-        ("Temperature", "temperature"),
-        ("pressure-top", "pressure_top"),
-        ("temp", "temperature"),
-        ("molecule", "molecules"),
-        ("pressure", "pressure_top"),
-        ("x", None),
-        ("", None),
-        ("\0" * 10**5, None),
-    ],
-)
-def test_the_nearest_name_is_the_one_that_was_meant(name, meant):
-    assert nearest(name, ["molecules", "temperature", "pressure_top", "seed"]) == meant
 
 
 # Whatever may come

@@ -1,6 +1,5 @@
 """The declarations of the variables."""
 
-import numpy as np
 import pytest
 
 from atmosbox.variables import VARIABLES, variable
@@ -69,18 +68,3 @@ def test_every_temperature_says_whether_it_is_a_difference(name, metadata):
 def test_an_error_bar_of_nothing_is_refused():
     with pytest.raises(KeyError, match="nothing_se"):
         variable("nothing_se")
-
-
-@pytest.mark.parametrize(
-    ("frames", "molecules", "chunks"),
-    [(1000, 800, (100, 800, 3)), (7, 800, (7, 800, 3)), (1000, 100_000, (100, 3333, 3)), (0, 0, (1, 1, 3))],
-)
-def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_megabytes(frames, molecules, chunks):
-    assert variable("molecule_position").encoding((frames, molecules, 3)) == {
-        "dtype": "f4",
-        "_FillValue": pytest.approx(np.nan, nan_ok=True),
-        "zlib": True,
-        "complevel": 4,
-        "shuffle": True,
-        "chunksizes": chunks,
-    }

@@ -157,6 +157,13 @@ def run(
     seed: Annotated[
         str | None, typer.Option(metavar="N", help="Seed of the random numbers: the same seed, the same run.")
     ] = None,
+    engine: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME[:OPTION=VALUE,...]",
+            help="What lets time pass: exact, or an approximation such as stepped:delta=0.02.  [default: exact]",
+        ),
+    ] = None,
     out: Annotated[
         str | None, typer.Option(metavar="FILE", help="The netCDF file.  [default: SCENE.nc in this folder]")
     ] = None,
@@ -179,7 +186,7 @@ def run(
     from atmosbox.cli import run as running
     from atmosbox.cli.request import Request
 
-    request = Request(scene, values or (), config, source, seed, save_molecules)
+    request = Request(scene, values or (), config, source, seed, save_molecules, engine)
     running.run(
         request,
         words=["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])],

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.cli.table import digits, measurement, number, table, wrapped
+from atmosbox.conversion import from_si
 from atmosbox.quantity import phrase
-from atmosbox.units import from_si
 
 if TYPE_CHECKING:
     from atmosbox.headline import Headline
+    from atmosbox.parameter import Parameter
     from atmosbox.runner import Card, Outcome
-    from atmosbox.settings import Parameter
 
 _VERDICT = {True: "yes", False: "no", None: "-"}
 

@@ -28,6 +28,8 @@ class Request:
         What stood behind ``--seed``.
     save_molecules
         Whether the molecules are saved.
+    engine
+        What stood behind ``--engine``.
     """
 
     scene: str | None
@@ -36,9 +38,10 @@ class Request:
     source: str | None = None
     seed: str | None = None
     save_molecules: bool = False
+    engine: str | None = None
 
-    def gather(self) -> tuple[str, dict[str, Any], bool]:
-        """Return the scene, its settings, and whether molecules are saved.
+    def gather(self) -> tuple[str, dict[str, Any], str, bool]:
+        """Return the scene, its settings, the engine, and whether molecules are saved.
 
         What is given later wins: ``--from``, ``--config``, ``--set``, ``--seed``.
 
@@ -52,12 +55,14 @@ class Request:
         scene = self.scene
         settings: dict[str, Any] = {}
         molecules = self.save_molecules
+        engine = "exact"
         if self.source is not None:
-            run, settings, saved = _earlier(self.source)
+            run, settings, engine, saved = _earlier(self.source)
             molecules = molecules or saved
             scene = _agreed(scene, run, "--from", self.source, FileError)
         if self.config is not None:
-            named, values = load_config(self.config)
+            named, values, asked = load_config(self.config)
+            engine = asked or engine
             scene = _agreed(scene, named, "--config", self.config, ConfigError)
             settings = _over(settings, values)
         settings = _over(settings, parse_set(self.values))
@@ -67,7 +72,7 @@ class Request:
             raise UnknownSceneError(
                 "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
             )
-        return scene, settings, molecules
+        return scene, settings, self.engine or engine, molecules
 
 
 def is_path(scene: str) -> bool:
@@ -75,10 +80,11 @@ def is_path(scene: str) -> bool:
     return scene.endswith(".py") or "/" in scene or os.sep in scene
 
 
-def _earlier(path: str) -> tuple[str, dict[str, Any], bool]:
-    """Return the scene and the settings of the run in a file, and whether it saved molecules."""
+def _earlier(path: str) -> tuple[str, dict[str, Any], str, bool]:
+    """Return scene, settings and engine of the run in a file, and whether it saved molecules."""
     from atmosbox import __version__
-    from atmosbox.output import parameters, read
+    from atmosbox.output import read
+    from atmosbox.provenance import parameters
 
     made = parameters(read(path))
     scene, settings = made.get("scene"), made.get("settings")
@@ -86,7 +92,7 @@ def _earlier(path: str) -> tuple[str, dict[str, Any], bool]:
         raise FileError(f"{path} does not say which run it holds: give a file that atmosbox run has written.")
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
-    return scene, settings, made.get("save_molecules") is True
+    return scene, settings, str(made.get("engine", "exact")), made.get("save_molecules") is True
 
 
 def _agreed(scene: str | None, named: str | None, option: str, path: str, error: type[AtmosboxError]) -> str | None:

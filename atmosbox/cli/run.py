@@ -86,9 +86,9 @@ def run(
     from atmosbox import runner
     from atmosbox.checkpoint import Checkpoint
 
-    scene, settings, molecules = request.gather()
+    scene, settings, engine, molecules = request.gather()
     with _own_prints_to_stderr():
-        prepared = runner.prepare(scene, settings, save_molecules=molecules)
+        prepared = runner.prepare(scene, settings, engine=engine, save_molecules=molecules)
     path = checked_path(out, prepared.scene)
     checkpoint = Checkpoint(path, force=force)
     if dry_run or verbose:
@@ -113,7 +113,7 @@ def run(
     limit = runner.LEDGER_LIMIT
     if as_json:
         made = outcome_json(outcome, scene=prepared.scene, path=path, limit=limit)
-        say_json({**made, "settings": prepared.settings.as_dict()})
+        say_json({**made, "settings": prepared.settings.as_dict(), "engine": str(prepared.engine)})
     else:
         lines = outcome_lines(outcome, path=path, limit=limit, width=width())
         say(str(path) if quiet else "\n".join(lines))
@@ -131,8 +131,10 @@ def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry
     with _own_prints_to_stderr():
         card = runner.card(prepared)
     settings = prepared.settings.as_dict()
+    engine = f"{prepared.engine}: {prepared.engine.engine.summary}"
     if dry_run and as_json:
         facts = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
+        facts["engine"] = str(prepared.engine)
         say_json({**facts, "settings": settings, "facts": dict(card.facts)})
     elif dry_run and quiet:
         say(str(path))
@@ -142,7 +144,7 @@ def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry
             "",
             *setting_lines(settings, card.parameters, width()),
             "",
-            *table(["", ""], card.facts, width()),
+            *table(["", ""], [("engine", engine), *card.facts], width()),
             "",
             f"file: {path}" + (" (not written: this is a dry run)" if dry_run else ""),
         ]

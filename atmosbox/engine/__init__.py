@@ -17,9 +17,14 @@ Read it in this order:
 `reference`  the same, slow and obvious: the oracle of the tests
 `refusal`    the errors
 `inputs`     what is refused
-`packing`    where molecules stand at the start
+`packing`    how much of the space molecules fill
+`overlap`    those that overlap are pushed apart
+`scatter`    where molecules stand at the start, at random
+`lattice`    the same, on a lattice
 `start`      how they move at the start
-`parcelset`  the box that a scene uses
+`parcel`     the box: what it is given, holds and tells
+`parcelset`  the box, advanced exactly
+`marching`   the box, advanced step by step
 `measure`    what is read off it
 `lift`       a piston that follows a pressure
 `_jit`       the one door to numba
@@ -28,7 +33,8 @@ Everything is in reduced units; the engine knows no kelvin, no file and no scena
 """
 
 from atmosbox.engine.lift import FollowPressure
-from atmosbox.engine.parcelset import Driver, ParcelSet, Snapshot
+from atmosbox.engine.parcel import Driver, Parcel, Snapshot
+from atmosbox.engine.parcelset import ParcelSet
 from atmosbox.engine.refusal import PackingError, RefusedError, StalledError
 from atmosbox.engine.schedule import Constant, Ramp, Steps
 from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
@@ -39,6 +45,7 @@ __all__ = [
     "FollowPressure",
     "HeatBath",
     "PackingError",
+    "Parcel",
     "ParcelSet",
     "Periodic",
     "Piston",

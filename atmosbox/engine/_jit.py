@@ -75,7 +75,9 @@ def cache_folder() -> Path | None:
 _CACHE = cache_folder()
 
 
-def kernel(function: Callable[..., Any] | None = None, *, entry: bool = False, allocates: bool = False) -> Any:
+def kernel(
+    function: Callable[..., Any] | None = None, *, entry: bool = False, allocates: bool = False, parallel: bool = False
+) -> Any:
     """Compile a function of the engine.
 
     Parameters
@@ -88,6 +90,9 @@ def kernel(function: Callable[..., Any] | None = None, *, entry: bool = False, a
     allocates
         Whether the function makes arrays. One that does not is compiled without numba's counting of references,
         which would cost a quarter of the time of an event.
+    parallel
+        Whether its `prange` loops share the work among threads. The cache tells two versions of one function apart by
+        what they close over, not by this: give the serial and the parallel version different closure values.
 
     Returns
     -------
@@ -95,10 +100,10 @@ def kernel(function: Callable[..., Any] | None = None, *, entry: bool = False, a
         The compiled function.
     """
     if function is None:
-        return lambda f: kernel(f, entry=entry, allocates=allocates)
+        return lambda f: kernel(f, entry=entry, allocates=allocates, parallel=parallel)
     if not COMPILED:
         return np.errstate(all="ignore")(function)  # as compiled code is silent
-    options = _SHARED | {"_nrt": allocates}
+    options = _SHARED | {"_nrt": allocates, "parallel": parallel}
     if not entry:
         return numba.njit(forceinline=True, **options)(function)
     if _CACHE is None:

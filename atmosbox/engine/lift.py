@@ -2,10 +2,18 @@ r"""A piston that follows a given pressure, as a parcel follows that of the air 
 
 Every interval the ceiling gets the velocity
 
-.. math:: u = h \left[ S / \gamma + \ln(p / p_{env}) / (20 \tau) \right], \quad S = -d \ln p_{env} / dt,
+.. math:: u = \frac{h - \sigma}{\Gamma} \left[ S + \frac{\ln(p / p_{env})}{20 \tau} \right],
+          \quad S = -d \ln p_{env} / dt,
 
 the first term being what an adiabat asks for, the second what closes the gap that is left. Between, it
-moves evenly.
+moves evenly. Centres of molecules reach only the height h - sigma, and the open volume V is the one that
+counts. At constant entropy spheres cool by :math:`d \ln T = -(2/f) Z\, d \ln V`, so that their pressure
+p = n kT Z, with Z = 1 + b n, falls by
+
+.. math:: \Gamma = -\frac{d \ln p}{d \ln V} = 1 + \frac{2}{f} Z + \frac{Z - 1}{Z},
+
+which is the adiabatic index 1 + 2/f of molecules without size. Were it put in place of Gamma, the second
+term would have to make up for the rest, and the parcel would stay 20 tau S (1 - Gamma / gamma) behind.
 """
 
 import math
@@ -13,7 +21,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engine.parcel import Parcel
 from atmosbox.engine.refusal import RefusedError
 
 __all__ = ["FollowPressure"]
@@ -86,29 +94,34 @@ class FollowPressure:
         """Return the logarithm of the pressure to follow at a time [time]."""
         return float(np.interp(time, self._time, self._log))
 
-    def pressure(self, parcel: ParcelSet) -> float:
+    def pressure(self, parcel: Parcel) -> float:
         """Return the pressure of the parcel [energy/length^3]."""
         kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
         density = parcel.open_density
         return density * kT * (1.0 + self._excess * density)
 
-    def _average_virial(self, parcel: ParcelSet) -> None:
+    def _average_virial(self, parcel: Parcel) -> None:
         """Average what contacts add to the pressure, (Z - 1) / n, which hardly changes while n falls."""
         virial = float(parcel.virial.sum())
         kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
         if parcel.time > 0.0 and kT > 0.0:
             rate = (virial - self._virial) / self.interval
-            excess = rate / (3.0 * parcel.number * kT * parcel.open_density)
+            dimensions = 2.0 if parcel.planar else 3.0
+            excess = rate / (dimensions * parcel.number * kT * parcel.open_density)
             self._excess += self.interval / self._memory * (excess - self._excess)
         self._virial = virial
 
-    def velocity(self, parcel: ParcelSet) -> float:
+    def stiffness(self, parcel: Parcel) -> float:
+        """Return by how much ln p falls as the logarithm of the open volume rises, without heat [1]."""
+        factor = 1.0 + self._excess * parcel.open_density
+        return 1.0 + 2.0 / parcel.degrees_of_freedom * factor + (factor - 1.0) / factor
+
+    def velocity(self, parcel: Parcel) -> float:
         """Return the velocity [length/time] of the ceiling for the next interval."""
-        freedom = parcel.degrees_of_freedom
         self._average_virial(parcel)
-        pressure = self.pressure(parcel)
         now = parcel.time
         wanted = self.log_pressure(now)
-        fall = (wanted - self.log_pressure(now + self.interval)) / self.interval
-        gamma = (freedom + 2.0) / freedom
-        return parcel.ceiling * (fall / gamma + (math.log(pressure) - wanted) / self._relaxation)
+        fall = wanted - self.log_pressure(now + self.interval)
+        fall += self.interval / self._relaxation * (math.log(self.pressure(parcel)) - wanted)
+        open_height = parcel.ceiling - (float(parcel.diameter.mean()) if parcel.number else 0.0)
+        return open_height * math.expm1(fall / self.stiffness(parcel)) / self.interval

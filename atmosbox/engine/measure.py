@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.parcelset import ParcelSet, Snapshot
+from atmosbox.engine.parcel import Parcel, Snapshot
 
 __all__ = ["Layers", "layer_sample", "mean_free_path", "momentum", "speed_counts", "temperature"]
 
@@ -26,7 +26,7 @@ class Layers(NamedTuple):
     freedom: Array
 
 
-def layer_sample(parcel: ParcelSet, snapshot: Snapshot, layers: int) -> Layers:
+def layer_sample(parcel: Parcel, snapshot: Snapshot, layers: int) -> Layers:
     r"""Count molecules, and the energy of their disordered motion, by layers of equal thickness.
 
     The temperature of a layer is ``2 * energy / freedom``, because
@@ -48,6 +48,7 @@ def layer_sample(parcel: ParcelSet, snapshot: Snapshot, layers: int) -> Layers:
     --------
     Two molecules that move as one have no temperature:
 
+    >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [1, 0, 0]], length=(4, 4, 4))
     >>> layer_sample(pair, pair.snapshot(), 2).energy.tolist()
     [0.0, 0.0]
@@ -66,13 +67,14 @@ def layer_sample(parcel: ParcelSet, snapshot: Snapshot, layers: int) -> Layers:
     return Layers(number, energy, dimensions * np.maximum(number - 1.0, 0.0))
 
 
-def temperature(parcel: ParcelSet, snapshot: Snapshot) -> float:
+def temperature(parcel: Parcel, snapshot: Snapshot) -> float:
     """Return kT of the motion of all molecules [energy], NaN for none.
 
     The box is at rest, so every component of every velocity counts, that of the mean motion too.
 
     Examples
     --------
+    >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [-1, 1, 1]], length=(4, 4, 4))
     >>> round(temperature(pair, pair.snapshot()), 6)
     0.666667
@@ -88,6 +90,7 @@ def speed_counts(snapshot: Snapshot, edges: Array) -> Array:
 
     Examples
     --------
+    >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 4))
     >>> speed_counts(pair.snapshot(), np.array([0.0, 1.5, 3.0]))
     array([1., 1.])
@@ -96,11 +99,12 @@ def speed_counts(snapshot: Snapshot, edges: Array) -> Array:
     return np.histogram(speed, edges)[0].astype(np.float64)
 
 
-def momentum(parcel: ParcelSet, snapshot: Snapshot) -> Array:
+def momentum(parcel: Parcel, snapshot: Snapshot) -> Array:
     """Return the total momentum along the three axes [momentum].
 
     Examples
     --------
+    >>> from atmosbox.engine import ParcelSet
     >>> pair = ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 4))
     >>> momentum(pair, pair.snapshot())
     array([1., 2., 0.])

@@ -1,4 +1,4 @@
-"""How molecules move at the start: velocities, and energies of rotation; places are from `packing`."""
+"""How molecules move at the start: velocities, and energies of rotation; places are from `scatter` and `lattice`."""
 
 import math
 from collections.abc import Sequence
@@ -6,8 +6,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.packing import lattice_positions, packing_fraction, random_positions
+from atmosbox.engine.lattice import lattice_positions
+from atmosbox.engine.packing import packing_fraction
 from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine.scatter import random_positions
 
 __all__ = [
     "equal_speeds",

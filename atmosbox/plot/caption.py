@@ -130,6 +130,8 @@ def number(value: float, error: float = math.nan, *, signed: bool = False) -> st
         decimals = 2 - math.floor(math.log10(abs(value)))
     decimals = max(0, decimals)
     text = f"{value:{'+' if signed else ''}.{decimals}f}".replace("-", "−")
+    if not text.strip("+−0."):
+        text = text.strip("+−")
     if known:
         text += f" ± {error:.{decimals}f}"
     if power:
@@ -166,7 +168,7 @@ def footer(dataset: xr.Dataset) -> str:
     parts = [
         f"atmosbox {parameters.get('version', dataset.attrs.get('product_version', ''))}".rstrip(),
         str(parameters.get("scene", "")),
-        "" if count is None else f"{_grouped(count)} molecules",
+        "" if count is None else f"{_grouped(count)} {_particle(dataset)}{'' if count == 1 else 's'}",
         "" if seed is None else f"seed {seed}",
         "" if engine is None else f"{engine} engine",
         "" if status == "complete" else f"{status} run",
@@ -189,6 +191,11 @@ def _stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
     if not isinstance(found, kind):
         raise FileError(f"The attribute {name} of the file cannot be read: it was not written by atmosbox.")
     return found
+
+
+def _particle(dataset: xr.Dataset) -> str:
+    """Return what a flat scene calls its molecules, and what the others do."""
+    return "disc" if "disc_position" in dataset.variables else "molecule"
 
 
 def _grouped(count: float) -> str:

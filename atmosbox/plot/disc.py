@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import Normalize, to_rgb
+from matplotlib.colors import LogNorm, Normalize, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
@@ -16,12 +16,15 @@ from numpy.typing import NDArray
 from atmosbox.panels import Panel
 from atmosbox.plot.curve import read
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, Theme
+from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.unit import convert, spelled
 
 if TYPE_CHECKING:
     import xarray as xr
 
-# A trail goes so many frames back. It is left out where molecules cross much of the box between two frames.
+# The colours are logarithmic where the fastest discs are so many times as fast as the median.
+_WIDE_SPREAD = 10.0
+# A trail goes so many frames back. It is left out where a molecule crosses much of the box between two frames.
 _TRAIL_FRAMES = 12
 _MOST_SEGMENTS = 6000
 _LONGEST_STEP = 0.1
@@ -86,7 +89,7 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
 
     _draw_trails(axes, places, float(np.min(box[1] - box[0])), theme)
     speed = np.linalg.norm(velocity.values, axis=2)
-    top = MaxNLocator(4).tick_values(0.0, float(np.nanpercentile(speed, 97)))[-1]
+    norm = _colour_scale(speed)
     discs = EllipseCollection(
         sizes,
         sizes,
@@ -95,7 +98,7 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
         offsets=places[-1],
         offset_transform=axes.transData,
         cmap=FIELD_COLOURS,
-        norm=Normalize(0.0, float(top)),
+        norm=norm,
         edgecolors=DARK,
         linewidths=np.where(heavy, theme.line, theme.line / 3),
         zorder=3.0,
@@ -107,9 +110,13 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
     axes.set_xlim(box[0, 0], box[1, 0])
     axes.set_ylim(box[0, 1], box[1, 1])
     axes.spines[:].set(visible=True, linewidth=theme.line * 1.2, color=DARK)
-    bar = axes.figure.colorbar(discs, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="max")
+    log = isinstance(norm, LogNorm)
+    bar = axes.figure.colorbar(discs, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="both" if log else "max")
     bar.set_label(f"speed ({spelled(str(velocity.attrs.get('units', 'm s-1')))})")
-    bar.locator = MaxNLocator(4)
+    if log:
+        put_ticks(bar.ax.yaxis, log=True, length=10.0 * theme.text, size=theme.text)
+    else:
+        bar.locator = MaxNLocator(4)
     return _entries(heavy, mass, theme)
 
 
@@ -166,12 +173,25 @@ def _draw_trails(axes: Axes, places: NDArray[np.float64], box: float, theme: The
     if frames < 1:
         return
     path = places[-frames - 1 :]
-    if np.nanmedian(np.linalg.norm(np.diff(path, axis=0), axis=2)) > _LONGEST_STEP * box:
+    steps = np.median(np.linalg.norm(np.diff(path, axis=0), axis=2), axis=0)
+    path = path[:, steps <= _LONGEST_STEP * box]
+    if not path.size:
         return
     segments = np.stack((path[:-1], path[1:]), axis=2).reshape(-1, 2, 2)
-    alpha = np.repeat(np.linspace(0.1, 0.8, frames), places.shape[1])
+    alpha = np.repeat(np.linspace(0.1, 0.8, frames), path.shape[1])
     colours = np.column_stack((np.tile(to_rgb(FAINT), (alpha.size, 1)), alpha))
     axes.add_collection(LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0))
+
+
+def _colour_scale(speed: NDArray[np.float64]) -> Normalize:
+    """Return the scale of the colours: from zero, or logarithmic where most discs are far slower than the fastest."""
+    moving = speed[speed > 0.0]
+    if not moving.size:
+        return Normalize(0.0, 1.0)
+    low, middle, high = (float(value) for value in np.percentile(moving, (3, 50, 97)))
+    if high > _WIDE_SPREAD * middle:
+        return LogNorm(low, high)
+    return Normalize(0.0, float(MaxNLocator(4).tick_values(0.0, high)[-1]))
 
 
 def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -180,6 +200,11 @@ def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
     if mass.size and mass.min() < mass.max():
         heavy[np.argsort(mass, kind="stable")[mass.size // 2 :]] = True
     return heavy
+
+
+def _ratio(value: float) -> str:
+    """Return a ratio in two digits and without exponent."""
+    return f"{float(f'{value:.2g}'):,.15g}".replace(",", "\u2009" if value >= 1e4 else "")
 
 
 def _entries(heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
@@ -196,5 +221,5 @@ def _entries(heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme) 
 
     return [
         ((disc(1.4, theme.line / 3),), "light half"),
-        ((disc(2.2, theme.line),), f"heavy half: {ratio:.2g} × the mass"),
+        ((disc(2.2, theme.line),), f"heavy half: {_ratio(ratio)} × the mass"),
     ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from atmosbox.panels import Line, Panel
 from atmosbox.plot.curve import Curve, curve, edges
@@ -17,7 +18,8 @@ from atmosbox.plot.theme import (
     DATA_MARKERS,
     ENVIRONMENT_COLOURS,
     ENVIRONMENT_DASHES,
-    FAINT,
+    REFERENCE_COLOURS,
+    REFERENCE_WIDTH,
     THEORY_COLOURS,
     THEORY_DASHES,
     Theme,
@@ -30,6 +32,11 @@ Entry = tuple[tuple[Artist, ...], str]
 
 # Up to so many values, a measured curve is drawn as points with bars; beyond, as a line with a band.
 _MOST_POINTS = 40
+# A curve that crosses its own range more often than this becomes thinner, lest its scatter be a blot; down to
+# this share of its width.
+_MOST_CROSSINGS, _THINNEST = 25.0, 0.4
+# Where the ground is missing by so little, the axis of pressure still begins at 1000 hPa.
+_NEAR_THE_GROUND = 930.0
 _ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
 
 
@@ -92,19 +99,22 @@ def draw(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[En
 def _line(axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int) -> tuple[Artist, ...]:
     x, y, error = values
     style = _style(line.role, theme, index) | {"zorder": _ORDER[line.role]}
+    along_x = panel.kind == "profile"
     measured = line.role == "data"
     if x.size == 1 or (measured and x.size <= _MOST_POINTS):
-        if panel.kind != "profile" and measured:
+        if measured and not along_x:
             axes.plot(x, y, alpha=0.4, **style)
         return _points(axes, panel, values, style, index)
     if measured and sum(other.role == "data" for other in panel.lines) > 1:
         every = max(1, x.size // 8)
         style |= {"marker": DATA_MARKERS[index % 4], "markevery": (every // 2 + index * every // 4, every)}
+    if measured:
+        style["linewidth"] *= min(1.0, max(_THINNEST, _MOST_CROSSINGS / _crossings(x if along_x else y)))
     artists: list[Artist] = []
     if error is not None:
         alpha = 0.3 if measured else 0.15
         fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER["band"]}
-        if panel.kind == "profile":
+        if along_x:
             artists.append(axes.fill_betweenx(y, x - error, x + error, **fill))
         else:
             artists.append(axes.fill_between(x, y - error, y + error, **fill))
@@ -113,21 +123,65 @@ def _line(axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, ind
 
 
 def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
-    """Draw values with bars of one standard error."""
+    """Draw values with bars of one standard error, and hollow where the error is not known."""
     along_x = panel.kind == "profile"
+    marker = DATA_MARKERS[index % len(DATA_MARKERS)]
     bars = axes.errorbar(
         values.x,
         values.y,
         xerr=values.error if along_x else None,
         yerr=None if along_x else values.error,
         linestyle="none",
-        marker=DATA_MARKERS[index % len(DATA_MARKERS)],
+        marker=marker,
         capsize=0.0,
         elinewidth=style["linewidth"],
         color=style["color"],
         zorder=style["zorder"],
     )
+    unsure = hollow_points(values)
+    if unsure.any():
+        axes.plot(
+            values.x[unsure],
+            values.y[unsure],
+            linestyle="none",
+            marker=marker,
+            color=style["color"],
+            markerfacecolor="white",
+            zorder=style["zorder"],
+        )
     return (cast(Artist, bars),)
+
+
+def hollow_points(values: Curve) -> NDArray[np.bool_]:
+    """Tell which points have no error although the others have: a layer that was seldom visited, for instance.
+
+    Parameters
+    ----------
+    values : Curve
+        A curve.
+
+    Returns
+    -------
+    ndarray of bool
+        True at the points that are known and whose error is not; nowhere if the curve is no points but a line.
+
+    Examples
+    --------
+    >>> one = np.ones(3)
+    >>> hollow_points(Curve(one, one, np.array([0.1, np.nan, 0.2]))).tolist()
+    [False, True, False]
+    """
+    known = np.isfinite(values.x) & np.isfinite(values.y)
+    if values.error is None or values.x.size > _MOST_POINTS:
+        return np.zeros_like(known)
+    return known & ~np.isfinite(values.error)
+
+
+def _crossings(values: NDArray[np.float64]) -> float:
+    """Return how often a curve goes over its whole range, up or down; at least once."""
+    seen = values[np.isfinite(values)]
+    extent = np.ptp(seen) if seen.size else 0.0
+    return max(1.0, float(np.abs(np.diff(seen)).sum() / extent)) if extent else 1.0
 
 
 def _steps(axes: Axes, panel: Panel, line: Line, dataset: xr.Dataset, theme: Theme, index: int) -> tuple[Artist, ...]:
@@ -154,7 +208,9 @@ def _style(role: str, theme: Theme, index: int) -> dict[str, Any]:
         colour = ENVIRONMENT_COLOURS[index % len(ENVIRONMENT_COLOURS)]
         return {"color": colour, "linestyle": (0.0, ENVIRONMENT_DASHES), "linewidth": theme.line}
     if role == "reference":
-        return {"color": FAINT, "linestyle": "solid", "linewidth": theme.line / 2}
+        colour = REFERENCE_COLOURS[index % len(REFERENCE_COLOURS)]
+        width = theme.line * REFERENCE_WIDTH
+        return {"color": colour, "linestyle": "solid", "linewidth": width, "solid_capstyle": "butt"}
     return {"color": DATA_COLOURS[index % len(DATA_COLOURS)], "linestyle": "solid", "linewidth": theme.line}
 
 
@@ -171,5 +227,9 @@ def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
         low, high = axes.dataLim.intervaly
         if np.isfinite([low, high]).all() and 0.0 <= low < 0.2 * high:
             axes.set_ylim(bottom=0.0)
+    elif panel.kind == "profile" and panel.y_unit == "hPa":
+        lowest = float(axes.dataLim.intervaly[1])
+        if _NEAR_THE_GROUND < lowest < 1000.0:
+            axes.set_ylim(top=1010.0)
     axes.xaxis.set_inverted(panel.x_invert)
     axes.yaxis.set_inverted(panel.y_invert)

@@ -11,9 +11,9 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from atmosbox.errors import FileError
 from atmosbox.panels import Panel, from_json
 from atmosbox.plot.caption import footer, headlines
-from atmosbox.plot.curve import read, unit_of
+from atmosbox.plot.curve import curve, read, unit_of
 from atmosbox.plot.disc import axis_names
-from atmosbox.plot.draw import draw
+from atmosbox.plot.draw import draw, hollow_points
 from atmosbox.plot.plate import Pen, Plate
 from atmosbox.plot.theme import FAINT, Theme, find, style
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _TALL = ("profile", "discs")
 _WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6}
 _TEXT_LINES = 6  # over the axes, for which a page has room; it grows for more
-_ROUNDS = 3  # of placing and measuring, until the texts and the axes agree about the room they have
+_ROUNDS = 6  # at most, of placing and measuring, until the texts and the axes agree about the room they have
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
@@ -68,18 +68,20 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     panels = _panels(dataset)
     with style(look):
         space = look.text / 144  # inch
-        engine = ConstrainedLayoutEngine(w_pad=space, h_pad=space, wspace=0.02, hspace=0.03)
+        engine = ConstrainedLayoutEngine(w_pad=space, h_pad=space / 1.5, wspace=0.02, hspace=0.03)
         drawing = Figure(figsize=look.wide if len(panels) > 1 else look.narrow, layout=engine)
         FigureCanvasAgg(drawing)
         pen, height = Pen(drawing), drawing.get_figheight()
         plates = _plates(drawing, dataset, panels, look)
         _frame(pen, dataset, panels, look)
+        places = _place(drawing)
         for _ in range(_ROUNDS):
-            _place(drawing)
             texts = _write(pen, plates)
             if look.grows:
                 drawing.set_figheight(height + max(0.0, texts - _TEXT_LINES * look.text) / 72)
-        _place(drawing)
+            before, places = places, _place(drawing)
+            if places == before:
+                break
         drawing.set_layout_engine("none")
     return drawing
 
@@ -100,6 +102,7 @@ def _plates(drawing: Figure, dataset: xr.Dataset, panels: tuple[Panel, ...], loo
             x, y = _labels(dataset, panels[index])
             labels = (("", x[1]) if shared and not row else x, y)
             plates.append(Plate(axes, panels[index], look, row, place, entries, sentences[index], labels))
+        drawing.align_ylabels([plate.axes for plate in plates if plate.column == place])
     return plates
 
 
@@ -108,7 +111,14 @@ def _frame(pen: Pen, dataset: xr.Dataset, panels: tuple[Panel, ...], look: Theme
     width = 72 * pen.figure.get_figwidth()
     left = look.text / 2 / width
     has_errors = any(line.error for panel in panels for line in panel.lines)
+    has_hollow = any(
+        hollow_points(curve(dataset, panel, line)).any()
+        for panel in panels
+        for line in panel.lines
+        if line.role == "data" and panel.kind != "histogram"
+    )
     small = footer(dataset) + (" · bars and bands: ± 1 standard error" if has_errors else "")
+    small += ", hollow: not known" if has_hollow else ""
     small = pen.wrap(small, width - look.text, look.small)
     pen.figure.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
     if look.heading and dataset.attrs.get("title"):
@@ -120,14 +130,20 @@ def _frame(pen: Pen, dataset: xr.Dataset, panels: tuple[Panel, ...], look: Theme
 def _write(pen: Pen, plates: list[Plate]) -> float:
     """Write around the axes, and return the height of all texts over them [pt].
 
-    The texts of a column begin together, and the titles of a row stand equally high.
+    The texts of a column begin together, the titles of a row stand equally high, and its legends of equally many
+    entries have equally many columns.
     """
     inks = [plate.label(pen) for plate in plates]
     edges = {
         column: min(ink for ink, plate in zip(inks, plates, strict=True) if plate.column == column)
         for column in {plate.column for plate in plates}
     }
-    heights = [plate.write(pen, edges[plate.column]) for plate in plates]
+    for plate in plates:
+        plate.fit(pen, edges[plate.column])
+    for plate in plates:
+        alike = [o for o in plates if (o.row, len(o.entries)) == (plate.row, len(plate.entries))]
+        plate.columns = min(other.columns for other in alike)
+    heights = [plate.write(pen) for plate in plates]
     tops = {
         row: max(height for height, plate in zip(heights, plates, strict=True) if plate.row == row)
         for row in {plate.row for plate in plates}
@@ -137,13 +153,14 @@ def _write(pen: Pen, plates: list[Plate]) -> float:
     return sum(tops.values())
 
 
-def _place(drawing: Figure) -> None:
-    """Give the axes the room that the texts leave."""
+def _place(drawing: Figure) -> list[tuple[int, ...]]:
+    """Give the axes the room that the texts leave, and return where they stand [tenths of a pixel]."""
     engine = drawing.get_layout_engine()
     assert engine is not None
     engine.execute(drawing)
     for axes in drawing.axes:
         axes.apply_aspect()
+    return [tuple(round(10 * edge) for edge in axes.get_window_extent().extents) for axes in drawing.axes]
 
 
 def _panels(dataset: xr.Dataset) -> tuple[Panel, ...]:

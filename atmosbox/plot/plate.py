@@ -17,6 +17,8 @@ from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.unit import spelled
 
 _FIXED = "\u00a0"  # a space that no line breaks at
+# The lines of a legend, their distance from the words and that between columns, in sizes of the type.
+_HANDLE, _HANDLE_GAP, _BETWEEN = 2.3, 0.5, 1.1
 
 
 @dataclass
@@ -96,6 +98,7 @@ class Plate:
     labels: tuple[tuple[str, str], tuple[str, str]]
     left: float = 0.0  # where the text begins, relative to the axes [pt]
     room: float = 0.0  # how wide the text may be [pt]
+    columns: int = 0  # of the legend; 0 before it is first written
     written: list[Artist] = field(default_factory=list)
 
     def label(self, pen: Pen) -> float:
@@ -114,18 +117,24 @@ class Plate:
             axes.tick_params(axis="x", labelbottom=False)
         log = panel.y_scale == "log"
         power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
-        axes.set_ylabel(pen.wrap(f"{y_label} ({spelled(y_unit, power)})", height, size))
+        # The label may reach over both ends of the axis into the gap that is there anyhow.
+        axes.set_ylabel(pen.wrap(f"{y_label} ({spelled(y_unit, power)})", height + 0.8 * size, size))
         outer = axes.get_tightbbox() or axes.get_window_extent()
         return float(outer.x0)
 
-    def write(self, pen: Pen, edge: float) -> float:
-        """Write the legend, and return how much room it and the sentences need above the axes [pt].
+    def fit(self, pen: Pen, edge: float) -> None:
+        """Let the texts begin at ``edge`` [pixel], end where the axes end, and fit the legend between.
 
-        The texts begin at ``edge`` [pixel] and end where the axes end.
+        A legend that once had to become narrower stays so: else it and the axes would never agree.
         """
         frame = self.axes.get_window_extent()
         self.left = (edge - frame.x0) * 72 / pen.figure.dpi
         self.room = (frame.x1 - edge) * 72 / pen.figure.dpi
+        columns = self._fitting_columns(pen)
+        self.columns = min(columns, self.columns or columns)
+
+    def write(self, pen: Pen) -> float:
+        """Write the legend, and return how much room it and the sentences need above the axes [pt]."""
         gap = height = 0.45 * self.theme.text
         if len(self.entries) > 1 or any(line.role != "data" for line in self.panel.lines):
             height += pen.height(self._write_legend(pen, gap)) + gap
@@ -153,30 +162,37 @@ class Plate:
         frame = self.axes.get_window_extent()
         return frame.width * 72 / pen.figure.dpi, frame.height * 72 / pen.figure.dpi
 
-    def _write_legend(self, pen: Pen, gap: float) -> Artist:
-        """Put the legend on the upper edge of the axes, in as many columns as there is room for."""
+    def _legend_labels(self, pen: Pen) -> list[str]:
         size = self.theme.text
-        handle, between = 3.0 * size, 1.5 * size
-        width, height = self._size(pen)
-        labels = [pen.wrap(label, self.room - handle, size) for _, label in self.entries]
+        return [pen.wrap(label, self.room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in self.entries]
+
+    def _fitting_columns(self, pen: Pen) -> int:
+        """Return in how many columns there is room for the legend."""
+        size = self.theme.text
+        labels = self._legend_labels(pen)
         lengths = [max(pen.width(line, size) for line in label.split("\n")) for label in labels]
-        for columns in range(len(labels), 0, -1):
+        for columns in range(len(labels), 1, -1):
             rows = -(-len(labels) // columns)
             parts = [lengths[start : start + rows] for start in range(0, len(labels), rows)]
-            taken = sum(handle + max(part) + between for part in parts) - between
+            taken = sum((_HANDLE + _HANDLE_GAP) * size + max(part) for part in parts) + (columns - 1) * _BETWEEN * size
             if len(parts) == columns and taken <= self.room:
-                break
+                return columns
+        return 1
+
+    def _write_legend(self, pen: Pen, gap: float) -> Artist:
+        """Put the legend on the upper edge of the axes."""
+        width, height = self._size(pen)
         legend = self.axes.legend(
             [artists if len(artists) > 1 else artists[0] for artists, _ in self.entries],
-            labels,
+            self._legend_labels(pen),
             loc="lower left",
             bbox_to_anchor=(self.left / width, 1 + gap / height),
-            ncols=columns,
+            ncols=self.columns,
             borderpad=0.0,
             borderaxespad=0.0,
-            handlelength=2.4,
-            handletextpad=0.6,
-            columnspacing=1.5,
+            handlelength=_HANDLE,
+            handletextpad=_HANDLE_GAP,
+            columnspacing=_BETWEEN,
             labelspacing=0.25,
         )
         self.written.append(legend)

@@ -17,12 +17,15 @@ DARK = "#1a1a1a"
 FAINT = "#595959"
 
 # Each curve differs from its neighbours by colour and by a second cue, so that a grey print can be read.
-DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _ORANGE)
+DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _SKY)
 DATA_MARKERS = ("o", "s", "^", "D")
 THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
 THEORY_DASHES = ((5.0, 2.0), (1.2, 1.2), (9.0, 2.0, 2.0, 2.0, 2.0, 2.0))
-ENVIRONMENT_COLOURS = (_GREEN, _ORANGE)
+ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)
 ENVIRONMENT_DASHES = (7.0, 2.0, 1.5, 2.0)
+# What is compared with lies broad and pale under the rest: where curves coincide, each is still seen.
+REFERENCE_COLOURS = (_ORANGE, _SKY)
+REFERENCE_WIDTH = 2.6
 FIELD_COLOURS = "viridis"
 
 
@@ -147,6 +150,10 @@ def style(theme: Theme) -> AbstractContextManager[None]:
         "lines.linewidth": theme.line,
         "lines.markersize": theme.marker,
         "lines.scale_dashes": True,
+        "xtick.minor.size": 0.15 * theme.text,
+        "ytick.minor.size": 0.15 * theme.text,
+        "xtick.major.size": 0.35 * theme.text,
+        "ytick.major.size": 0.35 * theme.text,
         "grid.color": "#d9d9d9",
         "grid.linewidth": theme.line / 3,
         "axes.axisbelow": True,

@@ -6,14 +6,18 @@ import math
 from itertools import pairwise
 
 from matplotlib.axis import Axis, XAxis
-from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter, MaxNLocator, NullLocator
+from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
 
 from atmosbox.plot.unit import power_of_ten
 
 # The levels that a meteorologist looks for, the most telling first.
-_PRESSURE_LEVELS = (1000.0, 500.0, 300.0, 700.0, 850.0, 400.0, 200.0, 100.0, 250.0, 600.0, 150.0)
+_PRESSURE_LEVELS = (1000.0, 500.0, 300.0, 700.0, 850.0, 400.0, 200.0, 100.0, 50.0, 20.0, 10.0, 250.0, 600.0, 150.0)
 # The digits that are written between two powers of ten, each group wholly or not at all.
-_DIGITS = ((1.0,), (2.0, 5.0), (3.0, 7.0), (1.5, 4.0, 6.0, 8.0))
+_DIGITS = ((1.0,), (2.0, 5.0), (3.0,), (7.0,), (1.5, 4.0, 6.0, 8.0))
+# On a longer logarithmic axis the small ticks between the powers of ten would run together.
+_MOST_DECADES = 6.0
+# Numbers beside each other: the width of a digit and the gap between two numbers, in sizes of the type.
+_DIGIT_WIDTH, _GAP = 0.64, 0.7
 
 
 def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bool = False) -> int:
@@ -45,13 +49,19 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
     -15
     """
     low, high = sorted(axis.get_view_interval())
-    room = size * (3.6 if isinstance(axis, XAxis) else 1.9)
     if log:
-        return _put_log_ticks(axis, low, high, length, room, pressure=pressure)
+        return _put_log_ticks(axis, low, high, length, size, pressure=pressure)
     power = _power(low, high)
-    axis.set_major_locator(MaxNLocator(nbins=max(2, min(7, int(length / room))), steps=[1, 2, 2.5, 5, 10]))
     if power:
         axis.set_major_formatter(FuncFormatter(lambda value, _: _plain(value / 10.0**power)))
+    upright = not isinstance(axis, XAxis)
+    for intervals in range(max(2, min(7, int(length / (1.9 * size)))), 1, -1):
+        locator = MaxNLocator(nbins=intervals, steps=[1, 2, 2.5, 5, 10])
+        axis.set_major_locator(locator)
+        ticks = [float(value) for value in locator.tick_values(low, high) if low <= value <= high]
+        places = [(value - low) / (high - low) * length for value in ticks]
+        if upright or _fit(places, axis.get_major_formatter().format_ticks(ticks), size):
+            break
     return power
 
 
@@ -80,7 +90,7 @@ def log_ticks(low: float, high: float, room: float, *, pressure: bool = False) -
     [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
     """
     least = room * math.log10(high / low)
-    if pressure and 90.0 < low < high < 1100.0:
+    if pressure and 9.0 < low < high < 1100.0:
         classes = [[level] for level in _PRESSURE_LEVELS]
     elif high / low < 3.0:
         classes = []
@@ -96,18 +106,71 @@ def log_ticks(low: float, high: float, room: float, *, pressure: bool = False) -
         if _closest(kept + fitting) >= least:
             kept += fitting
     if len(kept) < 2:
-        values = MaxNLocator(nbins=max(2, int(0.6 / room)), steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        values = MaxNLocator(nbins=max(2, int(0.8 / room)), steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         kept = [float(value) for value in values if low <= value <= high]
     return sorted(kept)
 
 
-def _put_log_ticks(axis: Axis, low: float, high: float, length: float, room: float, *, pressure: bool) -> int:
-    ticks = log_ticks(low, high, room / length, pressure=pressure)
-    power = 0 if _is_plain(low, high) or high / low >= 1e3 else math.floor(math.log10(low))
+def small_ticks(low: float, high: float) -> list[float]:
+    """Return the ticks without a number that show that an axis is logarithmic.
+
+    Parameters
+    ----------
+    low, high : float
+        Its ends, both above zero.
+
+    Returns
+    -------
+    list of float
+        One to nine times the powers of ten; none where they would be one or none, or too many.
+
+    Examples
+    --------
+    >>> small_ticks(70.0, 300.0)
+    [70.0, 80.0, 90.0, 100.0, 200.0, 300.0]
+    >>> small_ticks(1.0, 1e20)
+    []
+    """
+    if math.log10(high / low) > _MOST_DECADES:
+        return []
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    every = (digit * 10.0**decade for decade in decades for digit in range(1, 10))
+    ticks = [value for value in every if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
+    return ticks if len(ticks) > 1 else []
+
+
+def _put_log_ticks(axis: Axis, low: float, high: float, length: float, size: float, *, pressure: bool) -> int:
+    wide = not _is_plain(low, high) and high / low >= 1e3
+    power = 0 if wide or _is_plain(low, high) else math.floor(math.log10(low))
+    room = 1.9 * size
+    while True:
+        ticks = log_ticks(low, high, room / length, pressure=pressure)
+        numbers = [_written(tick, power, wide=wide) for tick in ticks]
+        places = [math.log10(tick / low) / math.log10(high / low) * length for tick in ticks]
+        if not isinstance(axis, XAxis) or room > length / 2 or _fit(places, numbers, size):
+            break
+        room += 0.2 * size
     axis.set_major_locator(FixedLocator(ticks))
-    axis.set_major_formatter(FixedFormatter([_plain(tick / 10.0**power) for tick in ticks]))
-    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FixedFormatter(numbers))
+    axis.set_minor_locator(FixedLocator(small_ticks(low, high)))
+    axis.set_minor_formatter(NullFormatter())
     return power
+
+
+def _written(tick: float, power: int, *, wide: bool) -> str:
+    """Return the number at a tick; on an axis of many decades all are powers of ten, so that none looks odd."""
+    exponent = math.log10(tick)
+    if wide and abs(exponent - round(exponent)) < 1e-9:
+        return power_of_ten(round(exponent))
+    return _plain(tick / 10.0**power)
+
+
+def _fit(places: list[float], numbers: list[str], size: float) -> bool:
+    """Tell whether numbers that stand beside each other at these places [pt] keep apart."""
+    return all(
+        right - left >= size * (_DIGIT_WIDTH * (len(first) + len(second)) / 2 + _GAP)
+        for (left, first), (right, second) in pairwise(zip(places, numbers, strict=True))
+    )
 
 
 def _closest(values: list[float]) -> float:

@@ -11,7 +11,7 @@ from jobs.registry import DOCS, ROOT, Findings, job
 
 from atmosbox import diagnostics, runner, scenarios
 from atmosbox.cli.scene import summaries
-from atmosbox.output import global_attributes
+from atmosbox.provenance import global_attributes
 
 
 @job("scenes", quick=True)

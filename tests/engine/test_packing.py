@@ -1,0 +1,55 @@
+"""How much of the space molecules fill, and what geometry alone forbids."""
+
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox.engine.packing import packing_fraction, refuse_impossible
+from atmosbox.engine.refusal import PackingError, RefusedError
+
+OPEN = (False, False, False)
+
+
+def test_the_fraction_is_the_volume_of_all_spheres_over_that_of_the_box():
+    assert packing_fraction((2.0, 3.0, 4.0), [1.0, 2.0]) == pytest.approx(math.pi / 6.0 * 9.0 / 24.0, rel=1e-15)
+
+
+def test_the_fraction_of_discs_is_that_of_areas_whatever_the_depth():
+    for depth in (1.0, 7.0):
+        assert packing_fraction((4.0, depth, 5.0), [2.0], planar=True) == pytest.approx(math.pi / 20.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(("planar", "densest"), [(False, math.pi / math.sqrt(18.0)), (True, math.pi / math.sqrt(12.0))])
+def test_equal_molecules_are_refused_just_above_the_densest_packing(planar, densest):
+    number = 1000
+    filled = number * (math.pi / 4.0 if planar else math.pi / 6.0)
+    for share, lawful in ((0.999, True), (1.001, False)):
+        side = (filled / (share * densest)) ** (0.5 if planar else 1.0 / 3.0)
+        arguments = (np.full(3, side), np.ones(number), OPEN, planar)
+        if lawful:
+            refuse_impossible(*arguments)
+        else:
+            with pytest.raises(PackingError, match="no packing of spheres fills more than"):
+                refuse_impossible(*arguments)
+
+
+def test_a_periodic_side_may_be_narrower_than_a_molecule_and_a_side_with_walls_may_not():
+    sides, sigma = np.array([9.0, 1.0, 9.0]), np.array([1.5])
+    refuse_impossible(sides, sigma, (False, True, False), False)
+    with pytest.raises(PackingError, match="does not fit into a box of side 1"):
+        refuse_impossible(sides, sigma, OPEN, False)
+
+
+@pytest.mark.parametrize(
+    ("sides", "sigma", "words"),
+    [
+        ([1.0, 0.0, 1.0], [0.5], "give three sides"),
+        ([1.0, math.nan, 1.0], [0.5], "give three sides"),
+        ([1.0, 1.0, 1.0], [-0.5], "finite and 0 or above"),
+        ([1.0, 1.0, 1.0], [math.inf], "finite and 0 or above"),
+    ],
+)
+def test_a_box_or_a_molecule_that_cannot_be_is_refused(sides, sigma, words):
+    with pytest.raises(RefusedError, match=words):
+        refuse_impossible(np.array(sides), np.array(sigma), OPEN, False)

@@ -1,0 +1,59 @@
+"""Molecules scattered at random: inside their walls, apart, and as thin above as an atmosphere."""
+
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine.scatter import random_positions
+
+
+def shortest(x, sides, periodic):
+    """Return the shortest distance of two centres."""
+    apart = x[:, None] - x[None]
+    apart -= np.where(periodic, sides * np.rint(apart / sides), 0.0)
+    return np.linalg.norm(apart, axis=2)[np.triu_indices(len(x), 1)].min()
+
+
+@pytest.mark.parametrize("periodic", [(False,) * 3, (True, True, False), (True,) * 3])
+def test_scattered_molecules_are_apart_and_inside_their_walls(periodic):
+    sides = np.array([8.0, 9.0, 10.0])
+    x = random_positions(tuple(sides), np.ones(400), np.random.default_rng(1), periodic=periodic)
+    assert shortest(x, sides, periodic) >= 1.0
+    wall = np.where(periodic, 0.0, 0.5)
+    assert (x >= wall).all()
+    assert (x <= sides - wall).all()
+
+
+def test_discs_lie_in_the_middle_plane():
+    x = random_positions((30.0, 2.0, 30.0), np.ones(200), np.random.default_rng(2), planar=True)
+    assert (x[:, 1] == 1.0).all()
+    assert shortest(x, np.full(3, 30.0), (False,) * 3) >= 1.0
+
+
+def test_points_need_no_room():
+    x = random_positions((1.0, 1.0, 1.0), np.zeros(5000), np.random.default_rng(3))
+    assert x.shape == (5000, 3)
+
+
+def test_a_lid_keeps_all_molecules_below_it():
+    x = random_positions((6.0, 6.0, 20.0), np.ones(50), np.random.default_rng(4), top=5.0)
+    assert x[:, 2].max() <= 4.5
+
+
+@pytest.mark.parametrize("top", [0.0, -1.0, 20.1, math.nan])
+def test_a_lid_outside_the_box_is_refused(top):
+    with pytest.raises(RefusedError, match="is outside the box: give a height between 0 and 20"):
+        random_positions((6.0, 6.0, 20.0), np.ones(5), np.random.default_rng(5), top=top)
+
+
+def test_points_thin_out_with_height_as_an_isothermal_atmosphere():
+    number, height, scale = 40_000, 3.0, 1.0
+    x = random_positions((1.0, 1.0, height), np.zeros(number), np.random.default_rng(6), scale_height=scale)
+    blocks = x[:, 2].reshape(20, -1).mean(axis=1)
+    error = blocks.std(ddof=1) / math.sqrt(20)
+    # the mean of an exponential that is cut off; 4 standard errors of 20 blocks are a false alarm in 1 of 1300 seeds
+    expected = scale - height / math.expm1(height / scale)
+    assert abs(blocks.mean() - expected) <= 4.0 * error
+    assert error < 0.01

@@ -1,0 +1,82 @@
+"""From one unit to another, checked against pint."""
+
+import pint
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atmosbox.conversion import from_si, to_si
+from atmosbox.errors import UnitError
+
+KNOWN_BY_HEART = {
+    # unit: (the unit in pint's words, SI unit in pint's words)
+    "1": ("dimensionless", "dimensionless"),
+    "%": ("percent", "dimensionless"),
+    "kg kg-1": ("kg/kg", "dimensionless"),
+    "g kg-1": ("g/kg", "dimensionless"),
+    "K": ("kelvin", "kelvin"),
+    "degC": ("degree_Celsius", "kelvin"),
+    "Pa": ("pascal", "pascal"),
+    "hPa": ("hectopascal", "pascal"),
+    "kPa": ("kilopascal", "pascal"),
+    "m": ("meter", "meter"),
+    "km": ("kilometer", "meter"),
+    "cm": ("centimeter", "meter"),
+    "mm": ("millimeter", "meter"),
+    "um": ("micrometer", "meter"),
+    "nm": ("nanometer", "meter"),
+    "s": ("second", "second"),
+    "min": ("minute", "second"),
+    "h": ("hour", "second"),
+    "ms": ("millisecond", "second"),
+    "us": ("microsecond", "second"),
+    "ns": ("nanosecond", "second"),
+    "ps": ("picosecond", "second"),
+    "fs": ("femtosecond", "second"),
+    "m s-1": ("m/s", "m/s"),
+    "m/s": ("m/s", "m/s"),
+    "km h-1": ("km/hour", "m/s"),
+    "m s-2": ("m/s**2", "m/s**2"),
+    "m/s2": ("m/s**2", "m/s**2"),
+    "K m-1": ("K/m", "K/m"),
+    "K km-1": ("K/km", "K/m"),
+    "K/km": ("K/km", "K/m"),
+    "J": ("joule", "joule"),
+    "kg": ("kilogram", "kilogram"),
+    "g": ("gram", "kilogram"),
+    "kg mol-1": ("kg/mol", "kg/mol"),
+    "g mol-1": ("g/mol", "kg/mol"),
+}
+LOOKED_UP = ["degF", "mmHg", "ft", "knot", "degF/kft", "hPa/ns", "J/kg/K"]
+
+
+@pytest.fixture(scope="module")
+def registry():
+    return pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(("unit", "words"), KNOWN_BY_HEART.items())
+def test_units_known_by_heart_are_those_of_pint(unit, words, registry):
+    for value in (0.0, 1.0, -40.0):
+        expected = registry.Quantity(value, words[0]).to(words[1]).magnitude
+        assert to_si(value, unit) == pytest.approx(expected, rel=1e-14, abs=1e-14)
+
+
+@given(value=st.floats(-1e6, 1e6), unit=st.sampled_from([*KNOWN_BY_HEART, *LOOKED_UP]), difference=st.booleans())
+def test_there_and_back_is_the_same_number(value, unit, difference):
+    there = to_si(value, unit, difference=difference)
+    assert from_si(there, unit, difference=difference) == pytest.approx(value, rel=1e-12, abs=1e-12 + 1e-15 * 3e2)
+
+
+def test_error_bars_in_degrees_have_no_offset():
+    assert to_si(0.5, "degC", difference=True) == 0.5
+    assert from_si(0.5, "degC", difference=True) == 0.5
+    assert to_si(9.0, "degF", difference=True) == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("unit", ["blorp", "", "deg", "K K K 5", "1/s", "delta_degC"])
+def test_a_unit_that_does_not_exist_is_refused(unit):
+    with pytest.raises(UnitError, match="is not known: give one such as"):
+        to_si(1.0, unit)
+    with pytest.raises(UnitError, match="is not known: give one such as"):
+        from_si(1.0, unit)

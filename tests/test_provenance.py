@@ -1,0 +1,59 @@
+"""What a file says of where it comes from."""
+
+import json
+import time
+
+import pytest
+import xarray as xr
+
+from atmosbox.errors import FileError, SettingError
+from atmosbox.provenance import FORMAT, global_attributes, history_line, parameters
+
+
+def attributes():
+    made = {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
+    words = {"title": "Lifted air", "comment": "No ice, pas de glace à 25 °C.", "references": "doi:10.1000/1"}
+    return global_attributes(made, command=["atmosbox", "run", "lifting-dry"], **words)
+
+
+def test_the_attributes_name_all_that_a_reader_asks_for():
+    found = attributes()
+    asked = "title institution source history references comment license date_created product_version"
+    assert all(found[name] for name in asked.split())
+    assert found["Conventions"] == "CF-1.11"
+    assert found["atmosbox_format"] == FORMAT
+    assert found["atmosbox_status"] == "complete"
+    assert "exact" in found["source"]
+
+
+def test_parameters_that_json_cannot_hold_are_refused():
+    with pytest.raises(ValueError, match="JSON"):
+        global_attributes({"temperature": float("nan")}, title="A box", command="a test")
+
+
+def test_the_history_has_the_time_and_the_command_as_typed(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    words = ["atmosbox", "run", "lifting-dry", "--set", "temperature=25 degC"]
+    line = "2023-11-14T22:13:20Z: atmosbox run lifting-dry --set 'temperature=25 degC'"
+    assert history_line(words) == line
+    assert history_line("atmosbox list") == "2023-11-14T22:13:20Z: atmosbox list"
+    assert attributes()["date_created"] == "2023-11-14T22:13:20Z"
+
+
+def test_without_a_set_date_the_time_is_now(monkeypatch):
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    assert history_line("x")[:10] in {time.strftime("%Y-%m-%d", time.gmtime(time.time() + s)) for s in (-9, 0)}
+
+
+@pytest.mark.parametrize("epoch", ["yesterday", "1e9", "9" * 30])
+def test_a_set_date_that_is_none_is_refused(monkeypatch, epoch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+    with pytest.raises(SettingError, match="SOURCE_DATE_EPOCH"):
+        history_line("x")
+
+
+@pytest.mark.parametrize("text", [None, "", "{", "[1, 2]", json.dumps("words"), 7])
+def test_parameters_that_are_damaged_are_refused(text):
+    attrs = {} if text is None else {"atmosbox_parameters": text}
+    with pytest.raises(FileError, match="does not say which run it holds"):
+        parameters(xr.Dataset(attrs=attrs))
