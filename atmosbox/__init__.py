@@ -29,6 +29,8 @@ def run(
     *,
     out: str | os.PathLike[str] | None = None,
     progress: Callable[..., None] | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
     save_molecules: bool = False,
     **settings: Any,
 ) -> xarray.Dataset:
@@ -45,6 +47,11 @@ def run(
         File to write the dataset to, as CF netCDF; by default none is written.
     progress
         Called again and again while the molecules move, to show how far the run is.
+    engine
+        What lets time pass, with its options: ``"stepped:delta=0.02"``; ``"exact"`` if nothing is said.
+    accuracy
+        How accurate the run shall be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
+        or ``"2%"``. Picks the engine, and the settings that are not given.
     save_molecules
         Whether to keep the position and speed of every molecule in every frame.
     **settings
@@ -79,4 +86,12 @@ def run(
     """
     from atmosbox.runner import run as start
 
-    return start(scene, out=out, progress=progress, save_molecules=save_molecules, **settings)
+    return start(
+        scene,
+        out=out,
+        progress=progress,
+        engine=engine,
+        accuracy=accuracy,
+        save_molecules=save_molecules,
+        **settings,
+    )

@@ -11,15 +11,41 @@ import os
 import re
 import tomllib
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from atmosbox.errors import ConfigError, FileError, SettingError, shown
 from atmosbox.parameter import Value
 from atmosbox.spelling import nearest
 
-__all__ = ["load_config", "parse_set"]
+__all__ = ["Config", "load_config", "parse_set"]
 
 _LARGEST_CONFIG = 1_000_000  # bytes
+_WORDS = {
+    "scene": ("without a name", 'give the name of one, such as scene = "lifting-dry"'),
+    "engine": ("without a name", 'give the name of one, such as engine = "exact"'),
+    "accuracy": ("that is no text", 'give a target or an error in quotes, such as accuracy = "0.5K"'),
+}
+
+
+class Config(NamedTuple):
+    """What a settings file asks for; None for what it does not name.
+
+    Parameters
+    ----------
+    scene
+        The name of the scene.
+    settings
+        The values as they were written, by name.
+    engine
+        The name of the engine, with its options.
+    accuracy
+        The accuracy that is wished.
+    """
+
+    scene: str | None
+    settings: dict[str, Value]
+    engine: str | None = None
+    accuracy: str | None = None
 
 
 def parse_set(items: Iterable[str]) -> dict[str, str]:
@@ -63,13 +89,13 @@ def parse_set(items: Iterable[str]) -> dict[str, str]:
     return values
 
 
-def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Value], str | None]:
-    r"""Return the scene, the settings and the engine that a TOML file names.
+def load_config(path: str | os.PathLike[str]) -> Config:
+    r"""Return the scene, the settings, and the engine or the accuracy that a TOML file names.
 
-    The file may hold the names of a scene and of an engine, and one table, and can run no code::
+    The file may hold the name of a scene, that of an engine or of an accuracy, and one table, and can run no code::
 
         scene = "lifting-dry"
-        engine = "exact"
+        accuracy = "lecture"
 
         [settings]
         temperature = "25degC"
@@ -82,12 +108,8 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
 
     Returns
     -------
-    scene : str or None
-        The name of the scene, None where the file names none.
-    settings : dict
-        The values as they were written, by name.
-    engine : str or None
-        The name of the engine, with its options; None where the file names none.
+    Config
+        What it names.
 
     Raises
     ------
@@ -103,7 +125,7 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
     ...     path = pathlib.Path(folder, "lift.toml")
     ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
     ...     load_config(path)
-    ('lifting-dry', {'temperature': '25degC'}, None)
+    Config(scene='lifting-dry', settings={'temperature': '25degC'}, engine=None, accuracy=None)
     """
     where = shown(os.fspath(path), longest=4096)
     try:
@@ -117,16 +139,18 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
     def refusal(key: str, problem: str, fix: str) -> ConfigError:
         return ConfigError(f"{where}{_line(text, key)} has {shown(key)} {problem}: {fix}.")
 
-    for key in sorted(content.keys() - {"scene", "settings", "engine"}):
-        near = nearest(key, ("scene", "settings", "engine"))
+    known = (*_WORDS, "settings")
+    for key in sorted(content.keys() - set(known)):
+        near = nearest(key, known)
         fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
         raise refusal(key, "outside the table [settings]", fix)
-    scene, settings = content.get("scene"), content.get("settings", {})
-    if scene is not None and not (isinstance(scene, str) and scene.strip()):
-        raise refusal("scene", "without a name", 'give the name of one, such as scene = "lifting-dry"')
-    engine = content.get("engine")
-    if engine is not None and not (isinstance(engine, str) and engine.strip()):
-        raise refusal("engine", "without a name", 'give the name of one, such as engine = "exact"')
+    settings = content.get("settings", {})
+    words: dict[str, str | None] = {}
+    for key, (problem, fix) in _WORDS.items():
+        word = content.get(key)
+        if word is not None and not (isinstance(word, str) and word.strip()):
+            raise refusal(key, problem, fix)
+        words[key] = word and word.strip()
     if not isinstance(settings, dict):
         raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
     kinds = {dict: "as a table", list: "as an array", float: "as no finite number"}
@@ -134,7 +158,7 @@ def load_config(path: str | os.PathLike[str]) -> tuple[str | None, dict[str, Val
         if not isinstance(value, Value) or (isinstance(value, float) and not math.isfinite(value)):
             kind = kinds.get(type(value), "as a date or a time")
             raise refusal(key, kind, 'give one number, true, false or a text in quotes, such as "25degC"')
-    return scene and scene.strip(), settings, engine and engine.strip()
+    return Config(words["scene"], settings, words["engine"], words["accuracy"])
 
 
 def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:

@@ -57,10 +57,42 @@ def _exact() -> type[Parcel]:
     return ParcelSet
 
 
+def _classic() -> type[Parcel]:
+    from atmosbox.engine.classic import ClassicParcel
+
+    return ClassicParcel
+
+
+def _number(name: str, default: float, low: float, high: float, help: str) -> Parameter:
+    return Parameter(name, "1", default, low, high, None, help, "float")
+
+
+def _word(name: str, choices: tuple[str, ...], help: str) -> Parameter:
+    return Parameter(name, "", choices[0], None, None, choices, help, "str")
+
+
+def _switch(name: str, default: bool, help: str) -> Parameter:
+    return Parameter(name, "", default, None, None, None, help, "bool")
+
+
+_DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
+
 ENGINES: Mapping[str, Engine] = MappingProxyType(
     {
         engine.name: engine
-        for engine in (Engine("exact", "every contact and every wall hit at its exact time, in order", _exact),)
+        for engine in (
+            Engine("exact", "every contact and every wall hit at its exact time, in order", _exact),
+            Engine(
+                "classic",
+                "steps, as teaching applets take them: overlapping pairs swap velocities",
+                _classic,
+                (
+                    _number("delta", 0.1, 1e-6, 1e3, _DELTA),
+                    _word("scheme", ("spheres", "lookahead", "strips"), "which scheme, if not what suits the box"),
+                    _switch("closing_only", True, "whether pairs that are already parting are let go"),
+                ),
+            ),
+        )
     }
 )
 """The engines by name, the one that is right to rounding first."""

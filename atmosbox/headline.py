@@ -30,6 +30,8 @@ class Headline:
         The unit in which a table shows them.
     label
         What a table calls it.
+    bias, bias_se
+        By how much runs of this approximate engine were measured to be off, and its standard error [unit].
 
     Examples
     --------
@@ -38,6 +40,13 @@ class Headline:
     >>> warm = Headline("air_temperature", 291.0, 2.0, 288.0, 0.0, "an ideal gas", "K", "degC", "temperature")
     >>> warm.misfit, warm.agrees
     (3.0, True)
+
+    An engine that is known to be 5 K too warm may be that, but not as much too cold:
+
+    >>> from dataclasses import replace
+    >>> sharp = replace(warm, standard_error=0.5, bias=5.0)
+    >>> sharp.agrees, replace(sharp, value=283.0).agrees
+    (True, False)
     """
 
     name: str
@@ -49,6 +58,8 @@ class Headline:
     unit: str
     display_unit: str
     label: str
+    bias: float = 0.0
+    bias_se: float = 0.0
 
     @property
     def misfit(self) -> float | None:
@@ -56,12 +67,17 @@ class Headline:
         return None if self.theory is None else self.value - self.theory
 
     @property
+    def allowed(self) -> float:
+        """How large the misfit may be [unit]: four standard errors, the tolerance, and a bias to the same side."""
+        chance = 4.0 * math.hypot(self.standard_error, self.bias_se) + self.tolerance
+        return chance + max(math.copysign(1.0, self.misfit or 0.0) * self.bias, 0.0)
+
+    @property
     def agrees(self) -> bool | None:
-        """Whether the misfit is within four standard errors and the tolerance; None without a theory.
+        """Whether the misfit is within what is `allowed`; None without a theory.
 
         A measurement or an error bar that is not a finite number agrees with nothing.
         """
         if self.misfit is None:
             return None
-        allowed = 4.0 * self.standard_error + self.tolerance
-        return math.isfinite(allowed) and abs(self.misfit) <= allowed
+        return math.isfinite(self.allowed) and abs(self.misfit) <= self.allowed

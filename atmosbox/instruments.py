@@ -140,7 +140,7 @@ class Air:
 class Layers:
     """Density, temperature and pressure of layers of equal thickness between floor and ceiling.
 
-    The pressure is that of the motion and of the contacts: n kT + virial / 3 V.
+    The pressure is that of the motion and of the contacts: n kT + virial / d V in d dimensions, 3 or 2.
 
     Parameters
     ----------
@@ -158,6 +158,7 @@ class Layers:
         self._volume = 1.0
         self._height = 1.0
         self._mass = 1.0
+        self._dimensions = 3.0
 
     def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules of each layer and the energy of their disordered motion."""
@@ -176,6 +177,7 @@ class Layers:
         self._height = float(parcel.length[2])
         self._volume = parcel.volume / self._number
         self._mass = float(parcel.mass.mean())
+        self._dimensions = 2.0 if parcel.planar else 3.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the profiles with the standard errors of 20 blocks."""
@@ -189,7 +191,7 @@ class Layers:
         number, energy, freedom, virial = np.moveaxis(parts, 1, 0)
         with np.errstate(invalid="ignore", divide="ignore"):
             kT = np.where(freedom > 0.0, 2.0 * energy / freedom, np.nan)
-        pressure = (number * kT + virial / 3.0) / self._volume
+        pressure = (number * kT + virial / self._dimensions) / self._volume
         density = number / self._volume
         whole = frames.mean(axis=0)
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -200,7 +202,7 @@ class Layers:
             "layer_temperature": (scale.temperature, whole_kT, kT),
             "layer_pressure": (
                 scale.pressure,
-                (whole[0] * whole_kT + whole[3] / 3.0) / self._volume,
+                (whole[0] * whole_kT + whole[3] / self._dimensions) / self._volume,
                 pressure,
             ),
         }
@@ -286,15 +288,18 @@ class Lift:
 
     .. math:: s / k = (f/2) \ln T - \ln n - b n - c n^2 / 2 ,
 
-    which an adiabat would keep. A finite speed makes it drift, and chance makes it walk at random. By the
-    fluctuation-dissipation theorem drift and variance go together: both grow as
+    which an adiabat would keep. A finite speed makes it drift, and chance makes it walk at random. Both come from
+    what the gas remembers of its last expansion, during a mean free time, so that drift and variance grow alike,
 
-    .. math:: w = \int (d \ln n / dt)^2\, (h / \sqrt{T})\, dt ,
+    .. math:: w = \int \left( \frac{d \ln n}{dt} \right)^2 \frac{dt}{n \sqrt{T}} ,
 
-    the square of the rate of expansion times the time that sound takes through the height h. The steps of s
-    over 20 blocks of the ascent, less their share of the drift, give the variance of the walk; w tells how much
-    of it has been gathered by when. To it comes the variance of the barometer, that of n (Z - 1)/n about its
-    straight line.
+    and the variance, N times, is twice the drift [1]_. The variance is measured by the steps from one of 20 blocks of
+    the ascent to the next, less their share of the drift; w tells how much of it has been gathered by when. To it
+    comes the variance of the barometer, that of Z about the straight line.
+
+    Against the scatter of 24 to 144 runs each the error is right within 20 %, as well as these can tell, from 400
+    mean free times on. In faster ascents sound has no time to die out within a block, and the error is too large:
+    1.4 times at 200 and at 50 mean free times, twice at 20.
 
     References
     ----------
@@ -333,7 +338,7 @@ class Lift:
             return Readings()
         time, kT, pressure, density, volume, ceiling, velocity = np.array(self._rows).T
         heat_capacity = 0.5 * self._freedom + 1.0
-        spread = _entropy_spread(time, kT, pressure, density, ceiling, self._freedom) / heat_capacity
+        spread = _entropy_spread(time, kT, pressure, density, self._freedom) / heat_capacity
         seconds = time * scale.time
         parcel_temperature = kT * scale.temperature
         parcel_pressure = pressure * scale.pressure
@@ -354,7 +359,7 @@ class Lift:
         )
 
 
-def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, height: Array, freedom: float) -> Array:
+def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, freedom: float) -> Array:
     """Return how far chance takes (f/2 + 1) ln T - ln p of a rising parcel, by time; see `Lift`.
 
     Examples
@@ -362,7 +367,7 @@ def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, hei
     Three moments at least are needed:
 
     >>> two = np.array([1.0, 2.0])
-    >>> _entropy_spread(two, two, two, two, two, 5.0)
+    >>> _entropy_spread(two, two, two, two, 5.0)
     array([nan, nan])
     """
     if len(time) < 3:
@@ -373,16 +378,18 @@ def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, hei
     at_zero = smooth[0] - slope * density[0]
     barometer = density * (excess - smooth) / (1.0 + excess * density)
     entropy = 0.5 * freedom * np.log(kT) - np.log(density) - at_zero * density - 0.5 * slope * density**2
-    crossing = np.convolve(height / np.sqrt(kT), [0.5, 0.5], "valid")
-    gathered = np.diff(np.log(density)) ** 2 / np.diff(time) * crossing
+    free_time = np.convolve(1.0 / (density * np.sqrt(kT)), [0.5, 0.5], "valid")
+    gathered = np.diff(np.log(density)) ** 2 / np.diff(time) * free_time
     gathered = np.concatenate([gathered[:1] * time[0] / (time[1] - time[0]), gathered]).cumsum()
-    blocks = min(_BLOCKS, len(time) - 1)
-    corners = np.linspace(0, len(time) - 1, blocks + 1).astype(int)
-    step, share = np.diff(entropy[corners]), np.diff(gathered[corners])
+    length = max(1, len(time) // _BLOCKS)
+    last = len(time) // length * length
+    step, share = (np.diff(each[-last:].reshape(-1, length).mean(axis=1)) for each in (entropy, gathered))
     if not share.sum() > 0.0:
         return np.full(len(time), math.nan)
     chance = step - step.sum() * share / share.sum()
-    walk = np.sum(chance**2) / (share.sum() - np.sum(share**2) / share.sum()) * gathered
+    # what is left of the variance of a step once both its ends are means
+    smoothing = (2.0 + 1.0 / length**2) / 3.0
+    walk = np.sum(chance**2) / (smoothing * (share.sum() - np.sum(share**2) / share.sum())) * gathered
     return np.asarray(np.sqrt(walk + np.var(barometer, ddof=2)))
 
 

@@ -9,7 +9,8 @@ Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a fl
 smooth, a smooth ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each
 molecule stands for some 10^34 real ones and is hundreds of metres wide, so that it meets others within a
 stated share of the scale height (the Knudsen number): the theory beside the barometric law counts the
-room that they take. A real atmosphere is stirred and heated from below, and therefore cools with height;
+room that they take. With ``plane`` the air is discs in a plane, and a slab one scale height thick stands for
+the third dimension. A real atmosphere is stirred and heated from below, and therefore cools with height;
 left alone for long enough it would become isothermal like this one.
 """
 
@@ -21,11 +22,11 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine.start import maxwell_velocities, random_positions
 from atmosbox.engine.walls import HeatBath, Periodic, Specular
-from atmosbox.engines import EXACT, EngineChoice
+from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Layers
 from atmosbox.panels import Line, Panel
-from atmosbox.scene import Setup
+from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
@@ -37,6 +38,9 @@ title = "A column of atmosphere"
 FRAMES = 240
 SETTLE = 40
 LAYERS = 25
+
+ladder = (Series("exact", "duration", (50, 100, 200, 400)),)
+"""What is worth comparing: the exact engine has no error but noise."""
 
 
 class Settings(SceneSettings):
@@ -57,25 +61,36 @@ class Settings(SceneSettings):
         choices=("heat-bath", "isolated"),
     )
     start: str = setting("equilibrium", "", "where the molecules start", choices=("equilibrium", "bottom"))
+    plane: bool = setting(False, "", "whether the air is a plane of discs")
     duration: float = setting(
         400.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5
     )
 
 
 class Column:
-    """The column in reduced units: length in scale heights, energy in kT, mass of a molecule."""
+    """The column in reduced units: length in scale heights, energy in kT, mass of a molecule.
 
-    def __init__(self, settings: Settings) -> None:
+    A column in the plane stands for a slab of unit thickness, so that molecules per area are as many per volume.
+    Where the molecules of the engine take no room from each other, it has no excess pressure.
+    """
+
+    def __init__(self, settings: Settings, engine: EngineChoice = EXACT) -> None:
         si = settings.si
         self.energy = BOLTZMANN * si.temperature
         self.scale_height = self.energy / (DRY_AIR.molecule_mass * si.gravity)
         self.height = si.height / self.scale_height
         self.width = 1.0
+        self.dimensions = 2 if settings.plane else 3
         n = settings.molecules
         held = -math.expm1(-min(self.height, 700.0))
-        density = n / (self.width**2 * held)
-        self.diameter = math.sqrt(1.0 / (math.sqrt(2.0) * math.pi * density * settings.knudsen))
-        self.per_area = n / self.width**2
+        self.per_area = n / self.width ** (self.dimensions - 1)
+        density = n / (self.width ** (self.dimensions - 1) * held)
+        if settings.plane:
+            # mean free path of a thin gas of discs: Gass, D. M. (1971), J. Chem. Phys. 54, 1898
+            self.diameter = 1.0 / (2.0 * math.sqrt(2.0) * density * settings.knudsen)
+        else:
+            self.diameter = math.sqrt(1.0 / (math.sqrt(2.0) * math.pi * density * settings.knudsen))
+        self.room = 0.0 if engine.ideal else self.diameter
         # the floor carries what lies above it; what the ceiling pushes back is small
         floor = self.per_area * (1.0 + math.exp(-min(self.height, 700.0)) / held)
         weight = si.surface_pressure / (self.energy * floor / self.scale_height**3)
@@ -85,33 +100,43 @@ class Column:
 
     def density(self, edges: np.ndarray, kT: float, diameter: float) -> np.ndarray:
         """Return the mean number density of layers in equilibrium [1/scale height^3]."""
-        return np.asarray(law.hydrostatic_layers(edges, self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter))
+        column = self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter
+        return np.asarray(law.hydrostatic_layers(edges, *column, dimensions=self.dimensions))
+
+    def pressure(self, density: np.ndarray, kT: float) -> np.ndarray:
+        """Return the pressure of a gas of these molecules [kT/scale height^3]."""
+        pressure = law.gas_pressure_discs if self.dimensions == 2 else law.gas_pressure
+        return np.asarray(pressure(density, kT, self.room))
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the column."""
-    column = Column(settings)
+    column = Column(settings, engine)
     n = settings.molecules
+    plane = settings.plane
     rng = np.random.default_rng(settings.seed)
-    length = (column.width, column.width, column.height)
+    length = (column.width, 2.0 * column.diameter if plane else column.width, column.height)
+    diameter = np.full(n, column.diameter)
     sides = (True, True, False)
     if settings.start == "bottom":
-        position = random_positions(
-            length, np.full(n, column.diameter), rng, periodic=sides, top=min(0.1, column.height)
-        )
+        position = random_positions(length, diameter, rng, periodic=sides, planar=plane, top=min(0.1, column.height))
     else:
-        position = random_positions(length, np.full(n, column.diameter), rng, periodic=sides, scale_height=1.0)
+        position = random_positions(length, diameter, rng, periodic=sides, planar=plane, scale_height=1.0)
     parcel = engine.make(
         position,
-        maxwell_velocities(1.0, np.ones(n), rng, exact=True),
+        maxwell_velocities(1.0, np.ones(n), rng, planar=plane, exact=True),
         length=length,
         walls=(Periodic(),) * 4 + (HeatBath(1.0) if settings.floor == "heat-bath" else Specular(), Specular()),
         diameter=column.diameter,
         gravity=1.0,
+        planar=plane,
         layers=LAYERS,
         seed=settings.seed,
     )
     scale = column.scale
+    km = column.width * scale.length / 1000.0
+    box = f"{km:.2f} km wide, periodic, {settings.height:g} km high"
+    width = f"{'discs' if plane else 'molecules'} {column.diameter * scale.length:.{1 if plane else 0}f} m wide"
     return Setup(
         parcel,
         scale,
@@ -122,15 +147,15 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         settle=SETTLE,
         time_unit="s",
         facts={
-            "box": f"{column.width * scale.length / 1000.0:.2f} km wide, periodic, {settings.height:g} km high",
+            "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
             "weight of a molecule": f"{scale.weight:.2g} real molecules",
-            "exaggeration": f"molecules {column.diameter * scale.length:.0f} m wide",
-            "gamma": "5/3: the molecules do not rotate",
+            "exaggeration": f"{width}, which take no room from each other" if engine.ideal else width,
+            "gamma": "2: the discs move in a plane and do not rotate" if plane else "5/3: the molecules do not rotate",
             "scale height": f"{scale.length / 1000.0:.2f} km",
             "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
             "time": f"{settings.duration * scale.time / 60.0:.0f} minutes",
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
-            f"{settings.temperature * math.sqrt(2.0 * LAYERS / (3.0 * n)):.0f} K at every look",
+            f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K at every look",
         },
     )
 
@@ -146,8 +171,8 @@ def _equilibrium_kT(column: Column, dataset: "xr.Dataset", settings: Settings) -
     low, high = 1e-3, 10.0
     for _ in range(60):
         kT = 0.5 * (low + high)
-        share = column.density(edges, kT, column.diameter) * np.diff(edges) / column.per_area
-        if n * (1.5 * kT + float(np.sum(share * middle))) > energy:
+        share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
+        if n * (0.5 * column.dimensions * kT + float(np.sum(share * middle))) > energy:
             high = kT
         else:
             low = kT
@@ -155,16 +180,16 @@ def _equilibrium_kT(column: Column, dataset: "xr.Dataset", settings: Settings) -
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the profiles of the barometric law, and of hydrostatics with the room that molecules take."""
-    column = Column(settings)
+    """Return the profiles of the barometric law, and of hydrostatics with the room that molecules take, if any."""
+    column = Column(settings, used(dataset))
     scale = column.scale
     kT = _equilibrium_kT(column, dataset, settings)
     edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
     thick = np.diff(edges)
     reached = (np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom)) / thick
-    density = column.density(edges, kT, column.diameter)
+    density = column.density(edges, kT, column.room)
     ideal = column.density(edges, kT, 0.0)
-    pressure = np.asarray(law.gas_pressure(density / reached, kT, column.diameter)) * reached
+    pressure = column.pressure(density / reached, kT) * reached
     return {
         "number_density_theory": density * scale.number_density,
         "air_density_theory": density * scale.mass_density,
@@ -178,7 +203,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the weight of the air, its temperature, and how fast it thins."""
-    column = Column(settings)
+    column = Column(settings, used(dataset))
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 40:
         return ()
@@ -205,7 +230,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             float(temperature.mean),
             float(temperature.standard_error),
             kT * column.scale.temperature,
-            2.0 / (3.0 * settings.molecules) * settings.temperature,
+            2.0 / (column.dimensions * settings.molecules) * settings.temperature,
             "a finite number of molecules",
             "K",
             "K",
@@ -213,7 +238,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         ),
     ]
     edges = np.linspace(0.0, column.height, 401)
-    share = column.density(edges, kT, column.diameter) * np.diff(edges) / column.per_area
+    share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
     height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
     per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
     climbed = block_average(late.potential_energy.values / per_metre)

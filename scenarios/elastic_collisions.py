@@ -150,7 +150,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),
             ),
             x_label="time",
-            y_label="energy, mean so far",
+            y_label="mean energy so\u00a0far",
             x_scale="log",
             headlines=("energy_of_light_discs",),
         ),
@@ -159,7 +159,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "Energy and momentum are kept",
             (
                 Line("elapsed_time", "energy_change", "energy"),
-                Line("elapsed_time", "momentum_residual", "momentum, with that of the walls"),
+                Line("elapsed_time", "momentum_residual", "momentum, with walls"),
             ),
             x_label="time",
             y_label="relative change",

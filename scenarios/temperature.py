@@ -23,7 +23,7 @@ from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Speeds
 from atmosbox.panels import Line, Panel
-from atmosbox.scene import Setup
+from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 title = "Temperature"
 FRAMES = 1000
 SETTLE = 50
+
+ladder = (Series("exact", "duration", (2.5, 5, 10, 20)),)
+"""What is worth comparing: the exact engine has no error but noise."""
 
 
 class Settings(SceneSettings):
@@ -75,9 +78,10 @@ def _crowding(density: float, side: float, molecules: int) -> float:
     """Return by how much the excess Z - 1 that `_start` counts on may be off, as a share of it.
 
     It leaves out how three molecules and a wall crowd each other. To lowest order in the packing fraction phi, by
-    the surface tension of spheres at a hard wall, that lowers Z - 1 in a cube of side L by 27/4 phi sigma / L, and
-    counting the partners of a partner as N - 1 instead of N raises it by 5 phi / N. Neither has been seen to
-    be exceeded.
+    the surface tension of spheres at a hard wall, that lowers Z - 1 in a cube of side L by 27/4 phi sigma / L; and
+    that a partner, too, has N - 1 partners raises it by 3 phi / N. Measured by the collisions of 200 molecules, in 12
+    runs each: too low by 1.24 +- 0.08 % at 500 bar and by 2.85 +- 0.07 % at 1000 bar, where the sum of both is 1.32 %
+    and 2.94 %.
     """
     filled = float(law.packing_fraction(density, 1.0))
     return filled * (6.75 / side + 3.0 / molecules)
@@ -161,6 +165,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     expected = float(law.collision_rate(density, 1.0, 1.0, 1.0)) * share_of_contacts / scale.time
     mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
     nothing = "none: the model has no other error than chance"
+    shape_error = float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2)))
+    # all bins move together where the gas is a little warmer than its walls
+    warmth_error = 0.5 * mean_speed * float(temperature.standard_error) / si.temperature
     bin_error = float(bins.mean() ** 2) / (12.0 * mean_speed)
     return (
         Headline(
@@ -188,7 +195,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         Headline(
             "mean_speed",
             float(np.sum(share * speed) / share.sum()),
-            float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2))),
+            math.hypot(shape_error, warmth_error),
             mean_speed,
             bin_error,
             "the speeds are counted in bins",

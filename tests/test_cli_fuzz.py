@@ -56,7 +56,7 @@ config_files = st.one_of(
 def folder(tmp_path_factory):
     """An empty folder to be in, where a run computes nothing."""
     place = tmp_path_factory.mktemp("fuzz")
-    nothing = runner.Outcome(xr.Dataset(), (), 1.0, 1, 0.0)
+    nothing = runner.Outcome(xr.Dataset(), (), 1.0, 1, 0.0, 1.0, 0.0, 0)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(place)
         patch.setattr(runner, "execute", lambda *args, **kwargs: nothing)

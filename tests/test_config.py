@@ -76,21 +76,22 @@ def test_a_settings_file_names_a_scene_and_its_settings(tmp_path):
         'scene = "lifting-dry"\r\n\r\n[settings]\r\ntemperature = "25degC" # warm\r\nmolecules = 4_000\r\n'
         "pressure-top = 300.0\r\nrotation = false\r\n",
     )
-    scene, settings, engine = load_config(path)
+    scene, settings, engine, accuracy = load_config(path)
     assert scene == "lifting-dry"
     assert settings == {"temperature": "25degC", "molecules": 4000, "pressure-top": 300.0, "rotation": False}
     assert Settings.from_user(settings).changed() == {"temperature": 25.0, "rotation": False}
-    assert load_config(str(path)) == (scene, settings, engine)
+    assert load_config(str(path)) == (scene, settings, engine, accuracy) == (scene, settings, None, None)
 
 
 @pytest.mark.parametrize(
     ("content", "result"),
     [
-        ("", (None, {}, None)),
-        ('\ufeffscene = " sky "', ("sky", {}, None)),
-        ("[settings]", (None, {}, None)),
-        ("settings.seed = 5", (None, {"seed": 5}, None)),
-        ('engine = "stepped:delta=0.1"', (None, {}, "stepped:delta=0.1")),
+        ("", (None, {}, None, None)),
+        ('\ufeffscene = " sky "', ("sky", {}, None, None)),
+        ("[settings]", (None, {}, None, None)),
+        ("settings.seed = 5", (None, {"seed": 5}, None, None)),
+        ('engine = "stepped:delta=0.1"', (None, {}, "stepped:delta=0.1", None)),
+        ('accuracy = " 2% "', (None, {}, None, "2%")),
     ],
 )
 def test_a_settings_file_may_leave_things_out(tmp_path, content, result):
@@ -113,6 +114,7 @@ def test_a_settings_file_may_leave_things_out(tmp_path, content, result):
         ("[plot]\nsize = 1", ", line 1 has plot outside", "below a line [settings]"),
         ("scene = 5", ", line 1 has scene without a name", 'such as scene = "lifting-dry"'),
         ("scene = ''", ", line 1 has scene without a name", 'such as scene = "lifting-dry"'),
+        ("accuracy = 0.5", ", line 1 has accuracy that is no text", 'such as accuracy = "0.5K"'),
         ("settings = 5", ", line 1 has settings that is no table", "write a line [settings]"),
         ("[[settings]]", ", line 1 has settings that is no table", "write a line [settings]"),
         ("[settings]\n\na = [1]", ", line 3 has a as an array", "give one number"),
@@ -167,7 +169,7 @@ def any_file(tmp_path_factory):
 def test_any_file_is_read_or_refused_in_one_sentence(any_file, content):
     any_file.write_bytes(content)
     try:
-        scene, settings, _ = load_config(any_file)
+        scene, settings, _, _ = load_config(any_file)
     except (ConfigError, FileError) as error:
         sentence = str(error)
         assert sentence.isprintable()

@@ -52,6 +52,8 @@ LAYERS = {
         " checkpoint instruments scene scenarios",
         "numpy xarray",
     ),
+    "extremes": Layer("engine engines errors theory statistics", "numpy"),
+    "tradeoff": Layer("engines errors provenance runner scene scenarios", "numpy xarray"),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
     "__main__": Layer("cli"),
     "version": Layer(lazily="runner xarray"),

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -13,11 +14,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
-from matplotlib.colors import to_rgb
+from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.container import ErrorbarContainer
+from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 
-from atmosbox import plot
+from atmosbox import plot, scenarios
 from atmosbox.errors import DiskFullError, FileError, SettingError
 from atmosbox.panels import Line, Panel, to_json
 from atmosbox.plot import caption, tick, unit
@@ -488,6 +490,24 @@ def test_long_titles_notes_and_labels_are_broken_into_lines_that_fit():
         assert box.x1 <= drawing.bbox.x1
 
 
+def test_a_short_label_stays_in_one_line_beside_a_low_axis(runs):
+    run = runs["temperature"]
+    shorter = run.attrs["atmosbox_panels"].replace('"air temperature"', '"temperature"')
+    first = plot.figure(run.assign_attrs(atmosbox_panels=shorter), "slides").axes[0]
+    assert first.get_ylabel() == "temperature (°C)"
+
+
+@pytest.mark.parametrize("theme", plot.THEMES)
+def test_legends_beside_each_other_have_equally_many_columns(drawings, theme):
+    for scene in ("lifting-dry", "atmosphere"):
+        legends = [axes.get_legend() for axes in drawings[scene, theme].axes]
+        rows: dict[int, set[int]] = {}
+        for legend in legends:
+            heights = {round(text.get_window_extent().y0) for text in legend.get_texts()}
+            rows.setdefault(len(legend.get_texts()), set()).add(len(heights))
+        assert all(len(each) == 1 for each in rows.values())
+
+
 def test_panels_over_each_other_share_the_axis_of_time(drawings):
     first, second = drawings["temperature", "notes"].axes[:2]
     assert first.get_xlim() == second.get_xlim()
@@ -577,11 +597,88 @@ def test_numbers_that_hardly_differ_are_written_in_full():
     assert all(text.get_text().startswith(("300", "299.99")) for text in tick_texts(axis))
 
 
+@pytest.mark.parametrize("theme", plot.THEMES)
+def test_a_logarithmic_axis_of_a_good_decade_has_four_numbers_or_more_and_small_ticks(drawings, theme):
+    for axes in drawings["atmosphere", theme].axes[:2]:
+        assert len(tick_texts(axes.xaxis)) >= 4
+        assert len(axes.xaxis.get_minorticklocs()) + len(axes.xaxis.get_majorticklocs()) >= 10
+
+
+def test_numbers_on_an_axis_have_equally_many_decimals():
+    run = small([1.17e-3, 1.34e-3], Panel("line", "E", (Line("elapsed_time", "air_temperature", "a"),)))
+    drawing = plot.figure(run)
+    drawing.draw_without_rendering()
+    numbers = [text.get_text() for text in tick_texts(drawing.axes[0].yaxis)]
+    assert "1.20" in numbers
+    assert {len(number) for number in numbers} == {4}
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "numbers"),
+    [(9e-4, 1.0, ["0.001", "0.01", "0.1", "1"]), (1e-5, 1e-2, ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²"])],
+)
+def test_powers_of_ten_are_written_alike_along_an_axis(low, high, numbers):
+    axis = Figure().add_subplot(xscale="log", xlim=(low, high)).xaxis
+    assert tick.put_ticks(axis, log=True, length=200.0, size=16.0) == 0
+    assert axis.get_major_formatter().format_ticks(axis.get_majorticklocs()) == numbers
+
+
 def test_axes_that_run_backwards_do_so_together():
     line = Line("elapsed_time", "air_temperature", "air")
     panels = [Panel("line", title, (line,), x_invert=True) for title in ("A", "B")]
     for axes in plot.figure(small([280.0, 290.0]).assign_attrs(atmosbox_panels=to_json(panels))).axes:
         assert axes.xaxis_inverted()
+
+
+def test_a_reference_is_broad_and_pale_under_the_theory_that_it_coincides_with(runs):
+    run = runs["atmosphere"]
+    panel = Panel(
+        "profile",
+        "Density",
+        (
+            Line("number_density_theory", "height", "with Z", "theory"),
+            Line("number_density_barometric", "height", "barometric", "reference"),
+        ),
+    )
+    for theme in plot.THEMES:
+        axes = plot.figure(run.assign_attrs(atmosbox_panels=to_json([panel])), theme).axes[0]
+        theory, reference = lines_of(axes)
+        assert theory.is_dashed()
+        assert not reference.is_dashed()
+        assert reference.get_zorder() < theory.get_zorder()
+        assert reference.get_linewidth() > 2 * theory.get_linewidth()
+        dark, pale = (np.dot((0.299, 0.587, 0.114), to_rgb(line.get_color())) for line in (theory, reference))
+        assert dark + 0.4 < pale < 0.8  # apart from each other and from white paper in grey print, too
+
+
+def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so(runs):
+    run = runs["atmosphere"].copy(deep=True)
+    run["layer_temperature_se"][-3:] = np.nan
+    drawing = plot.figure(run)
+    (hollow,) = [line for line in drawing.axes[2].lines if line.get_markerfacecolor() == "white"]
+    assert hollow.get_ydata() == pytest.approx(run.height[-3:] / 1000)
+    (bars,) = [each for each in drawing.axes[2].containers if isinstance(each, ErrorbarContainer)]
+    assert hollow.get_zorder() > bars[0].get_zorder()
+    assert any(text.endswith("hollow: not known") for text in written(drawing))
+    assert not any("hollow" in text for text in written(plot.figure(runs["atmosphere"])))
+
+
+def test_a_curve_that_goes_up_and_down_often_is_thin_and_its_legend_is_not():
+    rng = np.random.default_rng(5)
+    panel = Panel("line", "T", (Line("elapsed_time", "air_temperature", "air"), replace(TIME, error=None)))
+    for values, is_thin in ((np.linspace(280, 290, 900), False), (rng.normal(288, 5, 900), True)):
+        axes = plot.figure(small(values, panel), "slides").axes[0]
+        assert (axes.lines[0].get_linewidth() < 0.7 * plot.THEMES["slides"].line) == is_thin
+        assert axes.get_legend().get_lines()[0].get_linewidth() == plot.THEMES["slides"].line
+
+
+def test_the_axis_of_pressure_begins_at_1000_hpa_where_the_data_nearly_do(runs):
+    run = runs["lifting-dry"].isel(elapsed_time=slice(3, None))
+    axes = plot.figure(run).axes[0]
+    assert run.parcel_pressure.max() < 99000.0
+    assert "1000" in [text.get_text() for text in tick_texts(axes.yaxis)]
+    high_up = plot.figure(run.isel(elapsed_time=slice(60, None))).axes[0]
+    assert max(high_up.get_ylim()) < 900.0
 
 
 def test_a_histogram_is_drawn_between_the_bounds_of_its_bins(runs, drawings):
@@ -622,8 +719,40 @@ def test_the_trails_of_discs_end_at_the_discs_and_fade_backwards(runs, drawings)
 
 def test_discs_that_leap_between_frames_have_no_trails(runs):
     run = runs["elastic-collisions"].isel(elapsed_time=slice(0, None, 60))
-    collections = plot.figure(run).axes[0].collections
+    place = run.disc_position.values[:, :, :2]
+    leap = np.median(np.linalg.norm(np.diff(place, axis=0), axis=2), axis=0) > 0.1 * float(run.box_length)
+    assert 0 < leap.sum() < leap.size
+    (trails,) = [each for each in plot.figure(run).axes[0].collections if isinstance(each, LineCollection)]
+    ends = np.array([segment[-1] for segment in trails.get_segments()])[-(~leap).sum() :]
+    assert ends == pytest.approx(1e9 * place[-1, ~leap])
+    collections = plot.figure(run.isel(molecule=leap)).axes[0].collections
     assert not any(isinstance(artist, LineCollection) for artist in collections)
+
+
+def test_a_few_very_fast_discs_do_not_take_all_the_colours(runs):
+    run = runs["elastic-collisions"].copy(deep=True)
+    run["disc_velocity"][:, :6] *= 300.0
+    (discs,) = [each for each in plot.figure(run).axes[0].collections if isinstance(each, EllipseCollection)]
+    shades = discs.norm(np.linalg.norm(run.disc_velocity[-1].values, axis=1))
+    assert isinstance(discs.norm, LogNorm)
+    assert np.ptp(np.clip(shades[6:], 0.0, 1.0)) > 0.3
+
+
+def test_the_rims_of_many_small_discs_leave_their_colours_to_be_seen(runs):
+    run = runs["elastic-collisions"].copy(deep=True)
+    run["disc_diameter"] = run.disc_diameter / 20
+    drawing = plot.figure(run, "slides")
+    axes = drawing.axes[0]
+    (discs,) = [each for each in axes.collections if isinstance(each, EllipseCollection)]
+    nanometre = axes.get_window_extent().width * 72 / drawing.dpi / 20.0  # [pt]
+    assert np.all(np.asarray(discs.get_linewidths()) < 0.2 * run.disc_diameter.values * 1e9 * nanometre)
+
+
+@pytest.mark.parametrize(("heavy", "words"), [(3.74, "3.7 ×"), (1080.0, "1100 ×"), (123456.0, "120\u2009000 ×")])
+def test_the_ratio_of_masses_is_written_without_exponent(runs, heavy, words):
+    run = runs["elastic-collisions"].copy(deep=True)
+    run["disc_mass"] = xr.where(run.disc_mass > 2 * AIR, heavy * AIR, AIR)
+    assert any(words in text for text in written(plot.figure(run)))
 
 
 def test_a_box_of_unknown_length_is_as_large_as_the_room_that_discs_have_taken(runs):
@@ -691,6 +820,30 @@ def test_the_footer_says_where_the_figure_comes_from(drawings):
 def test_an_interrupted_run_says_so(runs):
     run = runs["atmosphere"].assign_attrs(atmosbox_status="interrupted")
     assert caption.footer(run).endswith("interrupted run")
+
+
+def test_the_footer_counts_discs_as_discs_and_one_molecule_as_one(runs):
+    assert " · 70 discs · " in caption.footer(runs["elastic-collisions"])
+    alone = runs["temperature"].attrs["atmosbox_parameters"].replace('"molecules": 800', '"molecules": 1')
+    assert " · 1 molecule · " in caption.footer(runs["temperature"].assign_attrs(atmosbox_parameters=alone))
+
+
+def test_a_misfit_that_rounds_to_zero_has_no_sign():
+    assert caption.number(-0.04, 0.9, signed=True) == "0.0 ± 0.9"
+    assert caption.number(0.003, 2.6, signed=True) == "0.0 ± 2.6"
+    assert caption.number(-0.06, 0.9, signed=True) == "−0.1 ± 0.9"
+
+
+def test_the_titles_of_scenes_are_true_of_their_settings():
+    def titles(name, **settings):
+        scene = scenarios.load(name)
+        return [panel.title for panel in scene.panels(scene.Settings(**settings))]
+
+    assert "9.8 K per kilometre" in titles("lifting-dry")
+    assert "13.7 K per kilometre" in titles("lifting-dry", rotation=False)
+    assert "Cold molecules between warm walls" in titles("temperature")
+    assert "Hot molecules between cooler walls" in titles("temperature", start_temperature=500.0)
+    assert "Discs alike: the same energy" in titles("elastic-collisions", mass_ratio=1.0)
 
 
 def test_numbers_have_the_digits_that_their_error_allows():

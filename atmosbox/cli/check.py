@@ -1,4 +1,4 @@
-"""What ``atmosbox check`` does: verify the physics in a file, and that it keeps to the CF conventions."""
+"""What ``atmosbox check`` does: verify the physics in a file and its conventions, or the engines in extremes."""
 
 from __future__ import annotations
 
@@ -7,14 +7,19 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
 
+from atmosbox.cli.progress import progress
 from atmosbox.cli.table import table
 from atmosbox.cli.terminal import say, say_json, width
-from atmosbox.errors import PhysicsError
+from atmosbox.errors import PhysicsError, SettingError
+
+if TYPE_CHECKING:
+    from atmosbox.extremes import Finding
 
 CONVENTION = "cf:1.11"
 CHECKER = "compliance-checker"
@@ -68,7 +73,7 @@ def _messages(report: dict[str, Any]) -> list[str]:
     ]
 
 
-def check(file: str, *, as_json: bool) -> None:
+def check(file: str | None, *, as_json: bool, misplaced: Sequence[tuple[str, object]] = ()) -> None:
     """Verify a file and say what was found.
 
     Parameters
@@ -77,14 +82,25 @@ def check(file: str, *, as_json: bool) -> None:
         The file of a run.
     as_json
         Whether to say it as JSON.
+    misplaced
+        Options that only ``--extremes`` has, with what was given.
 
     Raises
     ------
+    SettingError
+        If there is no file, or an option that belongs to ``--extremes``.
     FileError
         If the file cannot be read.
     typer.Exit
         With the status of a physics check that failed, if anything did.
     """
+    for option, given in misplaced:
+        if given:
+            raise SettingError(option, None, "belongs to --extremes", f"give --extremes, or leave {option} out")
+    if file is None:
+        fix = "give the file of a run, or --extremes for the engines"
+        raise SettingError("check", None, "does not know what to verify", fix)
+
     from atmosbox import runner
     from atmosbox.output import read
 
@@ -101,3 +117,81 @@ def check(file: str, *, as_json: bool) -> None:
         say("\n".join(table(["", "", ""], rows, width())))
     if not passed:
         raise typer.Exit(PhysicsError.exit_code)
+
+
+def check_extremes(
+    file: str | None, engines: Sequence[str] | None, only: Sequence[str] | None, *, every: bool, as_json: bool
+) -> None:
+    """Put engines through the extremes and say what became of them.
+
+    Parameters
+    ----------
+    file
+        None: extremes have no file.
+    engines
+        The engines as they are typed; all by default.
+    only
+        The names of the extremes; all by default.
+    every
+        Whether those that take minutes are among all.
+    as_json
+        Whether to say it as JSON.
+
+    Raises
+    ------
+    SettingError
+        If a file is given too, or there is no engine or extreme of a name.
+    typer.Exit
+        With the status of a physics check that failed, if an engine is wrong.
+    """
+    if file is not None:
+        fix = f"give atmosbox check {file}, or atmosbox check --extremes"
+        raise SettingError("--extremes", None, "is about the engines and not about a file", fix)
+
+    from atmosbox import engines as registry
+    from atmosbox.extremes import EXTREMES, assess
+    from atmosbox.spelling import nearest
+
+    chosen = [registry.choose(name) for name in engines or registry.names()]
+    for name in only or ():
+        if name not in EXTREMES:
+            fix = f"give --only {nearest(name, EXTREMES) or next(iter(EXTREMES))}"
+            raise SettingError("--only", name, "is no extreme", fix)
+    with progress("extremes", quiet=False) as show:
+        heading = [str(choice) for choice in chosen]
+        found = list(assess(chosen, only or None, lambda part, _: show(part, "running"), long=every))
+    passed = all(one.verdict.passed for one in found)
+    if as_json:
+        listed = [_as_json(one, heading[k % len(heading)]) for k, one in enumerate(found)]
+        say_json({"passed": passed, "engines": heading, "extremes": listed})
+    else:
+        rows = [_row(found[k : k + len(chosen)]) for k in range(0, len(found), len(chosen))]
+        say("\n".join(table(["extreme", *heading, "what was found"], rows, width())))
+    if not passed:
+        raise typer.Exit(PhysicsError.exit_code)
+
+
+def _as_json(one: Finding, engine: str) -> dict[str, Any]:
+    """Return a finding as JSON has it."""
+    verdict = one.verdict
+    return {
+        "extreme": one.extreme.name,
+        "title": one.extreme.title,
+        "engine": engine,
+        "outcome": verdict.outcome,
+        "sentence": verdict.sentence,
+        "value": verdict.value,
+        "expected": verdict.expected,
+        "tolerance": verdict.tolerance,
+    }
+
+
+def _row(found: Sequence[Finding]) -> list[str]:
+    """Return the row of one extreme: what became of each engine, and the sentences."""
+    said = [
+        (f"{one.engine}: " if len(found) > 1 else "") + one.verdict.told
+        for one in found
+        if len(found) == 1 or one.verdict.outcome != "right"
+    ]
+    cells = [one.verdict.outcome if one.verdict.passed else "WRONG" for one in found]
+    return [found[0].extreme.name, *cells, "; ".join(said) or found[0].verdict.told]

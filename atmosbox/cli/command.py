@@ -133,6 +133,7 @@ def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbo
         "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
         "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
         "atmosbox run --config lift.toml --dry-run",
+        "atmosbox run temperature --accuracy sketch",
     )
 )
 @guarded
@@ -164,6 +165,14 @@ def run(
             help="What lets time pass: exact, or an approximation such as stepped:delta=0.02.  [default: exact]",
         ),
     ] = None,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WISH",
+            help="Picks engine and settings from what was measured: sketch, lecture, reference, or the largest "
+            "error of a run, such as 0.5K or 2%.",
+        ),
+    ] = None,
     out: Annotated[
         str | None, typer.Option(metavar="FILE", help="The netCDF file.  [default: SCENE.nc in this folder]")
     ] = None,
@@ -186,7 +195,7 @@ def run(
     from atmosbox.cli import run as running
     from atmosbox.cli.request import Request
 
-    request = Request(scene, values or (), config, source, seed, save_molecules, engine)
+    request = Request(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
     running.run(
         request,
         words=["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])],
@@ -196,6 +205,53 @@ def run(
         verbose=verbose,
         as_json=as_json,
         dry_run=dry_run,
+    )
+
+
+@app.command(
+    epilog=_examples(
+        "atmosbox tradeoff lifting-dry",
+        "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
+    )
+)
+@guarded
+def tradeoff(
+    ctx: typer.Context,
+    scene: Annotated[str, SceneName],
+    values: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="A setting for all runs; any number of them."),
+    ] = None,
+    budget: Annotated[str, typer.Option(metavar="TIME", help="For how long to measure.")] = "60s",
+    seed: Annotated[str | None, typer.Option(metavar="N", help="The first seed.  [default: 1]")] = None,
+    out: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]"
+        ),
+    ] = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print the path of the file, no more.")] = False,
+    verbose: Verbose = False,
+) -> None:
+    """Measure speed against accuracy: a scene through engines and settings, errors beside seconds.
+
+    Every way of running is run again and again, with other seeds, while the budget lasts. Ctrl-C ends it
+    early and keeps what was measured.
+    """
+    from atmosbox.cli.tradeoff import tradeoff as measuring
+
+    measuring(
+        scene,
+        values=values or (),
+        budget=budget,
+        seed=seed,
+        out=out,
+        force=force,
+        as_json=as_json,
+        quiet=quiet,
+        words=["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])],
     )
 
 
@@ -231,17 +287,45 @@ def plot(
     say(str(save(dataset, path, kind, theme=theme.value, force=force)))
 
 
-@app.command(epilog=_examples("atmosbox check lifting-dry.nc", "atmosbox check lifting-dry.nc --json"))
+@app.command(
+    epilog=_examples(
+        "atmosbox check lifting-dry.nc",
+        "atmosbox check lifting-dry.nc --json",
+        "atmosbox check --extremes",
+        "atmosbox check --extremes --engine exact --only cradle",
+    )
+)
 @guarded
-def check(file: RunFile, as_json: Json = False, verbose: Verbose = False) -> None:
-    """Verify the physics in a file.
+def check(
+    file: Annotated[
+        str | None, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.", show_default=False)
+    ] = None,
+    extremes: Annotated[
+        bool, typer.Option("--extremes", help="Put the engines through boxes that break simulations.")
+    ] = False,
+    engine: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="With --extremes: an engine, with its options; any number of them."),
+    ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="With --extremes: one of them; any number.")
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="With --extremes: also those that take minutes.")] = False,
+    as_json: Json = False,
+    verbose: Verbose = False,
+) -> None:
+    """Verify the physics in a file, or the engines in extremes.
 
-    Does the energy ledger close, does the run agree with theory, does the file keep to the CF conventions?
-    The exit status is 3 if anything fails.
+    Of a file: does the energy ledger close, does the run agree with theory, does the file keep to the CF
+    conventions? With --extremes: what becomes of each engine where others hang, leak or lie? The exit status
+    is 3 if anything fails.
     """
     from atmosbox.cli import check as checking
 
-    checking.check(file, as_json=as_json)
+    if extremes:
+        checking.check_extremes(file, engine, only, every=every, as_json=as_json)
+    else:
+        checking.check(file, as_json=as_json, misplaced=(("--engine", engine), ("--only", only), ("--all", every)))
 
 
 def main() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,6 +46,7 @@ def _shown(headline: Headline) -> dict[str, Any]:
         "theory": None if headline.theory is None else from_si(headline.theory, unit),
         "misfit": difference(headline.misfit),
         "tolerance": difference(headline.tolerance),
+        "bias": difference(headline.bias),
     }
 
 
@@ -83,8 +85,10 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
             if error > 0.0 and math.isfinite(shown["misfit"] / error):
                 misfit += f" ({abs(shown['misfit']) / error:.1f}σ)"
             if headline.agrees and abs(shown["misfit"]) > 4.0 * error:
-                may_be = number(shown["tolerance"], decimals, power)
-                notes.append(f"{headline.label}: up to {may_be}{_unit(headline)} off, for {headline.reason}.")
+                known = replace(headline, bias=0.0, bias_se=0.0).agrees
+                may_be = number(shown["tolerance" if known else "bias"], decimals, power, "" if known else "+")
+                reason = headline.reason if known else "so far off was this engine measured to be"
+                notes.append(f"{headline.label}: up to {may_be}{_unit(headline)} off, for {reason}.")
         unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
         rows.append([headline.label + unit, measurement(value, error), theory, misfit, _VERDICT[headline.agrees]])
     header = ["quantity", "measured", "theory", "misfit", "within error?"]
@@ -111,6 +115,17 @@ def ledger_line(ledger: float, limit: float) -> str:
     return f"energy ledger does not close: {ledger:.0e}, where at most {limit:.0e} is allowed"
 
 
+def made_line(made: float) -> str:
+    """Return how much energy the scheme of an approximate engine has made by itself.
+
+    Examples
+    --------
+    >>> made_line(0.0312)
+    'the scheme itself has made +3.1 % of the energy of motion'
+    """
+    return f"the scheme itself has made {100.0 * made:+.2g} % of the energy of motion"
+
+
 def cost_line(collisions: int, seconds: float) -> str:
     """Return what a run has cost.
 
@@ -134,6 +149,7 @@ def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: floa
         "file": None if path is None else str(path),
         "headlines": [headline_json(headline) for headline in outcome.headlines],
         "ledger": {"residual": outcome.ledger, "limit": limit, "closes": bool(outcome.ledger <= limit)},
+        "energy_made_by_the_scheme": outcome.made,
         "collisions": outcome.collisions,
         "seconds": outcome.seconds,
         "collisions_per_second": rate,
@@ -141,12 +157,16 @@ def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: floa
     }
 
 
-def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int) -> list[str]:
-    """Return a run as text."""
+def outcome_lines(
+    outcome: Outcome, *, path: Path, limit: float, width: int, expected: Sequence[str] = ()
+) -> list[str]:
+    """Return a run as text, with the lines that say which errors were to be expected."""
     return [
         *headline_lines(outcome.headlines, width),
         "",
+        *([*expected, ""] if expected else []),
         ledger_line(outcome.ledger, limit),
+        *([made_line(outcome.made)] if outcome.made else []),
         cost_line(outcome.collisions, outcome.seconds),
         f"file: {path}",
         f"next: {next_command('plot', path)}",

@@ -6,10 +6,20 @@ import os
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from atmosbox.cli.terminal import tell
-from atmosbox.errors import AtmosboxError, ConfigError, FileError, UnknownSceneError
+from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError
+
+
+class Gathered(NamedTuple):
+    """A run as all that was given says together; None for the engine or the accuracy that nothing names."""
+
+    scene: str
+    settings: dict[str, Any]
+    engine: str | None
+    molecules: bool
+    accuracy: str | None
 
 
 @dataclass(frozen=True)
@@ -30,6 +40,8 @@ class Request:
         Whether the molecules are saved.
     engine
         What stood behind ``--engine``.
+    accuracy
+        What stood behind ``--accuracy``.
     """
 
     scene: str | None
@@ -39,32 +51,37 @@ class Request:
     seed: str | None = None
     save_molecules: bool = False
     engine: str | None = None
+    accuracy: str | None = None
 
-    def gather(self) -> tuple[str, dict[str, Any], str, bool]:
-        """Return the scene, its settings, the engine, and whether molecules are saved.
+    def gather(self) -> Gathered:
+        """Return the scene, its settings, the engine, whether molecules are saved, and the accuracy.
 
         What is given later wins: ``--from``, ``--config``, ``--set``, ``--seed``.
 
         Raises
         ------
         AtmosboxError
-            If a file or a text cannot be understood, or two of them name different scenes.
+            If a file or a text cannot be understood, two of them name different scenes, or an accuracy is wished of
+            a run whose engine is given.
         """
         from atmosbox.config import load_config, parse_set
 
         scene = self.scene
         settings: dict[str, Any] = {}
         molecules = self.save_molecules
-        engine = "exact"
+        engine = self.engine
+        accuracy = self.accuracy
         if self.source is not None:
-            run, settings, engine, saved = _earlier(self.source)
+            run, settings, made_by, saved = _earlier(self.source)
+            engine = engine or made_by
             molecules = molecules or saved
             scene = _agreed(scene, run, "--from", self.source, FileError)
         if self.config is not None:
-            named, values, asked = load_config(self.config)
-            engine = asked or engine
-            scene = _agreed(scene, named, "--config", self.config, ConfigError)
-            settings = _over(settings, values)
+            asked = load_config(self.config)
+            engine = self.engine or asked.engine or engine
+            accuracy = accuracy or asked.accuracy
+            scene = _agreed(scene, asked.scene, "--config", self.config, ConfigError)
+            settings = _over(settings, asked.settings)
         settings = _over(settings, parse_set(self.values))
         if self.seed is not None:
             settings = _over(settings, {"seed": self.seed})
@@ -72,7 +89,10 @@ class Request:
             raise UnknownSceneError(
                 "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
             )
-        return scene, settings, self.engine or engine, molecules
+        if accuracy is not None and self.source is not None:
+            problem = f"picks engine and settings, and so does --from {shlex.quote(self.source)}"
+            raise SettingError("accuracy", accuracy, problem, "leave the one or the other out")
+        return Gathered(scene, settings, engine, molecules, accuracy)
 
 
 def is_path(scene: str) -> bool:

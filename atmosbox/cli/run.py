@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Never
 
 import typer
 
+from atmosbox.cli.expectation import expectation_json, expectation_lines
 from atmosbox.cli.progress import progress
 from atmosbox.cli.report import next_command, outcome_json, outcome_lines, setting_lines
 from atmosbox.cli.request import Request, is_path
@@ -86,9 +87,9 @@ def run(
     from atmosbox import runner
     from atmosbox.checkpoint import Checkpoint
 
-    scene, settings, engine, molecules = request.gather()
+    scene, settings, engine, molecules, accuracy = request.gather()
     with _own_prints_to_stderr():
-        prepared = runner.prepare(scene, settings, engine=engine, save_molecules=molecules)
+        prepared = runner.prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=molecules)
     path = checked_path(out, prepared.scene)
     checkpoint = Checkpoint(path, force=force)
     if dry_run or verbose:
@@ -113,9 +114,12 @@ def run(
     limit = runner.LEDGER_LIMIT
     if as_json:
         made = outcome_json(outcome, scene=prepared.scene, path=path, limit=limit)
-        say_json({**made, "settings": prepared.settings.as_dict(), "engine": str(prepared.engine)})
+        expected = expectation_json(prepared.expectation, outcome.headlines)
+        about = {"settings": prepared.settings.as_dict(), "engine": str(prepared.engine), "accuracy": expected}
+        say_json({**made, **about})
     else:
-        lines = outcome_lines(outcome, path=path, limit=limit, width=width())
+        about_errors = expectation_lines(prepared.expectation, outcome.headlines, str(prepared.engine), width())
+        lines = outcome_lines(outcome, path=path, limit=limit, width=width(), expected=about_errors)
         say(str(path) if quiet else "\n".join(lines))
     if not outcome.ledger <= limit:
         raise PhysicsError(
@@ -134,17 +138,20 @@ def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry
     engine = f"{prepared.engine}: {prepared.engine.engine.summary}"
     if dry_run and as_json:
         facts = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
-        facts["engine"] = str(prepared.engine)
+        expected = expectation_json(prepared.expectation)
+        facts |= {"engine": str(prepared.engine), "accuracy": expected}
         say_json({**facts, "settings": settings, "facts": dict(card.facts)})
     elif dry_run and quiet:
         say(str(path))
     else:
+        expected_lines = expectation_lines(prepared.expectation, (), str(prepared.engine), width())
         lines = [
             f"{card.scene}: {card.title}",
             "",
             *setting_lines(settings, card.parameters, width()),
             "",
             *table(["", ""], [("engine", engine), *card.facts], width()),
+            *(["", *expected_lines] if expected_lines else []),
             "",
             f"file: {path}" + (" (not written: this is a dry run)" if dry_run else ""),
         ]

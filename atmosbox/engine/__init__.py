@@ -25,6 +25,11 @@ Read it in this order:
 `parcel`     the box: what it is given, holds and tells
 `parcelset`  the box, advanced exactly
 `marching`   the box, advanced step by step
+`classic_tally`      what the three classic schemes share
+`classic_strips`     equal discs, sorted into strips
+`classic_lookahead`  unequal discs, which look ahead
+`classic_spheres`    spheres, all pairs
+`classic`            the box, as teaching applets move it: one of the three
 `measure`    what is read off it
 `lift`       a piston that follows a pressure
 `_jit`       the one door to numba

@@ -12,8 +12,9 @@ p = n kT Z, with Z = 1 + b n, falls by
 
 .. math:: \Gamma = -\frac{d \ln p}{d \ln V} = 1 + \frac{2}{f} Z + \frac{Z - 1}{Z},
 
-which is the adiabatic index 1 + 2/f of molecules without size. Were it put in place of Gamma, the second
-term would have to make up for the rest, and the parcel would stay 20 tau S (1 - Gamma / gamma) behind.
+which is the adiabatic index gamma = 1 + 2/f of molecules without size. With that in its place, ln p would come
+to rest :math:`20 \tau S (1 - \gamma / \Gamma)` too low, where the second term makes up for the rest. What is left
+is a parcel that lags: ln p is too high by what its finite speed adds to it within 20 mean free times.
 """
 
 import math
@@ -96,32 +97,51 @@ class FollowPressure:
 
     def pressure(self, parcel: Parcel) -> float:
         """Return the pressure of the parcel [energy/length^3]."""
-        kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
         density = parcel.open_density
-        return density * kT * (1.0 + self._excess * density)
-
-    def _average_virial(self, parcel: Parcel) -> None:
-        """Average what contacts add to the pressure, (Z - 1) / n, which hardly changes while n falls."""
-        virial = float(parcel.virial.sum())
-        kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
-        if parcel.time > 0.0 and kT > 0.0:
-            rate = (virial - self._virial) / self.interval
-            dimensions = 2.0 if parcel.planar else 3.0
-            excess = rate / (dimensions * parcel.number * kT * parcel.open_density)
-            self._excess += self.interval / self._memory * (excess - self._excess)
-        self._virial = virial
-
-    def stiffness(self, parcel: Parcel) -> float:
-        """Return by how much ln p falls as the logarithm of the open volume rises, without heat [1]."""
-        factor = 1.0 + self._excess * parcel.open_density
-        return 1.0 + 2.0 / parcel.degrees_of_freedom * factor + (factor - 1.0) / factor
+        return density * _kT(parcel) * (1.0 + self._excess * density)
 
     def velocity(self, parcel: Parcel) -> float:
         """Return the velocity [length/time] of the ceiling for the next interval."""
-        self._average_virial(parcel)
+        density, kT = parcel.open_density, _kT(parcel)
+        self._average_virial(parcel, density * kT)
+        factor = 1.0 + self._excess * density
         now = parcel.time
         wanted = self.log_pressure(now)
         fall = wanted - self.log_pressure(now + self.interval)
-        fall += self.interval / self._relaxation * (math.log(self.pressure(parcel)) - wanted)
+        fall += self.interval / self._relaxation * (math.log(density * kT * factor) - wanted)
         open_height = parcel.ceiling - (float(parcel.diameter.mean()) if parcel.number else 0.0)
-        return open_height * math.expm1(fall / self.stiffness(parcel)) / self.interval
+        return open_height * math.expm1(fall / stiffness(factor, parcel.degrees_of_freedom)) / self.interval
+
+    def _average_virial(self, parcel: Parcel, ideal: float) -> None:
+        """Average what contacts add to the ideal pressure, (Z - 1) / n, which hardly changes while n falls."""
+        virial = float(parcel.virial.sum())
+        if parcel.time > 0.0 and ideal > 0.0:
+            rate = (virial - self._virial) / self.interval
+            dimensions = 2.0 if parcel.planar else 3.0
+            excess = rate / (dimensions * parcel.number * ideal)
+            self._excess += self.interval / self._memory * (excess - self._excess)
+        self._virial = virial
+
+
+def stiffness(compressibility_factor: float, freedom: float) -> float:
+    """Return by how much ln p falls as the logarithm of the open volume rises, without heat [1].
+
+    Parameters
+    ----------
+    compressibility_factor
+        Z of a gas whose (Z - 1) / n is constant.
+    freedom
+        Degrees of freedom of a molecule.
+
+    Examples
+    --------
+    Of points it is the adiabatic index; spheres that add a tenth are stiffer:
+
+    >>> round(stiffness(1.0, 5), 6), round(stiffness(1.1, 5), 6)
+    (1.4, 1.530909)
+    """
+    return 1.0 + 2.0 / freedom * compressibility_factor + 1.0 - 1.0 / compressibility_factor
+
+
+def _kT(parcel: Parcel) -> float:
+    return 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))

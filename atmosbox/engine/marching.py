@@ -59,8 +59,10 @@ class MarchingParcel(Parcel):
         if until < self.time * (1.0 - _SLACK):
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         last = math.floor(until / self._time_step * (1.0 + 1e-13) + _SLACK)
+        if not self._step and not last:
+            self._march(0)  # compiles, so that a run's first step is like the others
         while self._step < last:
-            steps = min(last - self._step, max(1, _WORK // max(self._number, 1)))
+            steps = min(last - self._step, max(1, _WORK // max(self._effort(), 1)))
             turn = self._next_turn()
             steps = min(steps, turn - self._step)
             self._march(steps)
@@ -77,6 +79,10 @@ class MarchingParcel(Parcel):
         if self._driver is None:
             return math.inf
         return max(self._step + 1, math.ceil((self._turn + 1) * self._driver.interval / self._time_step - _SLACK))
+
+    def _effort(self) -> int:
+        """Return how much work a step is, in molecules moved; it sets how often ``watch`` is called."""
+        return self._number
 
     @abstractmethod
     def _march(self, steps: int) -> None:

@@ -366,6 +366,22 @@ class Parcel(ABC):
         scale = max(abs(total), abs(self._start_energy))
         return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
 
+    @property
+    def numerical_heat(self) -> float:
+        """Energy that the engine's scheme itself has made, beside heat and work [energy]; an exact one makes none."""
+        return 0.0
+
+    def escaped(self) -> int:
+        """Return how many molecules are outside the box or nowhere: none, or the engine is wrong."""
+        position, velocity = self.snapshot()[1:3]
+        lawful = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
+        for axis in (0, 2) if self._planar else (0, 1, 2):
+            reach = 0.0 if self._periodic[axis] else 0.5 * self._diameter
+            slack = 1e-9 * self.length[axis]
+            lawful &= position[:, axis] >= reach - slack
+            lawful &= position[:, axis] <= self.length[axis] - reach + slack
+        return int(np.sum(~lawful))
+
     def internal_energy(self) -> float:
         """Return kinetic + rotational energy from the ledger, without looking at the molecules [energy].
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 # The colours are logarithmic where the fastest discs are so many times as fast as the median.
 _WIDE_SPREAD = 10.0
+# The rim of a heavy disc is at most so wide, in diameters; the box is about so high, in heights of the figure.
+_BROADEST_RIM, _BOX_HEIGHT = 0.12, 0.6
 # A trail goes so many frames back. It is left out where a molecule crosses much of the box between two frames.
 _TRAIL_FRAMES = 12
 _MOST_SEGMENTS = 6000
@@ -100,13 +102,13 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
         cmap=FIELD_COLOURS,
         norm=norm,
         edgecolors=DARK,
-        linewidths=np.where(heavy, theme.line, theme.line / 3),
+        linewidths=np.minimum(_rims(axes, sizes, box), theme.line) * np.where(heavy, 1.0, 1.0 / 3.0),
         zorder=3.0,
     )
     discs.set_array(speed[-1])
     axes.add_collection(discs)
 
-    axes.set_aspect("equal", adjustable="box", anchor="N")
+    axes.set_aspect("equal", adjustable="box", anchor="NW")
     axes.set_xlim(box[0, 0], box[1, 0])
     axes.set_ylim(box[0, 1], box[1, 1])
     axes.spines[:].set(visible=True, linewidth=theme.line * 1.2, color=DARK)
@@ -200,6 +202,13 @@ def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
     if mass.size and mass.min() < mass.max():
         heavy[np.argsort(mass, kind="stable")[mass.size // 2 :]] = True
     return heavy
+
+
+def _rims(axes: Axes, sizes: NDArray[np.float64], box: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how broad rims may be [pt], lest they hide the colours of small discs."""
+    drawing = axes.get_figure(root=True)
+    height = 72.0 * drawing.get_figheight() if drawing else 0.0
+    return _BROADEST_RIM * _BOX_HEIGHT * height * sizes / float(np.max(box[1] - box[0]))
 
 
 def _ratio(value: float) -> str:

@@ -34,7 +34,7 @@ Entry = tuple[tuple[Artist, ...], str]
 _MOST_POINTS = 40
 # A curve that crosses its own range more often than this becomes thinner, lest its scatter be a blot; down to
 # this share of its width.
-_MOST_CROSSINGS, _THINNEST = 25.0, 0.4
+_MOST_CROSSINGS, _THINNEST = 25.0, 0.5
 # Where the ground is missing by so little, the axis of pressure still begins at 1000 hPa.
 _NEAR_THE_GROUND = 930.0
 _ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
@@ -147,7 +147,7 @@ def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], inde
             marker=marker,
             color=style["color"],
             markerfacecolor="white",
-            zorder=style["zorder"],
+            zorder=style["zorder"] + 0.5,
         )
     return (cast(Artist, bars),)
 
@@ -209,8 +209,7 @@ def _style(role: str, theme: Theme, index: int) -> dict[str, Any]:
         return {"color": colour, "linestyle": (0.0, ENVIRONMENT_DASHES), "linewidth": theme.line}
     if role == "reference":
         colour = REFERENCE_COLOURS[index % len(REFERENCE_COLOURS)]
-        width = theme.line * REFERENCE_WIDTH
-        return {"color": colour, "linestyle": "solid", "linewidth": width, "solid_capstyle": "butt"}
+        return {"color": colour, "linestyle": "solid", "linewidth": theme.line * REFERENCE_WIDTH}
     return {"color": DATA_COLOURS[index % len(DATA_COLOURS)], "linestyle": "solid", "linewidth": theme.line}
 
 
@@ -228,8 +227,8 @@ def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
         if np.isfinite([low, high]).all() and 0.0 <= low < 0.2 * high:
             axes.set_ylim(bottom=0.0)
     elif panel.kind == "profile" and panel.y_unit == "hPa":
-        lowest = float(axes.dataLim.intervaly[1])
-        if _NEAR_THE_GROUND < lowest < 1000.0:
-            axes.set_ylim(top=1010.0)
+        top, bottom = axes.dataLim.intervaly
+        if _NEAR_THE_GROUND < bottom < 1000.0:
+            axes.set_ylim(top=1000.0 * (1000.0 / top) ** 0.02)
     axes.xaxis.set_inverted(panel.x_invert)
     axes.yaxis.set_inverted(panel.y_invert)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.errors import DiskFullError, FileError, SettingError
+from atmosbox.plot import tradeoff
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import find, style
 
@@ -91,7 +92,7 @@ def _named(path: Path, format: str | None) -> tuple[Path, str]:
 
 
 def _render(dataset: xr.Dataset, kind: str, theme: str) -> bytes:
-    drawing = figure(dataset, theme)
+    drawing = tradeoff.figure(dataset, theme) if "rung" in dataset.dims else figure(dataset, theme)
     title = str(dataset.attrs.get("title", "atmosbox"))
     parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
     metadata: dict[str, dict[str, Any]] = {

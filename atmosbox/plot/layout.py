@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.panels import Panel, from_json
@@ -24,6 +26,7 @@ _TALL = ("profile", "discs")
 _WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6}
 _TEXT_LINES = 6  # over the axes, for which a page has room; it grows for more
 _ROUNDS = 6  # at most, of placing and measuring, until the texts and the axes agree about the room they have
+_AT_REST = 0.5  # by so much they may still move [pixel]
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
@@ -80,7 +83,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
             if look.grows:
                 drawing.set_figheight(height + max(0.0, texts - _TEXT_LINES * look.text) / 72)
             before, places = places, _place(drawing)
-            if places == before:
+            if np.allclose(places, before, rtol=0.0, atol=_AT_REST):
                 break
         drawing.set_layout_engine("none")
     return drawing
@@ -153,14 +156,14 @@ def _write(pen: Pen, plates: list[Plate]) -> float:
     return sum(tops.values())
 
 
-def _place(drawing: Figure) -> list[tuple[int, ...]]:
-    """Give the axes the room that the texts leave, and return where they stand [tenths of a pixel]."""
+def _place(drawing: Figure) -> NDArray[np.float64]:
+    """Give the axes the room that the texts leave, and return where they stand [pixel]."""
     engine = drawing.get_layout_engine()
     assert engine is not None
     engine.execute(drawing)
     for axes in drawing.axes:
         axes.apply_aspect()
-    return [tuple(round(10 * edge) for edge in axes.get_window_extent().extents) for axes in drawing.axes]
+    return np.array([axes.get_window_extent().extents for axes in drawing.axes])
 
 
 def _panels(dataset: xr.Dataset) -> tuple[Panel, ...]:

@@ -195,6 +195,8 @@ class Plate:
             columnspacing=_BETWEEN,
             labelspacing=0.25,
         )
+        for line in legend.get_lines():
+            line.set_linewidth(max(line.get_linewidth(), self.theme.line))
         self.written.append(legend)
         return legend
 

@@ -150,6 +150,7 @@ def style(theme: Theme) -> AbstractContextManager[None]:
         "lines.linewidth": theme.line,
         "lines.markersize": theme.marker,
         "lines.scale_dashes": True,
+        "lines.solid_capstyle": "butt",
         "xtick.minor.size": 0.15 * theme.text,
         "ytick.minor.size": 0.15 * theme.text,
         "xtick.major.size": 0.35 * theme.text,

@@ -14,6 +14,8 @@ from atmosbox.plot.unit import power_of_ten
 _PRESSURE_LEVELS = (1000.0, 500.0, 300.0, 700.0, 850.0, 400.0, 200.0, 100.0, 50.0, 20.0, 10.0, 250.0, 600.0, 150.0)
 # The digits that are written between two powers of ten, each group wholly or not at all.
 _DIGITS = ((1.0,), (2.0, 5.0), (3.0,), (7.0,), (1.5, 4.0, 6.0, 8.0))
+# An axis over so many times its low end shows powers of ten; just below 1000, lest rounding decide.
+_MANY = 999.0
 # On a longer logarithmic axis the small ticks between the powers of ten would run together.
 _MOST_DECADES = 6.0
 # Numbers beside each other: the width of a digit and the gap between two numbers, in sizes of the type.
@@ -52,13 +54,13 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
     if log:
         return _put_log_ticks(axis, low, high, length, size, pressure=pressure)
     power = _power(low, high)
-    if power:
-        axis.set_major_formatter(FuncFormatter(lambda value, _: _plain(value / 10.0**power)))
     upright = not isinstance(axis, XAxis)
-    for intervals in range(max(2, min(7, int(length / (1.9 * size)))), 1, -1):
+    for intervals in range(max(2, min(7, int(length / (1.5 * size)))), 1, -1):
         locator = MaxNLocator(nbins=intervals, steps=[1, 2, 2.5, 5, 10])
         axis.set_major_locator(locator)
         ticks = [float(value) for value in locator.tick_values(low, high) if low <= value <= high]
+        if power:
+            axis.set_major_formatter(_alike(ticks, power))
         places = [(value - low) / (high - low) * length for value in ticks]
         if upright or _fit(places, axis.get_major_formatter().format_ticks(ticks), size):
             break
@@ -96,7 +98,7 @@ def log_ticks(low: float, high: float, room: float, *, pressure: bool = False) -
         classes = []
     else:
         decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-        digits = _DIGITS if _is_plain(low, high) or high / low < 1e3 else _DIGITS[:1]
+        digits = _DIGITS if _is_plain(low, high) or high / low < _MANY else _DIGITS[:1]
         classes = [[digit * 10.0**decade for decade in decades for digit in each] for each in digits]
     kept: list[float] = []
     for candidates in classes:
@@ -140,12 +142,11 @@ def small_ticks(low: float, high: float) -> list[float]:
 
 
 def _put_log_ticks(axis: Axis, low: float, high: float, length: float, size: float, *, pressure: bool) -> int:
-    wide = not _is_plain(low, high) and high / low >= 1e3
-    power = 0 if wide or _is_plain(low, high) else math.floor(math.log10(low))
+    power = 0 if high / low >= _MANY or _is_plain(low, high) else math.floor(math.log10(low))
     room = 1.9 * size
     while True:
         ticks = log_ticks(low, high, room / length, pressure=pressure)
-        numbers = [_written(tick, power, wide=wide) for tick in ticks]
+        numbers = _written(ticks, power)
         places = [math.log10(tick / low) / math.log10(high / low) * length for tick in ticks]
         if not isinstance(axis, XAxis) or room > length / 2 or _fit(places, numbers, size):
             break
@@ -157,12 +158,20 @@ def _put_log_ticks(axis: Axis, low: float, high: float, length: float, size: flo
     return power
 
 
-def _written(tick: float, power: int, *, wide: bool) -> str:
-    """Return the number at a tick; on an axis of many decades all are powers of ten, so that none looks odd."""
-    exponent = math.log10(tick)
-    if wide and abs(exponent - round(exponent)) < 1e-9:
-        return power_of_ten(round(exponent))
-    return _plain(tick / 10.0**power)
+def _written(ticks: list[float], power: int) -> list[str]:
+    """Return the numbers at ticks, all as powers of ten where one of them would be too long otherwise."""
+    exponents = [math.log10(tick) for tick in ticks]
+    decades = all(abs(exponent - round(exponent)) < 1e-9 for exponent in exponents)
+    if decades and not power and not _is_plain(1.001 * ticks[0], ticks[-1]):
+        return [power_of_ten(round(exponent)) for exponent in exponents]
+    return [_plain(tick / 10.0**power) for tick in ticks]
+
+
+def _alike(ticks: list[float], power: int) -> FuncFormatter:
+    """Return what writes ticks at even distances with equally many decimals, in units of a power of ten."""
+    step = min((b - a for a, b in pairwise(ticks)), default=1.0) / 10.0**power
+    decimals = next((places for places in range(9) if abs(step * 10**places % 1.0 - 0.5) > 0.4999), 9)
+    return FuncFormatter(lambda value, _: f"{value / 10.0**power:.{decimals}f}".replace("-", "−"))
 
 
 def _fit(places: list[float], numbers: list[str], size: float) -> bool:

@@ -15,7 +15,7 @@ speed               how fast are they
 wall                what hits a wall and what leaves it; the heat between two walls in a very thin gas
 noise               how much does an honest measurement scatter
 barometric          how does a gas thin out with height
-hydrostatic         the same for spheres that take up room
+hydrostatic         the same for spheres and discs that take up room
 lifting             what becomes of a parcel that is lifted, squeezed or held at its temperature
 environment         the air around it: lapse rates, pressures and heights
 standard_atmosphere the same of the International Standard Atmosphere
@@ -41,12 +41,22 @@ from atmosbox.theory.collision import (
     mean_free_time,
 )
 from atmosbox.theory.disc import (
+    FREEZING_PACKING_FRACTION_DISCS,
     collision_rate_discs,
     compressibility_factor_discs,
     contact_value_discs,
+    gas_pressure_discs,
+    inverse_compressibility_discs,
+    mean_free_path_discs,
     packing_fraction_discs,
 )
-from atmosbox.theory.entropy import excess_chemical_potential, excess_free_energy, hard_sphere_isentrope
+from atmosbox.theory.entropy import (
+    excess_chemical_potential,
+    excess_chemical_potential_discs,
+    excess_free_energy,
+    excess_free_energy_discs,
+    hard_sphere_isentrope,
+)
 from atmosbox.theory.environment import (
     DRY_AIR_GAS_CONSTANT,
     environment_pressure,
@@ -101,6 +111,7 @@ from atmosbox.theory.wall import (
 __all__ = [
     "DRY_AIR_GAS_CONSTANT",
     "FREEZING_PACKING_FRACTION",
+    "FREEZING_PACKING_FRACTION_DISCS",
     "FreeMolecularSlab",
     "adiabatic_index",
     "adiabatic_temperature",
@@ -133,9 +144,12 @@ __all__ = [
     "environment_pressure",
     "environment_temperature",
     "excess_chemical_potential",
+    "excess_chemical_potential_discs",
     "excess_free_energy",
+    "excess_free_energy_discs",
     "free_molecular_slab",
     "gas_pressure",
+    "gas_pressure_discs",
     "hard_sphere_isentrope",
     "heat_noise",
     "height_of_pressure",
@@ -143,6 +157,7 @@ __all__ = [
     "hydrostatic_layers",
     "hypsometric_thickness",
     "inverse_compressibility",
+    "inverse_compressibility_discs",
     "isa_height",
     "isa_pressure",
     "isa_temperature",
@@ -150,6 +165,7 @@ __all__ = [
     "maxwell_speed_cumulative",
     "maxwell_speed_density",
     "mean_free_path",
+    "mean_free_path_discs",
     "mean_free_time",
     "mean_speed",
     "most_probable_speed",

@@ -13,8 +13,25 @@ from atmosbox.theory._array import FloatArray, as_floats
 
 DiscForm = Literal["henderson", "santos-lopez-yuste"]
 
-_CLOSE_PACKING = np.pi * np.sqrt(3.0) / 6.0
-_HIGHEST_PACKING: dict[str, float] = {"henderson": 1.0, "santos-lopez-yuste": _CLOSE_PACKING}
+FREEZING_PACKING_FRACTION_DISCS = 0.700
+"""Packing fraction above which discs begin to order (Bernard & Krauth 2011, doi:10.1103/PhysRevLett.107.155704)."""
+
+CLOSE_PACKING_DISCS = np.pi * np.sqrt(3.0) / 6.0
+"""Packing fraction of the closest packing of discs, each with six neighbours."""
+
+_BEND = (2.0 * CLOSE_PACKING_DISCS - 1.0) / CLOSE_PACKING_DISCS**2
+_HIGHEST_PACKING: dict[str, float] = {"henderson": 1.0, "santos-lopez-yuste": CLOSE_PACKING_DISCS}
+
+
+def checked_packing_fraction_discs(packing_fraction: ArrayLike, form: DiscForm) -> FloatArray:
+    """Return the packing fractions as floats once the equation of state is known to hold for all of them."""
+    if form not in _HIGHEST_PACKING:
+        raise ValueError(f"form = {form!r} must be one of {', '.join(_HIGHEST_PACKING)}.")
+    eta = as_floats(packing_fraction)
+    highest = _HIGHEST_PACKING[form]
+    if not np.all((eta >= 0.0) & (eta < highest)):
+        raise ValueError(f"packing_fraction must lie in [0, {highest:.4g}) for the {form} equation of state.")
+    return eta
 
 
 def packing_fraction_discs(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray:
@@ -72,16 +89,10 @@ def contact_value_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson
     >>> round(float(contact_value_discs(0.3)), 4)
     1.773
     """
-    if form not in _HIGHEST_PACKING:
-        raise ValueError(f"form = {form!r} must be one of {', '.join(_HIGHEST_PACKING)}.")
-    eta = as_floats(packing_fraction)
-    if not np.all((eta >= 0.0) & (eta < _HIGHEST_PACKING[form])):
-        highest = _HIGHEST_PACKING[form]
-        raise ValueError(f"packing_fraction must lie in [0, {highest:.4g}) for the {form} equation of state.")
+    eta = checked_packing_fraction_discs(packing_fraction, form)
     if form == "henderson":
         return (1.0 - 7.0 * eta / 16.0) / (1.0 - eta) ** 2
-    bend = (2.0 * _CLOSE_PACKING - 1.0) / _CLOSE_PACKING**2
-    contact: FloatArray = (1.0 - bend * eta / 2.0) / (1.0 - 2.0 * eta + bend * eta**2)
+    contact: FloatArray = (1.0 - _BEND * eta / 2.0) / (1.0 - 2.0 * eta + _BEND * eta**2)
     return contact
 
 
@@ -118,6 +129,91 @@ def compressibility_factor_discs(packing_fraction: ArrayLike, form: DiscForm = "
     4.125
     """
     return 1.0 + 2.0 * as_floats(packing_fraction) * contact_value_discs(packing_fraction, form)
+
+
+def inverse_compressibility_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+    r"""Return how stiff a plane gas is against squeezing at constant temperature, :math:`d(\eta Z) / d\eta`.
+
+    It is :math:`(\partial P / \partial n)_T / kT`, and 1 for an ideal gas.
+
+    Parameters
+    ----------
+    packing_fraction
+        Share of the area covered [1].
+    form
+        ``"henderson"`` [1]_, :math:`(1 + \eta + 3\eta^2/8 - \eta^3/8) / (1 - \eta)^3`, or
+        ``"santos-lopez-yuste"`` [2]_, as in :func:`compressibility_factor_discs`.
+
+    Returns
+    -------
+    ndarray
+        Reduced inverse compressibility [1].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+    .. [2] Santos, A., López de Haro, M., Yuste, S. B. (1995), J. Chem. Phys. 103, 4622.
+
+    Examples
+    --------
+    Discs that cover half of the plane are thirteen times as stiff as points:
+
+    >>> round(float(inverse_compressibility_discs(0.5)), 3)
+    12.625
+    """
+    eta = checked_packing_fraction_discs(packing_fraction, form)
+    if form == "henderson":
+        return (1.0 + eta + 0.375 * eta**2 - 0.125 * eta**3) / (1.0 - eta) ** 3
+    stiffness: FloatArray = (1.0 - _BEND * eta**2) / (1.0 - 2.0 * eta + _BEND * eta**2) ** 2
+    return stiffness
+
+
+def gas_pressure_discs(
+    number_density: ArrayLike, kT: ArrayLike, diameter: ArrayLike = 0.0, form: DiscForm = "henderson"
+) -> FloatArray:
+    r"""Return the pressure of a gas of discs, a force per length, :math:`P = n k T Z`.
+
+    Parameters
+    ----------
+    number_density
+        Molecules per area [length^-2].
+    kT
+        Temperature as an energy [energy].
+    diameter
+        Diameter of a disc [length]; zero for an ideal gas.
+    form
+        Equation of state, as in :func:`compressibility_factor_discs`.
+
+    Returns
+    -------
+    ndarray
+        Pressure [energy length^-2].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+
+    Examples
+    --------
+    Where they cover a tenth of the plane, discs press 24 % harder than points:
+
+    >>> n = 0.1 * 4.0 / np.pi
+    >>> round(float(gas_pressure_discs(n, 1.0, 1.0) / gas_pressure_discs(n, 1.0)), 3)
+    1.236
+    """
+    density = as_floats(number_density)
+    packing = packing_fraction_discs(density, diameter)
+    return density * as_floats(kT) * compressibility_factor_discs(packing, form)
 
 
 def collision_rate_discs(
@@ -167,3 +263,44 @@ def collision_rate_discs(
     sweep = 2.0 * as_floats(number_density) * as_floats(diameter)
     rate: FloatArray = sweep * contact * np.sqrt(np.pi * as_floats(kT) / as_floats(mass))
     return rate
+
+
+def mean_free_path_discs(number_density: ArrayLike, diameter: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+    r"""Return the mean distance between two collisions of one disc, :math:`\lambda = 1 / (2\sqrt{2}\, n \sigma g)`.
+
+    It is the mean speed in the plane, :math:`\sqrt{\pi k T / 2 m}`, over :func:`collision_rate_discs` [1]_.
+
+    Parameters
+    ----------
+    number_density
+        Molecules per area [length^-2], above zero.
+    diameter
+        Diameter of a disc [length], above zero.
+    form
+        Equation of state that gives the contact value, as in :func:`compressibility_factor_discs`.
+
+    Returns
+    -------
+    ndarray
+        Mean free path [length].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Gass, D. M. (1971), J. Chem. Phys. 54, 1898.
+
+    Examples
+    --------
+    In a thin gas a disc flies until the strip that it sweeps, made wider by a factor :math:`\sqrt{2}` because
+    the others move too, holds one other:
+
+    >>> round(float(mean_free_path_discs(1e-4, 1.0)))
+    3535
+    """
+    contact = contact_value_discs(packing_fraction_discs(number_density, diameter), form)
+    path: FloatArray = 1.0 / (2.0 * np.sqrt(2.0) * as_floats(number_density) * as_floats(diameter) * contact)
+    return path

@@ -3,7 +3,7 @@ r"""What the room that molecules take from each other does to entropy, free ener
 References
 ----------
 Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048. Kolafa, J., Labík, S., Malijevský, A. (2004),
-doi:10.1039/B402792B.
+doi:10.1039/B402792B. Henderson, D. (1975), doi:10.1080/00268977500102511.
 """
 
 import numpy as np
@@ -11,6 +11,12 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
+from atmosbox.theory.disc import (
+    CLOSE_PACKING_DISCS,
+    DiscForm,
+    checked_packing_fraction_discs,
+    compressibility_factor_discs,
+)
 from atmosbox.theory.equation_of_state import (
     Form,
     checked_packing_fraction,
@@ -105,6 +111,84 @@ def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa"
     12
     """
     return excess_free_energy(packing_fraction, form) + compressibility_factor(packing_fraction, form) - 1.0
+
+
+def excess_free_energy_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+    r"""Return the free energy per disc, in units of kT, that taking up room adds to an ideal plane gas.
+
+    :math:`a(\eta) = \int_0^\eta (Z - 1)\, d\eta' / \eta'`, as :func:`excess_free_energy` of spheres.
+
+    Parameters
+    ----------
+    packing_fraction
+        Share of the area covered [1].
+    form
+        Equation of state: ``"henderson"`` [1]_, of which
+        :math:`a = \frac{9 \eta}{8 (1 - \eta)} - \frac{7}{8} \ln (1 - \eta)`, or ``"santos-lopez-yuste"`` [2]_,
+        of which :math:`a = [(2\eta_{cp} - 1) \ln (1 - (2\eta_{cp} - 1) \eta / \eta_{cp}) -
+        \ln (1 - \eta / \eta_{cp})] / 2 (1 - \eta_{cp})`.
+
+    Returns
+    -------
+    ndarray
+        Excess free energy per disc over kT [1].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+    .. [2] Santos, A., López de Haro, M., Yuste, S. B. (1995), J. Chem. Phys. 103, 4622.
+
+    Examples
+    --------
+    >>> round(float(excess_free_energy_discs(0.2)), 4)
+    0.4765
+    """
+    eta = checked_packing_fraction_discs(packing_fraction, form)
+    if form == "henderson":
+        energy: FloatArray = 1.125 * eta / (1.0 - eta) - 0.875 * np.log1p(-eta)
+        return energy
+    share, rest = eta / CLOSE_PACKING_DISCS, 2.0 * CLOSE_PACKING_DISCS - 1.0
+    bent: FloatArray = (rest * np.log1p(-rest * share) - np.log1p(-share)) / (1.0 - rest)
+    return bent
+
+
+def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+    r"""Return the work, in units of kT, of making room for one more disc, :math:`a(\eta) + Z(\eta) - 1`.
+
+    Parameters
+    ----------
+    packing_fraction
+        Share of the area covered [1].
+    form
+        Equation of state, as in :func:`excess_free_energy_discs`.
+
+    Returns
+    -------
+    ndarray
+        Excess chemical potential over kT [1].
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+
+    Examples
+    --------
+    One place in three is free for a disc where a fifth of the plane is covered:
+
+    >>> round(float(np.exp(excess_chemical_potential_discs(0.2))))
+    3
+    """
+    return excess_free_energy_discs(packing_fraction, form) + compressibility_factor_discs(packing_fraction, form) - 1.0
 
 
 def hard_sphere_isentrope(

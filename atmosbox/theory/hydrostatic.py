@@ -1,4 +1,4 @@
-r"""A column of spheres that take up room, in gravity: the barometric law of a gas that is not ideal.
+r"""A column of spheres or discs that take up room, in gravity: the barometric law of a gas that is not ideal.
 
 Each layer carries the weight of those above, :math:`dP/dz = -n m g`, and the column is isothermal. With
 :math:`P = n k T Z(\phi)` this says that the chemical potential falls by the work of lifting,
@@ -6,7 +6,7 @@ Each layer carries the weight of those above, :math:`dP/dz = -n m g`, and the co
 .. math:: \ln \phi + \mu_{ex}(\phi)/kT = \text{const} - m g z / kT,
 
 which is solved here at each height, and for the constant that gives the right number of molecules. The layers
-of spheres that form against a wall within a few diameters are not in it: this is the local-density
+of molecules that form against a wall within a few diameters are not in it: this is the local-density
 approximation.
 
 References
@@ -22,15 +22,10 @@ from numpy.typing import ArrayLike
 from scipy import optimize
 
 from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
+from atmosbox.theory._crowding import Crowding, crowding
 from atmosbox.theory.barometric import barometric_density
-from atmosbox.theory.entropy import excess_chemical_potential
-from atmosbox.theory.equation_of_state import (
-    FREEZING_PACKING_FRACTION,
-    Form,
-    compressibility_factor,
-    inverse_compressibility,
-    packing_fraction,
-)
+from atmosbox.theory.disc import DiscForm
+from atmosbox.theory.equation_of_state import Form
 
 _NODES, _WEIGHTS = leggauss(16)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
@@ -38,21 +33,21 @@ _SHALLOW = 0.01
 """Scale heights below which the mean density is an integral, not the difference of two pressures."""
 
 
-def _potential(log_packing: ArrayLike, form: Form) -> FloatArray:
+def _potential(log_packing: ArrayLike, gas: Crowding) -> FloatArray:
     """Return the chemical potential over kT, but for a constant, of a gas of given ln(packing fraction)."""
-    return as_floats(log_packing) + excess_chemical_potential(np.exp(log_packing), form)
+    return as_floats(log_packing) + gas.chemical_potential(np.exp(log_packing))
 
 
-def _packing_of_potential(potential: ArrayLike, form: Form) -> FloatArray:
+def _packing_of_potential(potential: ArrayLike, gas: Crowding) -> FloatArray:
     """Return the packing fraction at which the gas has a chemical potential.
 
     Newton's method in ln(packing fraction). The potential is increasing and convex in it, so starting above
     the root each step stays above and the steps shrink to rounding.
     """
     wanted = as_floats(potential)
-    guess = np.minimum(wanted, np.log(FREEZING_PACKING_FRACTION))
+    guess = np.minimum(wanted, np.log(gas.freezing))
     for _ in range(100):
-        step = (_potential(guess, form) - wanted) / inverse_compressibility(np.exp(guess), form)
+        step = (_potential(guess, gas) - wanted) / gas.stiffness(np.exp(guess))
         guess = guess - step
         if np.all(np.abs(step) <= 1e-14 * np.maximum(1.0, np.abs(guess))):
             break
@@ -60,16 +55,16 @@ def _packing_of_potential(potential: ArrayLike, form: Form) -> FloatArray:
     return packing
 
 
-def _mean_packing(floor_potential: float, depth: float, form: Form) -> float:
+def _mean_packing(floor_potential: float, depth: float, gas: Crowding) -> float:
     """Return the mean packing fraction of a column, its depth given in scale heights.
 
     The column carries its own weight, so the mean is the difference of the pressures below and above over the
     depth.
     """
     if depth < _SHALLOW:
-        return float(_packing_of_potential(floor_potential - depth * _NODES, form) @ _WEIGHTS)
-    ends = _packing_of_potential([floor_potential, floor_potential - depth], form)
-    pressure = ends * compressibility_factor(ends, form)
+        return float(_packing_of_potential(floor_potential - depth * _NODES, gas) @ _WEIGHTS)
+    ends = _packing_of_potential([floor_potential, floor_potential - depth], gas)
+    pressure = ends * gas.compressibility_factor(ends)
     return float(pressure[0] - pressure[1]) / depth
 
 
@@ -81,34 +76,37 @@ def _profile(
     mass: float,
     gravity: float,
     diameter: float,
-    form: Form,
+    form: Form | DiscForm | None,
+    dimensions: int,
 ) -> Callable[[FloatArray], FloatArray]:
     """Return the function that gives the number density at heights inside the column."""
     require_positive(molecules_per_area=molecules_per_area, kT=kT, mass=mass)
     require_not_negative(gravity=gravity, diameter=diameter)
+    gas = crowding(dimensions, form)
     if not top > bottom:
         raise ValueError(f"top = {top} must lie above bottom = {bottom}.")
     if diameter == 0.0:
         return lambda height: barometric_density(height, molecules_per_area, bottom, top, kT, mass, gravity)
 
-    mean = float(packing_fraction(molecules_per_area / (top - bottom), diameter))
+    mean = float(gas.packing_fraction(molecules_per_area / (top - bottom), diameter))
     depth = mass * gravity * (top - bottom) / kT
-    low, high = np.log(mean) - 1e-6, np.log(FREEZING_PACKING_FRACTION)
+    low, high = np.log(mean) - 1e-6, np.log(gas.freezing)
 
     def surplus(log_floor: float) -> float:
-        return _mean_packing(float(_potential(log_floor, form)), depth, form) / mean - 1.0
+        return _mean_packing(float(_potential(log_floor, gas)), depth, gas) / mean - 1.0
 
-    if not mean < FREEZING_PACKING_FRACTION or surplus(high) < 0.0:
+    if not mean < gas.freezing or surplus(high) < 0.0:
+        space = "plane" if dimensions == 2 else "space"
         raise ValueError(
             f"molecules_per_area = {molecules_per_area:.4g} is more than a gas can hold in this column: "
-            f"at the floor it would fill more than {FREEZING_PACKING_FRACTION} of the space and freeze."
+            f"at the floor it would fill more than {gas.freezing} of the {space} and freeze."
         )
     log_floor = float(optimize.brentq(surplus, low, high, xtol=1e-14, rtol=1e-14))
-    floor = float(_potential(log_floor, form))
-    volume = float(packing_fraction(1.0, diameter))
+    floor = float(_potential(log_floor, gas))
+    volume = float(gas.packing_fraction(1.0, diameter))
 
     def density(height: FloatArray) -> FloatArray:
-        return _packing_of_potential(floor - depth * (height - bottom) / (top - bottom), form) / volume
+        return _packing_of_potential(floor - depth * (height - bottom) / (top - bottom), gas) / volume
 
     return density
 
@@ -122,9 +120,10 @@ def hydrostatic_column(
     mass: float,
     gravity: float,
     diameter: float,
-    form: Form = "kolafa",
+    form: Form | DiscForm | None = None,
+    dimensions: int = 3,
 ) -> FloatArray:
-    r"""Return how many spheres per volume there are at each height of a closed isothermal column.
+    r"""Return how many molecules per volume there are at each height of a closed isothermal column.
 
     Spheres take up room, so they pile up higher than the barometric law of an ideal gas says.
 
@@ -133,7 +132,7 @@ def hydrostatic_column(
     height
         Heights [length]; outside the column the density is zero.
     molecules_per_area
-        Molecules above each unit of area [length^-2].
+        Molecules above each unit of area [length^-2]; in a plane, above each unit of length [length^-1].
     bottom, top
         Lowest and highest place of a molecule's centre [length]: one radius from the floor and from the
         ceiling.
@@ -146,17 +145,21 @@ def hydrostatic_column(
     diameter
         Diameter of a molecule [length]; zero gives :func:`atmosbox.theory.barometric_density`.
     form
-        Equation of state, as in :func:`atmosbox.theory.compressibility_factor`.
+        Equation of state, as in :func:`atmosbox.theory.compressibility_factor`, ``"kolafa"`` by default; of
+        discs as in :func:`atmosbox.theory.compressibility_factor_discs`, ``"henderson"`` by default.
+    dimensions
+        3, or 2 for discs in a plane.
 
     Returns
     -------
     ndarray
-        Number density of centres [length^-3].
+        Number density of centres [length^-3; in a plane, length^-2].
 
     Raises
     ------
     ValueError
-        If a setting is not positive, or the gas at the floor would be so dense that it freezes.
+        If a setting is not positive, dimensions is neither 2 nor 3, or the gas at the floor would be so dense
+        that it freezes.
 
     Notes
     -----
@@ -167,6 +170,7 @@ def hydrostatic_column(
     ----------
     .. [1] Both, J. A., Hong, D. C. (2001), doi:10.1103/PhysRevE.64.061105.
     .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    .. [3] Henderson, D. (1975), doi:10.1080/00268977500102511.
 
     Examples
     --------
@@ -178,7 +182,7 @@ def hydrostatic_column(
     array([0.1969, 0.0096])
     """
     z = as_floats(height)
-    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form)
+    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
     inside = (z >= bottom) & (z <= top)
     density: FloatArray = np.where(inside, profile(np.clip(z, bottom, top)), 0.0)
     return density
@@ -193,7 +197,8 @@ def hydrostatic_layers(
     mass: float,
     gravity: float,
     diameter: float = 0.0,
-    form: Form = "kolafa",
+    form: Form | DiscForm | None = None,
+    dimensions: int = 3,
 ) -> FloatArray:
     r"""Return the mean number density in each layer of a closed isothermal column.
 
@@ -204,7 +209,7 @@ def hydrostatic_layers(
     edges : (layers + 1,)
         Heights between the layers, rising [length]. The part of a layer outside the column counts as empty.
     molecules_per_area
-        Molecules above each unit of area [length^-2].
+        Molecules above each unit of area [length^-2]; in a plane, above each unit of length [length^-1].
     bottom, top
         Lowest and highest place of a molecule's centre [length].
     kT
@@ -216,17 +221,21 @@ def hydrostatic_layers(
     diameter
         Diameter of a molecule [length]; zero for an ideal gas.
     form
-        Equation of state, as in :func:`atmosbox.theory.compressibility_factor`.
+        Equation of state, as in :func:`atmosbox.theory.compressibility_factor`, ``"kolafa"`` by default; of
+        discs as in :func:`atmosbox.theory.compressibility_factor_discs`, ``"henderson"`` by default.
+    dimensions
+        3, or 2 for discs in a plane.
 
     Returns
     -------
     ndarray : (layers,)
-        Mean number density of centres in each layer [length^-3].
+        Mean number density of centres in each layer [length^-3; in a plane, length^-2].
 
     Raises
     ------
     ValueError
-        If the edges do not rise, a setting is not positive, or the gas at the floor would freeze.
+        If the edges do not rise, a setting is not positive, dimensions is neither 2 nor 3, or the gas at the
+        floor would freeze.
 
     Notes
     -----
@@ -249,7 +258,7 @@ def hydrostatic_layers(
     z = as_floats(edges)
     if z.ndim != 1 or z.size < 2 or not np.all(np.diff(z) > 0.0):
         raise ValueError("edges must be at least two heights, each above the one before.")
-    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form)
+    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
     lower, upper = np.clip(z[:-1], bottom, top), np.clip(z[1:], bottom, top)
     places = lower[:, np.newaxis] + (upper - lower)[:, np.newaxis] * _NODES
     layers: FloatArray = profile(places) @ _WEIGHTS * (upper - lower) / np.diff(z)

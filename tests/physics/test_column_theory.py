@@ -1,4 +1,4 @@
-"""Columns in gravity: the barometric law, and spheres that carry each other's weight."""
+"""Columns in gravity: the barometric law, and spheres or discs that carry each other's weight."""
 
 import numpy as np
 import pytest
@@ -135,11 +135,98 @@ def test_a_very_deep_column_ends_in_vacuum_without_a_warning():
     assert density[0] > density[1] > density[2] == 0.0
 
 
+PLANE = DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "dimensions": 2}
+
+
+@pytest.mark.parametrize("form", ["henderson", "santos-lopez-yuste"])
+def test_the_free_energy_of_discs_is_the_integral_of_their_pressure(form):
+    covered = np.linspace(0.0, 0.7, 29)
+
+    def integrand(eta):
+        return 2.0 * float(theory.contact_value_discs(eta, form))
+
+    room = [integrate.quad(integrand, 0.0, eta, epsabs=0.0, epsrel=1e-13)[0] for eta in covered]
+    assert np.allclose(theory.excess_free_energy_discs(covered, form), room, rtol=1e-12, atol=0.0)
+    # and its slope is that pressure: d a / d ln(eta) = Z - 1
+    step = 1e-5
+    inside = covered[1:-1]
+    above, below = inside * (1.0 + step), inside * (1.0 - step)
+    slope = theory.excess_free_energy_discs(above, form) - theory.excess_free_energy_discs(below, form)
+    excess = theory.compressibility_factor_discs(inside, form) - 1.0
+    assert np.allclose(slope / (2.0 * step), excess, rtol=1e-7, atol=0.0)
+
+
+@pytest.mark.parametrize("form", ["henderson", "santos-lopez-yuste"])
+def test_the_stiffness_of_discs_is_the_slope_of_their_pressure_and_of_their_potential(form):
+    covered, step = np.linspace(0.01, 0.69, 18), 1e-6
+    above, below = covered * (1.0 + step), covered * (1.0 - step)
+    stiffness = theory.inverse_compressibility_discs(covered, form)
+
+    def slope(pressure):
+        return (pressure(above) - pressure(below)) / (2.0 * step)
+
+    pressed = slope(lambda eta: eta * theory.compressibility_factor_discs(eta, form)) / covered
+    assert np.allclose(pressed, stiffness, rtol=1e-8, atol=0.0)
+    lifted = slope(lambda eta: np.log(eta) + theory.excess_chemical_potential_discs(eta, form))
+    assert np.allclose(lifted, stiffness, rtol=1e-8, atol=0.0)
+    # it rises, on which the search for the packing fraction of a potential rests
+    assert (np.diff(theory.inverse_compressibility_discs(np.linspace(0.0, 0.7, 1000), form)) > 0.0).all()
+
+
+def test_discs_fly_as_far_as_their_speed_over_their_collision_rate():
+    density = np.array([1e-6, 0.1, 0.8])
+    path = theory.mean_free_path_discs(density, 0.9)
+    rate = theory.collision_rate_discs(density, 0.9, 1.3, 0.7)
+    assert np.allclose(path, theory.mean_speed(1.3, 0.7, dimensions=2) / rate, rtol=1e-14, atol=0.0)
+    assert path[0] == pytest.approx(1.0 / (2.0 * np.sqrt(2.0) * 1e-6 * 0.9), rel=1e-5)
+
+
+@pytest.mark.parametrize("form", [None, "santos-lopez-yuste"])
+def test_a_plane_column_is_in_hydrostatic_balance(form):
+    heights = np.linspace(0.5, 11.5, 12)
+    density = theory.hydrostatic_column(heights, **PLANE, form=form)
+
+    def balance(_height, n):
+        covered = theory.packing_fraction_discs(n, 1.0)
+        return -n * 1.5 * 0.3 / (1.2 * theory.inverse_compressibility_discs(covered, form or "henderson"))
+
+    fall = integrate.solve_ivp(
+        balance, (0.5, 11.5), density[:1], t_eval=heights, method="DOP853", rtol=1e-12, atol=1e-14
+    )
+    assert density[0] > 2.0 * density[-1]
+    assert theory.packing_fraction_discs(density[0], 1.0) > 0.4
+    assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
+
+
+@pytest.mark.parametrize("form", [None, "santos-lopez-yuste"])
+def test_a_plane_column_holds_its_molecules_and_carries_their_weight(form):
+    nodes, weights = leggauss(64)
+    inside = theory.hydrostatic_column(6.0 + 5.5 * nodes, **PLANE, form=form)
+    assert 5.5 * weights @ inside == pytest.approx(4.0, rel=1e-11)
+    ends = theory.hydrostatic_column([0.5, 11.5], **PLANE, form=form)
+    floor, ceiling = theory.gas_pressure_discs(ends, 1.2, 1.0, form or "henderson")
+    assert floor - ceiling == pytest.approx(theory.column_weight(4.0, 1.5, 0.3), rel=1e-12)
+    edges = np.array([0.0, 0.4, 2.0, 5.0, 9.0, 12.0])
+    layers = theory.hydrostatic_layers(edges, **PLANE, form=form)
+    assert layers @ np.diff(edges) == pytest.approx(4.0, rel=1e-12)
+
+
+def test_a_plane_column_of_tiny_discs_is_barometric():
+    heights = np.linspace(0.0, 12.0, 25)
+    tiny = theory.hydrostatic_column(heights, **(PLANE | {"diameter": 1e-7}))
+    points = theory.hydrostatic_column(
+        heights, **(DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "diameter": 0.0})
+    )
+    assert np.allclose(tiny, points, rtol=1e-11, atol=0.0)
+
+
 def test_a_column_that_would_freeze_is_refused():
     with pytest.raises(ValueError, match="molecules_per_area = 12 is more than a gas can hold"):
         theory.hydrostatic_column(1.0, **(DENSE | {"molecules_per_area": 12.0}))
     with pytest.raises(ValueError, match="freeze"):
         theory.hydrostatic_column(1.0, **(DENSE | {"gravity": 100.0}))
+    with pytest.raises(ValueError, match=r"more than 0\.7 of the plane and freeze"):
+        theory.hydrostatic_column(1.0, **(PLANE | {"molecules_per_area": 12.0}))
 
 
 @pytest.mark.parametrize(
@@ -149,6 +236,9 @@ def test_a_column_that_would_freeze_is_refused():
         ({"mass": np.nan}, "mass = nan must be a finite number above 0"),
         ({"gravity": -1.0}, "gravity = -1.0 must be a finite number of at least 0"),
         ({"top": 0.5}, "top = 0.5 must lie above bottom = 0.5"),
+        ({"dimensions": 4}, "dimensions = 4 must be 2 or 3"),
+        ({"form": "henderson"}, "form = 'henderson' must be one of kolafa, carnahan-starling"),
+        ({"form": "kolafa", "dimensions": 2}, "form = 'kolafa' must be one of henderson, santos-lopez-yuste"),
     ],
 )
 def test_columns_that_make_no_sense_are_refused(wrong, sentence):

@@ -1,0 +1,94 @@
+"""What was known of the errors of a run beforehand, beside what the run found: as lines of text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.accuracy import cost
+from atmosbox.cli.table import table, wrapped
+
+if TYPE_CHECKING:
+    from atmosbox.accuracy import Expectation, ExpectedError
+    from atmosbox.headline import Headline
+
+
+def expectation_lines(
+    expectation: Expectation | None, headlines: Sequence[Headline], engine: str, width: int
+) -> list[str]:
+    """Return what was picked and which errors are to be expected, with those that were found if there are any.
+
+    Parameters
+    ----------
+    expectation
+        What is known; None where nothing was asked for, or the engine was not measured at these settings.
+    headlines
+        What the run found; none before it.
+    engine
+        The engine with its options.
+    width
+        How many columns the lines may take.
+    """
+    if expectation is None:
+        if engine == "exact":
+            return []
+        return [f"no error was measured for the engine {engine} at these settings: hold it against --engine exact"]
+    way, wish = expectation.way, expectation.wish
+    said = f"{way.label}: {cost(way.cost)}"
+    if wish is not None:
+        limits = "the most accurate that was measured" if wish.best else f"within {wish.limits}"
+        within = limits if wish.limits.replace(" ", "") != wish.text else "within it"
+        said = f"accuracy {wish.text}, {within}: {said}"
+    lines = wrapped(said, width)
+    if wish is not None and not expectation.met:
+        lines += wrapped(f"Nothing that was measured is within {wish.limits}: this is what comes nearest.", width)
+    found = {headline.name: headline for headline in headlines}
+    rows = [
+        [
+            expectation.labels[name],
+            _shown(error, error.total),
+            f"{_shown(error, error.bias, '+')} ± {_shown(error, error.bias_se)}",
+            _shown(error, error.noise),
+            _found(error, found.get(name)),
+        ]
+        for name, error in way.errors.items()
+    ]
+    header = ["expected of a single run", "error", "of it bias", "and noise", "found"]
+    if not headlines:
+        header, rows = header[:-1], [row[:-1] for row in rows]
+    lines += table(header, rows, width)
+    runs = f"measured in {way.members} runs"
+    if expectation.differs:
+        where = f"with {', '.join(_setting(way.settings, name) for name in expectation.differs)}"
+        lines += wrapped(f"These errors were {runs} at other settings, {where}; here they may be others.", width)
+    return lines
+
+
+def _setting(settings: Any, name: str) -> str:
+    """Return a setting as it was when the errors were measured."""
+    return f"{name}={settings[name]}" if name in settings else f"the default of {name}"
+
+
+def _shown(error: ExpectedError, size: float, sign: str = "") -> str:
+    """Return an error with two digits and its unit."""
+    number = size if error.unit == "K" else 100.0 * size
+    return f"{float(f'{number:.2g}'):{sign}g} {'K' if error.unit == 'K' else '%'}"
+
+
+def _found(error: ExpectedError, headline: Headline | None) -> str:
+    """Return the misfit of a run in the unit of an error."""
+    if headline is None or headline.misfit is None or not (size := error.size(headline.theory)):
+        return "-"
+    return _shown(error, headline.misfit / size, "+")
+
+
+def expectation_json(expectation: Expectation | None, headlines: Sequence[Headline] = ()) -> dict[str, Any] | None:
+    """Return what was known of a run's errors for JSON, with what it found; None where nothing was."""
+    if expectation is None:
+        return None
+    made = expectation.as_dict()
+    for headline in headlines:
+        if headline.name in made["errors"] and headline.misfit is not None:
+            size = expectation.way.errors[headline.name].size(headline.theory)
+            made["errors"][headline.name]["found"] = headline.misfit / size if size else None
+    return made

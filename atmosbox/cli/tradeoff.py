@@ -1,0 +1,189 @@
+"""What ``atmosbox tradeoff`` does: measure speed against accuracy, and say, save and draw it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from atmosbox.cli.progress import progress
+from atmosbox.cli.run import default_path
+from atmosbox.cli.table import measurement, number, table, wrapped
+from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
+from atmosbox.errors import SettingError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COLUMNS = ("wall_seconds", "cpu_seconds", "cost", "members", "energy_drift", "ledger", "missed", "escaped")
+
+
+def tradeoff(
+    scene: str,
+    *,
+    values: Sequence[str],
+    budget: str,
+    seed: str | None,
+    out: str | None,
+    force: bool,
+    as_json: bool,
+    quiet: bool,
+    words: Sequence[str],
+) -> None:
+    """Measure the errors and the cost of many ways of running a scene, and say what came out.
+
+    Parameters
+    ----------
+    scene
+        The name of the scene.
+    values
+        What stood behind each ``--set``.
+    budget
+        For how long to measure.
+    seed
+        The first seed.
+    out, force
+        The netCDF file, and whether files may be replaced; a table and a figure stand beside it.
+    as_json, quiet
+        The options of these names.
+    words
+        What was typed, for the history of the file.
+
+    Raises
+    ------
+    AtmosboxError
+        If something is refused or fails.
+    typer.Exit
+        With the status of an interruption, if the measurement was stopped.
+    """
+    from atmosbox.config import parse_set
+    from atmosbox.output import check_writable, write
+    from atmosbox.plot import save
+    from atmosbox.quantity import parse_quantity, parse_whole
+    from atmosbox.tradeoff import measure
+
+    try:
+        seconds = parse_quantity(budget, "s", "budget", low=1.0, high=1e6, example="60s")
+        first = parse_whole(seed or "1", "1", "seed", low=0, high=2**62, example="1")
+    except SettingError as error:
+        fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
+        raise type(error)(error.setting, error.value, error.problem, fix) from None
+    path = Path(f"{default_path(scene).stem}-tradeoff.nc") if out is None else Path(out)
+    files = [path, path.with_suffix(".csv"), path.with_suffix(".png")]
+    for file in files:
+        check_writable(file, force)
+    with progress(scene, quiet=quiet) as show:
+        found = measure(
+            scene,
+            settings=parse_set(values),
+            budget=seconds,
+            seed=first,
+            progress=show,
+            command=shlex.join(words),
+        )
+    write(found, path, force=force)
+    _write_text(files[1], as_csv(found))
+    save(found, files[2], force=force)
+    interrupted = found.attrs["atmosbox_status"] == "interrupted"
+    if as_json:
+        say_json({"scene": scene, "files": [str(file) for file in files], "rungs": rows(found)})
+    elif quiet:
+        say(str(path))
+    else:
+        say("\n".join([*lines(found, width()), "", *(f"file: {file}" for file in files)]))
+    if interrupted:
+        tell("stopped: what was measured is kept")
+        raise typer.Exit(INTERRUPTED)
+
+
+def rows(found: xr.Dataset) -> list[dict[str, object]]:
+    """Return the measurement as one record for each way of running, for JSON and CSV."""
+    made = []
+    for k, label in enumerate(found.rung.values):
+        record: dict[str, object] = {"run": str(label), "engine": str(found.engine.values[k])}
+        record["settings"] = str(found.settings.values[k])
+        record |= {name: _plain(found[name].values[k]) for name in _COLUMNS}
+        for q, name in enumerate(found.quantity.values):
+            unit = "K" if str(found.unit.values[q]) == "K" else "share"
+            for part in ("bias", "bias_se", "noise"):
+                record[f"{name}_{part}_{unit}"] = _plain(found[part].values[k, q])
+        record["left_out"] = str(found.left_out.values[k])
+        made.append(record)
+    return made
+
+
+def _plain(value: float) -> float | int | None:
+    """Return a number as JSON has it."""
+    if not math.isfinite(value):
+        return None
+    return int(value) if float(value).is_integer() and abs(value) < 1e9 else float(value)
+
+
+def as_csv(found: xr.Dataset) -> str:
+    """Return the measurement as a table of comma-separated values."""
+    records = rows(found)
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, list(records[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(records)
+    return stream.getvalue()
+
+
+def lines(found: xr.Dataset, columns: int) -> list[str]:
+    """Return the measurement as text: bias with its error, and in brackets the noise of a single run."""
+    from atmosbox.plot.tradeoff import foremost
+
+    chosen = foremost(found)
+    header = ["run", "seconds", "cost", "runs"]
+    header += [f"{found.label.sel(quantity=name).item()} [{_unit(found, name)}]" for name in chosen]
+    body, notes = [], []
+    for k, label in enumerate(found.rung.values):
+        members = int(found.members.values[k])
+        if not members:
+            notes.append(f"{label}: {found.left_out.values[k]}")
+            continue
+        cells = [str(label), number(found.cpu_seconds.values[k], 2), number(found.cost.values[k], 3), str(members)]
+        for name in chosen:
+            one = found.isel(rung=k).sel(quantity=name)
+            scale = 1.0 if _unit(found, name) == "K" else 100.0
+            if math.isfinite(one.bias.item()):
+                shown = measurement(scale * one.bias.item(), scale * one.bias_se.item())
+                cells.append(f"{shown} ({scale * one.noise.item():.2g})")
+            else:
+                cells.append("-")
+        body.append(cells)
+    words = "bias ± its standard error (noise of a single run); cost: 1 is the reference, all of the energy is kept"
+    drift = found.energy_drift.values
+    if (drift[drift == drift] > 1e-12).any():
+        words = "bias ± its standard error (noise of a single run); cost: 1 is the reference"
+    return [
+        *table(header, body, columns),
+        "",
+        *wrapped(words, columns),
+        *(w for n in notes for w in wrapped(n, columns)),
+    ]
+
+
+def _unit(found: xr.Dataset, name: str) -> str:
+    """Return the unit in which the error of a quantity is shown."""
+    return "K" if str(found.unit.sel(quantity=name).item()) == "K" else "%"
+
+
+def _write_text(path: Path, text: str) -> None:
+    """Write a text whole or not at all."""
+    from atmosbox.output import write_failure
+
+    hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        hidden.write_text(text, encoding="utf-8")
+        os.replace(hidden, path)
+    except OSError as error:
+        hidden.unlink(missing_ok=True)
+        raise write_failure(error, path) from error

@@ -1,0 +1,28 @@
+"""All extremes by name, family by family."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from atmosbox.extremes import clock, contact, density, gravity, number, piston, start, step, unlike, wall
+from atmosbox.extremes.extreme import Extreme, extremes_of
+
+__all__ = ["EXTREMES", "FAMILIES"]
+
+FAMILIES: Mapping[str, tuple[Extreme, ...]] = MappingProxyType(
+    {
+        "steps": tuple(extremes_of(step)),
+        "how many": tuple(extremes_of(number)),
+        "how dense": tuple(extremes_of(density)),
+        "how unlike": tuple(extremes_of(unlike)),
+        "walls": tuple(extremes_of(wall)),
+        "gravity": tuple(extremes_of(gravity)),
+        "contacts": tuple(extremes_of(contact)),
+        "starts": tuple(extremes_of(start)),
+        "pistons": tuple(extremes_of(piston)),
+        "time": tuple(extremes_of(clock)),
+    }
+)
+"""The extremes by what they are about."""
+
+EXTREMES: Mapping[str, Extreme] = MappingProxyType({each.name: each for family in FAMILIES.values() for each in family})
+"""The extremes by name."""

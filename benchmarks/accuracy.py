@@ -1,0 +1,147 @@
+"""How accurate a scene is, and what that costs, by engine and settings: the table that comes with atmosbox.
+
+    python benchmarks/accuracy.py [SCENE ...] [--budget 60s]
+
+Every scene that declares a ladder is measured by `atmosbox.tradeoff`: each way of running it as often as the budget
+allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard error, and
+the standard deviation of a single run (noise), in K or as a share of the theory; and for each way its processor
+time as a ratio to that of the scene's default run, both from this measurement. Left out is what did not run, left
+the box, or did not close its ledger. Scenes that are not named keep what they have.
+"""
+
+import argparse
+import json
+import math
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from atmosbox import __version__, engines, scenarios, tradeoff  # noqa: E402
+from atmosbox.errors import AtmosboxError  # noqa: E402
+from atmosbox.quantity import parse_quantity  # noqa: E402
+from atmosbox.runner import LEDGER_LIMIT  # noqa: E402
+from atmosbox.tradeoff.trial import PROFILES  # noqa: E402
+
+TABLE = ROOT / "atmosbox" / "accuracy.json"
+
+
+def varies(module: Any) -> list[str]:
+    """Return the settings that a scene's ladder varies: those that trade accuracy for time."""
+    own = module.Settings.model_fields
+    return sorted({series.vary for series in module.ladder} & set(own))
+
+
+def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
+    """Return the ways of running a scene that can be relied on, each once, the cost relative to the default run."""
+    names = [name for name in dataset.quantity.values if name not in PROFILES]
+    found: dict[str, dict[str, Any]] = {}
+    for rung in range(dataset.sizes["rung"]):
+        one = dataset.isel(rung=rung)
+        members, why = int(one.members), str(one.left_out.values)
+        broken = one.escaped > 0 or one.ledger > LEDGER_LIMIT or (why and not why.startswith("left out"))
+        if not members or broken:
+            print(f"  not in the table: {one.rung.values}: {why or 'left the box, or its ledger does not close'}")
+            continue
+        errors = {}
+        for name in names:
+            numbers = [float(one[part].sel(quantity=name)) for part in ("bias", "bias_se", "noise")]
+            if all(map(math.isfinite, numbers)):
+                errors[str(name)] = [float(f"{number:.4g}") for number in numbers]
+        settings = module.Settings.from_user(json.loads(str(one.settings.values))).changed()
+        way = {
+            "engine": str(one.engine.values),
+            "settings": settings,
+            "cost": float(one.cpu_seconds),
+            "members": members,
+            "errors": errors,
+        }
+        key = json.dumps([way["engine"], settings], sort_keys=True)
+        if key not in found or found[key]["members"] < members:  # two series may share a run
+            found[key] = way
+    default = found.get(json.dumps([str(engines.EXACT), {}]))
+    if default is None:
+        raise AtmosboxError("The scene's default run is not among what was measured: give a longer --budget.")
+    seconds = default["cost"]
+    for way in found.values():
+        way["cost"] = float(f"{way['cost'] / seconds:.3g}")
+    return list(found.values())
+
+
+def measured(scene: str, budget: float, seed: int, command: str) -> dict[str, Any]:
+    """Return the entry of a scene."""
+    module = scenarios.load(scene)
+    last = -1
+
+    def tell(share: float, word: str) -> None:
+        nonlocal last
+        if int(10 * share) > last:
+            last = int(10 * share)
+            print(f"  {100 * share:.0f} %: {word}", file=sys.stderr, flush=True)
+
+    dataset = tradeoff.measure(scene, budget=budget, seed=seed, progress=tell, command=command)
+    names = [str(name) for name in dataset.quantity.values if name not in PROFILES]
+    about = dataset.sel(quantity=names)
+    return {
+        "measured": {"version": __version__, "budget": budget, "seed": seed, "command": command},
+        "varies": varies(module),
+        "headlines": {
+            name: {"label": str(label), "unit": str(unit), "theory": float(f"{theory:.6g}")}
+            for name, label, unit, theory in zip(
+                names, about.label.values, about.unit.values, about.theory.values, strict=True
+            )
+        },
+        "ways": ways(dataset, module),
+    }
+
+
+def printed(entry: dict[str, Any]) -> str:
+    """Return an entry as a table."""
+    heads = [f"{one['label']}, {'K' if one['unit'] == 'K' else '%'}" for one in entry["headlines"].values()]
+    lines = [f"| run | cost | runs | {' | '.join(heads)} |", "|---" * (3 + len(heads)) + "|"]
+    for way in entry["ways"]:
+        cells = []
+        for name, one in entry["headlines"].items():
+            unit = 1.0 if one["unit"] == "K" else 100.0
+            bias, error, noise = (unit * number for number in way["errors"].get(name, [math.nan] * 3))
+            cells.append(f"{bias:+.2g} ± {error:.1g}, noise {noise:.2g}")
+        label = ", ".join([way["engine"], *(f"{name}={value}" for name, value in way["settings"].items())])
+        lines.append(f"| {label} | {way['cost']:g} | {way['members']} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def write(path: Path, scene: str, entry: dict[str, Any]) -> None:
+    """Put the entry of a scene into the table, whole or not at all."""
+    held = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"scenes": {}}
+    held["scenes"] = dict(sorted({**held["scenes"], scene: entry}.items()))
+    hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    hidden.write_text(json.dumps(held, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    os.replace(hidden, path)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Measure, print the tables and keep them."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="the scenes; all that have a ladder by default")
+    parser.add_argument("--budget", default="60s", help="for how long each of them is measured")
+    parser.add_argument("--seed", type=int, default=1, help="the first seed")
+    parser.add_argument("--json", type=Path, default=TABLE, help="file for the table")
+    asked = parser.parse_args(arguments)
+    try:
+        budget = parse_quantity(asked.budget, "s", "budget")
+        scenes = asked.scenes or [name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")]
+        for scene in scenes:
+            print(f"\n{scene}", flush=True)
+            command = f"python benchmarks/accuracy.py {scene} --budget {asked.budget} --seed {asked.seed}"
+            entry = measured(scene, budget, asked.seed, command)
+            write(asked.json, scene, entry)
+            print(printed(entry), flush=True)
+    except AtmosboxError as error:
+        sys.exit(f"error: {error}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,157 @@
+"""What the classic schemes cost: per molecule and step, and beside the exact engine where both are equally right.
+
+    python benchmarks/classic.py
+    python benchmarks/classic.py --molecules 100 --phi 0.1 --contacts 1000000
+
+Two tables. The first is the CPU time of each scheme by the number of molecules. In the second the spheres take the
+step at which their collisional pressure Z - 1 is low by 1 %, which by the law of first order, 4 / sqrt(pi) delta, is
+delta = 0.0044; beside them runs the exact engine, in turns, and both measure Z - 1. The factor is CPU time per
+contact over CPU time per contact. Machines are noisy: only ratios of one run count.
+"""
+
+import argparse
+import gc
+import json
+import math
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from atmosbox.engine import ParcelSet, Periodic, Specular
+from atmosbox.engine.classic import SCHEMES, ClassicParcel
+from atmosbox.engine.parcel import Parcel
+from atmosbox.engine.start import maxwell_velocities, random_positions
+
+LATE = 4.0 / math.sqrt(math.pi)  # by how much Z - 1 is low, per delta
+RATE = {0.01: 0.138854, 0.1: 1.765845}  # collisions of a molecule per reduced time
+
+
+def gas(number: int, covered: float, planar: bool) -> dict[str, Any]:
+    """Return the arguments of a periodic box of equal molecules that cover, or fill, a part of it."""
+    rng = np.random.default_rng(1)
+    side = math.sqrt(number * math.pi / 4.0 / covered) if planar else (number * math.pi / 6.0 / covered) ** (1.0 / 3.0)
+    length = (side, 1.0, side) if planar else (side,) * 3
+    middle = Specular() if planar else Periodic()
+    return {
+        "position": random_positions(length, np.ones(number), rng, periodic=(True, not planar, True), planar=planar),
+        "velocity": maxwell_velocities(1.0, np.ones(number), rng, planar=planar, exact=True),
+        "length": length,
+        "walls": (Periodic(), Periodic(), middle, middle, Periodic(), Periodic()),
+        "planar": planar,
+    }
+
+
+def cost(scheme: str, number: int, seconds: float, repeats: int) -> dict[str, Any]:
+    """Return what a scheme costs per molecule and step, and how many pairs it looks at."""
+    box = ClassicParcel(**gas(number, 0.02, scheme != "spheres"), scheme=scheme)
+    box.advance(3 * box.time_step)
+    steps = 1
+    while True:  # as many steps as fill the time
+        start = time.process_time()
+        box.advance(box.time + steps * box.time_step)
+        spent = time.process_time() - start
+        if spent > 0.25 * seconds / repeats:
+            break
+        steps *= 2
+    steps = max(1, round(steps * seconds / repeats / spent))
+    before, done = box.pair_tests, box.steps
+    paces = []
+    for _ in range(repeats):
+        taken = box.steps
+        start = time.process_time()
+        box.advance((box.steps + steps) * box.time_step)
+        paces.append((time.process_time() - start) / (box.steps - taken))
+    return {
+        "scheme": scheme,
+        "molecules": number,
+        "ns_per_molecule_step": float(np.median(paces)) / number * 1e9,
+        "tests_per_step": (box.pair_tests - before) / (box.steps - done),
+    }
+
+
+def turn(box: Parcel, until: float) -> tuple[float, float, int]:
+    """Return CPU time, virial per time and number of contacts of a slice."""
+    virial, contacts, begun = box.virial.sum(), box.contacts, box.time
+    start = time.process_time()
+    box.advance(until)
+    spent = time.process_time() - start
+    return spent, (box.virial.sum() - virial) / (box.time - begun), box.contacts - contacts
+
+
+def beside(number: int, covered: float, error: float, contacts: float) -> dict[str, Any]:
+    """Return how spheres at a given error of Z - 1, and the exact engine, fare in turns on the same gas."""
+    made = gas(number, covered, planar=False)
+    spheres = ClassicParcel(**made, scheme="spheres", delta=error / LATE)
+    exact = ParcelSet(**made)
+    pace = 2.0 * contacts / (20.0 * number * RATE[covered])
+    warm = 4.0 / RATE[covered]
+    rows = []
+    turn(spheres, warm)
+    turn(exact, warm)
+    for block in range(1, 21):
+        rows.append([turn(box, warm + block * pace) for box in (spheres, exact)])
+    table = np.array(rows)  # (block, engine, what)
+    low = 1.0 - table[:, 0, 1] / table[:, 1, 1].mean()
+    per_contact = table[:, :, 0].sum(axis=0) / table[:, :, 2].sum(axis=0)
+    ratios = table[:, 0, 0] / table[:, 0, 2] / (table[:, 1, 0] / table[:, 1, 2])
+    both = np.hypot(*(table[:, k, 1].std(ddof=1) / math.sqrt(20.0) for k in (0, 1))) / table[:, 1, 1].mean()
+    return {
+        "packing_fraction": covered,
+        "molecules": number,
+        "delta": spheres.time_step,
+        "error_by_law": error,
+        "error_measured": float(low.mean()),
+        "error_of_that": float(both),
+        "spheres_us_per_contact": float(per_contact[0]) * 1e6,
+        "exact_us_per_contact": float(per_contact[1]) * 1e6,
+        "factor": float(np.median(ratios)),
+        "energy_error": abs(spheres.energy()[0] / (1.5 * number) - 1.0),
+    }
+
+
+def main(arguments: list[str] | None = None) -> dict[str, Any]:
+    """Run what is asked for and print two tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--n", type=int, nargs="*", default=[60, 200, 600, 1000, 3000], help="for the first table")
+    parser.add_argument("--seconds", type=float, default=1.0, help="CPU time of a row of the first table")
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--molecules", type=int, nargs="*", default=[100, 500], help="for the second table")
+    parser.add_argument("--phi", type=float, nargs="+", default=[0.1, 0.01], choices=sorted(RATE))
+    parser.add_argument("--error", type=float, default=0.01, help="of Z - 1, at which engines are compared")
+    parser.add_argument("--contacts", type=float, default=3e4, help="of each engine in the second table")
+    parser.add_argument("--json", type=Path, help="file for the numbers")
+    asked = parser.parse_args(arguments)
+    result: dict[str, Any] = {"cost": [], "beside": []}
+    gc.disable()
+    print("| scheme | N | ns per molecule and step | pair tests per step |\n|---|---|---|---|")
+    for scheme in SCHEMES:
+        for number in asked.n:
+            r = cost(scheme, number, asked.seconds, asked.repeats)
+            result["cost"].append(r)
+            print(f"| {scheme} | {number} | {r['ns_per_molecule_step']:.0f} | {r['tests_per_step']:.0f} |", flush=True)
+    print("\n| phi | N | delta | Z - 1 low by | us per contact: spheres | exact | factor | energy error |")
+    print("|---|---|---|---|---|---|---|---|")
+    for covered in asked.phi:
+        for number in asked.molecules:
+            r = beside(number, covered, asked.error, asked.contacts)
+            result["beside"].append(r)
+            print(
+                f"| {covered:g} | {number} | {r['delta']:.4f} "
+                f"| {100 * r['error_measured']:.2f} ± {100 * r['error_of_that']:.2f} % "
+                f"| {r['spheres_us_per_contact']:.1f} | {r['exact_us_per_contact']:.2f} | {r['factor']:.0f} "
+                f"| {r['energy_error']:.0e} |",
+                flush=True,
+            )
+    gc.enable()
+    if asked.json:
+        asked.json.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    return result
+
+
+if __name__ == "__main__":
+    main()
