@@ -134,7 +134,7 @@ class Measured:
     @property
     def label(self) -> str:
         """The words that ask for this run, but for the scene."""
-        return ", ".join([self.engine, *(f"{name}={value}" for name, value in self.settings.items())])
+        return ", ".join([self.engine, *(said(name, value) for name, value in self.settings.items())])
 
     def excess(self, wish: Wish) -> float:
         """Return the largest error as a multiple of what a wish allows."""
@@ -176,8 +176,8 @@ class Table:
                     way["cost"],
                     way["members"],
                     {
-                        name: ExpectedError(about[name]["unit"], *numbers, about[name]["theory"])
-                        for name, numbers in way["errors"].items()
+                        name: ExpectedError(about[name]["unit"], bias, bias_se, noise, about[name]["theory"])
+                        for name, (bias, bias_se, noise) in way["errors"].items()
                     },
                 )
                 for way in entry["ways"]
@@ -188,9 +188,7 @@ class Table:
     def same_experiment(self, settings: Mapping[str, Any]) -> tuple[Measured, ...]:
         """Return the ways of running the experiment that a user has set, in so far as any of them tells it apart."""
         apart = {name for way in self.ways for name in way.settings} - set(self.varies)
-        return tuple(
-            way for way in self.ways if all(way.settings.get(name) == settings.get(name) for name in apart)
-        )
+        return tuple(way for way in self.ways if all(way.settings.get(name) == settings.get(name) for name in apart))
 
 
 @dataclass(frozen=True)
@@ -392,10 +390,23 @@ def cost(ratio: float) -> str:
 
     Examples
     --------
-    >>> cost(0.0123), cost(1.0), cost(12.3)
-    ('0.012 times the cost of the default run', 'the cost of the default run', '12 times the cost of the default run')
+    >>> cost(0.0123), cost(1.0)
+    ('0.012 times the cost of the default run', 'the cost of the default run')
     """
     return f"{'' if ratio == 1.0 else f'{ratio:.2g} times '}the cost of the default run"
+
+
+def said(name: str, value: bool | int | float | str) -> str:
+    """Return a setting in words.
+
+    Examples
+    --------
+    >>> said("ascent", 400.0), said("plane", True)
+    ('ascent=400', 'plane=on')
+    """
+    if isinstance(value, bool):
+        return f"{name}={'on' if value else 'off'}"
+    return f"{name}={value:.12g}" if isinstance(value, float) else f"{name}={value}"
 
 
 def _reached(wish: Wish, excess: float, *, up: bool = False) -> str:

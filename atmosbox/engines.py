@@ -57,6 +57,18 @@ def _exact() -> type[Parcel]:
     return ParcelSet
 
 
+def _stepped() -> type[Parcel]:
+    from atmosbox.engine.stepped_parcel import SteppedParcel
+
+    return SteppedParcel
+
+
+def _dsmc() -> type[Parcel]:
+    from atmosbox.engine.dsmc_parcel import DsmcParcel
+
+    return DsmcParcel
+
+
 def _classic() -> type[Parcel]:
     from atmosbox.engine.classic import ClassicParcel
 
@@ -71,6 +83,10 @@ def _word(name: str, choices: tuple[str, ...], help: str) -> Parameter:
     return Parameter(name, "", choices[0], None, None, choices, help, "str")
 
 
+def _count(name: str, default: int, high: int, help: str) -> Parameter:
+    return Parameter(name, "1", default, 1, high, None, help, "int")
+
+
 def _switch(name: str, default: bool, help: str) -> Parameter:
     return Parameter(name, "", default, None, None, None, help, "bool")
 
@@ -82,6 +98,34 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
         engine.name: engine
         for engine in (
             Engine("exact", "every contact and every wall hit at its exact time, in order", _exact),
+            Engine(
+                "stepped",
+                "equal steps: all molecules move, then those that overlap and approach collide",
+                _stepped,
+                (
+                    _number("delta", 0.05, 1e-6, 1e3, _DELTA),
+                    _word("motion", ("parabola", "euler", "semi-implicit"), "how molecules fall"),
+                    _word(
+                        "smooth_walls",
+                        ("mirror", "fold", "flip", "clamp", "rewind"),
+                        "what smooth walls do with a molecule that has gone through them",
+                    ),
+                    _switch("approaching", True, "whether only pairs that approach collide"),
+                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
+                ),
+            ),
+            Engine(
+                "dsmc",
+                "equal steps: in each cell molecules collide with whom chance chooses; for a hundred thousand and more",
+                _dsmc,
+                (
+                    _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
+                    _number("occupancy", 10.0, 1.0, 1e4, "mean number of molecules in a cell"),
+                    _number("cell", 0.5, 1e-3, 1e3, "side of a cell in mean free paths, in place of an occupancy"),
+                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
+                ),
+                ideal=True,
+            ),
             Engine(
                 "classic",
                 "steps, as teaching applets take them: overlapping pairs swap velocities",

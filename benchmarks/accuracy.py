@@ -5,8 +5,9 @@
 Every scene that declares a ladder is measured by `atmosbox.tradeoff`: each way of running it as often as the budget
 allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard error, and
 the standard deviation of a single run (noise), in K or as a share of the theory; and for each way its processor
-time as a ratio to that of the scene's default run, both from this measurement. Left out is what did not run, left
-the box, or did not close its ledger. Scenes that are not named keep what they have.
+time as a ratio to that of the scene's default run, both from this measurement. Left out is what ran less than four
+times, so that the scatter of the seeds says nothing, left the box, or did not close its ledger. Scenes that are not
+named keep what they have.
 """
 
 import argparse
@@ -21,12 +22,15 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from atmosbox import __version__, engines, scenarios, tradeoff  # noqa: E402
+from atmosbox.accuracy import said  # noqa: E402
 from atmosbox.errors import AtmosboxError  # noqa: E402
 from atmosbox.quantity import parse_quantity  # noqa: E402
 from atmosbox.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.tradeoff.trial import PROFILES  # noqa: E402
 
 TABLE = ROOT / "atmosbox" / "accuracy.json"
+FEWEST = 4
+"""Runs below which `atmosbox.tradeoff` takes the noise from the runs' own error bars and not from their scatter."""
 
 
 def varies(module: Any) -> list[str]:
@@ -42,9 +46,14 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
     for rung in range(dataset.sizes["rung"]):
         one = dataset.isel(rung=rung)
         members, why = int(one.members), str(one.left_out.values)
-        broken = one.escaped > 0 or one.ledger > LEDGER_LIMIT or (why and not why.startswith("left out"))
-        if not members or broken:
-            print(f"  not in the table: {one.rung.values}: {why or 'left the box, or its ledger does not close'}")
+        if one.escaped > 0:
+            why = "molecules left the box"
+        elif one.ledger > LEDGER_LIMIT:
+            why = "its ledger does not close"
+        elif members >= FEWEST and why.startswith("left out"):
+            why = ""
+        if why or members < FEWEST:
+            print(f"  not in the table: {one.rung.values}: {why or f'{members} runs, give a longer --budget'}")
             continue
         errors = {}
         for name in names:
@@ -64,7 +73,7 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
             found[key] = way
     default = found.get(json.dumps([str(engines.EXACT), {}]))
     if default is None:
-        raise AtmosboxError("The scene's default run is not among what was measured: give a longer --budget.")
+        raise AtmosboxError("The scene's default run did not run often enough: give a longer --budget.")
     seconds = default["cost"]
     for way in found.values():
         way["cost"] = float(f"{way['cost'] / seconds:.3g}")
@@ -107,8 +116,8 @@ def printed(entry: dict[str, Any]) -> str:
         for name, one in entry["headlines"].items():
             unit = 1.0 if one["unit"] == "K" else 100.0
             bias, error, noise = (unit * number for number in way["errors"].get(name, [math.nan] * 3))
-            cells.append(f"{bias:+.2g} ± {error:.1g}, noise {noise:.2g}")
-        label = ", ".join([way["engine"], *(f"{name}={value}" for name, value in way["settings"].items())])
+            cells.append("-" if math.isnan(bias) else f"{bias:+.2g} ± {error:.1g}, noise {noise:.2g}")
+        label = ", ".join([way["engine"], *(said(name, value) for name, value in way["settings"].items())])
         lines.append(f"| {label} | {way['cost']:g} | {way['members']} | {' | '.join(cells)} |")
     return "\n".join(lines)
 

@@ -1,32 +1,86 @@
 """What a feature costs where a scene has it, and where it does not.
 
-    python benchmarks/features.py
+    python benchmarks/features.py --json benchmarks/features.json
 
-On: nanoseconds per collision and bytes per molecule of a gas with the feature, beside the plain gas. Off: the
-plain gas in the engine as it is, beside the plain gas in a copy of the engine from whose sources the feature
-has been struck out (every ``modes.FEATURE`` made ``False`` before compiling). Both take turns in one run;
-medians of ratios.
-The row ``nothing`` is a copy from which nothing was struck; the other rows are relative to it.
+On: nanoseconds per collision, bytes per molecule and lines of code of a gas with the feature, beside the plain gas;
+and of a scene with an instrument that remembers molecules or layers, beside the scene without it.
+
+Off: the engine as it is, beside a copy from whose sources the feature has been struck out (every ``modes.FEATURE``
+made ``False``), both with a gas that does not have it. The row ``nothing`` is the control: a copy from which nothing
+was struck out, and which must cost the same.
+
+Three things make such a comparison go wrong by 5 to 10 %, and are kept apart here. Where arrays happen to lie in
+memory decides which of them push each other out of the cache: so all copies of the engine work on the very same
+arrays, put back to the same state each time, and do the same events. Machine code that has just been compiled lies
+elsewhere than the same code read from disk: so all are copies, the whole engine too, and all are read from disk. And
+a process keeps its luck for life: so there are many, and the median and its standard error are over processes. Other
+programs can only add to a time: so of the same work, done several times in a process, the shortest time counts.
+
+Lines of code are those of the engine that a gas of sixty molecules goes through while time passes, counted while
+nothing is compiled.
 """
 
 import argparse
+import functools
 import gc
 import importlib
 import json
 import math
+import os
+import random
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
+import tracemalloc
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+ENGINE = ROOT / "atmosbox" / "engine"
 PHI = 0.01
-FEATURES = ("nothing", "gravity", "rotation", "mixed", "spanning", "periodic", "piston")
+FREE_TIME = 7.2
+"""Mean free time at that packing fraction [reduced time]."""
+GASES = {
+    "plain gas": "contacts",
+    "gravity": "gravity",
+    "heat baths": "",
+    "rotation": "rotation",
+    "two masses": "mixed",
+    "unequal sizes": "spanning",
+    "periodic": "periodic",
+    "piston": "piston",
+    "50 layers": "",
+}
+"""The gases that are timed, each with the mode of the engine whose price it shows; walls and layers are data."""
+SCENES = {
+    "trails: discs": ("elastic-collisions", "Discs"),
+    "trails: --save-molecules": ("temperature-large", "Molecules"),
+    "profiles: 25 layers": ("atmosphere", "Layers"),
+}
+"""The instruments that are timed, each in a scene that may carry it."""
+
+
+class Swing:
+    """A piston that goes a little up and down, and is asked as often as that of a rising parcel."""
+
+    interval = FREE_TIME / 4.0
+
+    def __init__(self, height: float) -> None:
+        self._speed = 1e-4 * height / self.interval
+
+    def velocity(self, parcel: Any) -> float:
+        """Return the velocity for the next interval: up after down."""
+        self._speed = -self._speed
+        return self._speed
 
 
 def engine(root: Path) -> Any:
@@ -36,18 +90,17 @@ def engine(root: Path) -> Any:
     sys.path.insert(0, str(root))
     try:
         module = importlib.import_module("atmosbox.engine")
-        module.start = importlib.import_module("atmosbox.engine.start")
+        for name in ("exact", "start", "state"):
+            setattr(module, name, importlib.import_module(f"atmosbox.engine.{name}"))
     finally:
         sys.path.pop(0)
     return module
 
 
 def without(feature: str, folder: Path) -> Path:
-    """Copy the engine into a folder, with one feature struck out of its sources."""
-    root = folder / f"without_{feature}"
-    shutil.copytree(
-        ROOT / "atmosbox" / "engine", root / "atmosbox" / "engine", ignore=shutil.ignore_patterns("__pycache__")
-    )
+    """Copy the engine into a folder, with one feature struck out of its sources; return the folder."""
+    root = folder / feature
+    shutil.copytree(ENGINE, root / "atmosbox" / "engine", ignore=shutil.ignore_patterns("__pycache__"))
     (root / "atmosbox" / "__init__.py").write_text("", encoding="utf-8")
     for file in (root / "atmosbox" / "engine").glob("*.py"):
         text = file.read_text(encoding="utf-8")
@@ -55,12 +108,11 @@ def without(feature: str, folder: Path) -> Path:
     return root
 
 
-def gas(module: Any, n: int, feature: str | None = None) -> Any:
-    """Return a gas between smooth walls, plain or with one feature."""
-    rng = np.random.default_rng(1)
+def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
+    """Return a gas between smooth walls, plain, with one feature, or of points."""
+    rng = np.random.default_rng(seed)
     side = (n * math.pi / 6.0 / PHI) ** (1.0 / 3.0)
-    smooth = module.Specular()
-    walls = [smooth] * 6
+    walls: list[Any] = [module.Specular()] * 6
     options: dict[str, Any] = {}
     periodic = (False, False, False)
     sizes = np.ones(n)
@@ -74,75 +126,321 @@ def gas(module: Any, n: int, feature: str | None = None) -> Any:
         options["mass"] = np.where(np.arange(n) % 2, 1.0, 2.0)
     elif feature == "unequal sizes":
         sizes = np.where(np.arange(n) % 2, 0.9, 1.09)
-        options["diameter"] = sizes
     elif feature == "periodic":
         walls, periodic = [module.Periodic()] * 6, (True, True, True)
     elif feature == "piston":
         walls[5] = module.Piston(0.0)
+        options["driver"] = Swing(side)
     elif feature == "50 layers":
         options["layers"] = 50
+    elif feature == "points":
+        sizes = np.zeros(n)
     x = module.start.random_positions((side,) * 3, sizes, rng, periodic=periodic)
     v = module.start.maxwell_velocities(1.0, np.ones(n), rng, exact=True)
-    box = module.ParcelSet(x, v, length=(side,) * 3, walls=tuple(walls), **options)
-    box.advance(40.0)
-    return box
+    return module.ParcelSet(x, v, length=(side,) * 3, walls=tuple(walls), diameter=sizes, **options)
 
 
-def cost(box: Any, span: float) -> float:
-    """Return CPU nanoseconds per collision of one slice."""
-    before = box.contacts
-    start = time.process_time()
-    box.advance(box.time + span)
-    return 1e9 * (time.process_time() - start) / max(box.contacts - before, 1)
+class Bench:
+    """The arrays of one box, on which the kernels of several engines do the same work again and again."""
+
+    def __init__(self, box: Any, span: float) -> None:
+        self._modes = box._modes
+        self._arguments = (
+            *(box._molecules, box._events, box._kinds, box._cells),
+            *(box._calendar, box._box, box._walls, box._tallies),
+        )
+        self._until = box._now + span
+        parts = [p for each in self._arguments for p in (each if type(each).__mro__[1] is tuple else (each,))]
+        self._arrays = [part for part in parts if isinstance(part, np.ndarray)]
+        self._before = [np.array(each) for each in self._arrays]
+
+    def kernel(self, module: Any) -> Callable[[], float]:
+        """Return a function that does the work with another engine's kernel, and tells the CPU seconds it took."""
+        state = module.state
+        arguments = [
+            getattr(state, type(each).__name__)(*each) if isinstance(each, tuple) else each for each in self._arguments
+        ]
+        advance = module.exact.specialise(state.Modes(*self._modes))[1]
+
+        def work() -> float:
+            for array, before in zip(self._arrays, self._before, strict=True):
+                np.copyto(array, before)
+            start = time.process_time()
+            status, _ = advance(*arguments, self._until, 1 << 60)
+            lasted = time.process_time() - start
+            if status != module.exact.DONE:
+                raise RuntimeError("a row of the cells is full: choose another seed")
+            return lasted
+
+        return work
 
 
-def compare(first: Any, second: Any, repeats: int, span: float) -> tuple[float, float, float, float]:
-    """Return the median costs of two boxes that take turns, the median of their ratio, and its standard error."""
-    pairs = []
-    for turn in range(repeats):
-        order = (first, second) if turn % 2 else (second, first)
-        costs = {id(box): cost(box, span) for box in order}
-        pairs.append((costs[id(first)], costs[id(second)]))
-    table = np.array(pairs)
-    ratio = table[:, 0] / table[:, 1]
-    error = 1.25 * float(np.std(ratio)) / math.sqrt(repeats)
-    return float(np.median(table[:, 0])), float(np.median(table[:, 1])), float(np.median(ratio)), error
+def shortest(works: dict[str, Callable[[], float]], repeats: int) -> dict[str, float]:
+    """Return the shortest time of each work, of several turns that all take in changing order."""
+    times: dict[str, list[float]] = {name: [] for name in works}
+    for work in works.values():
+        work()
+    gc.disable()
+    for _ in range(repeats):
+        for name in random.sample(list(works), len(works)):
+            times[name].append(works[name]())
+    gc.enable()
+    return {name: min(each) for name, each in times.items()}
 
 
-def main(arguments: list[str] | None = None) -> dict[str, Any]:
-    """Measure, and print two tables."""
+def time_off(asked: argparse.Namespace) -> dict[str, float]:
+    """Return the time of the whole engine over that of each copy, in this process."""
+    copies = sorted(path.name for path in asked.folder.iterdir())
+    random.shuffle(copies)
+    engines = {}
+    for name in copies:
+        os.environ["NUMBA_CACHE_DIR"] = str(asked.folder / name / "cache")
+        engines[name] = engine(asked.folder / name)
+    ratios = {}
+    for what, of_points in (("plain gas", False), ("points", True)):
+        box = gas(engines[asked.only or "whole"], asked.n, what, asked.seed)
+        box.advance(5.0 * FREE_TIME)
+        bench = Bench(box, asked.span)
+        chosen = [name for name in copies if name == "whole" or of_points == (name == "contacts")]
+        if asked.only:
+            chosen = [name for name in chosen if name == asked.only]
+        found = shortest({name: bench.kernel(engines[name]) for name in chosen}, asked.repeats)
+        ratios |= {name: found["whole"] / each for name, each in found.items() if name != "whole" and not asked.only}
+    return ratios
+
+
+def time_on(asked: argparse.Namespace) -> dict[str, dict[str, Any]]:
+    """Return, by feature, nanoseconds per collision, also over those of the plain gas meanwhile, in this process."""
+    module = engine(ROOT)
+
+    def cost(box: Any) -> float:
+        before = box.contacts
+        start = time.process_time()
+        box.advance(box.time + asked.span)
+        return 1e9 * (time.process_time() - start) / max(box.contacts - before, 1)
+
+    plain = gas(module, asked.n, "plain gas", asked.seed)
+    plain.advance(5.0 * FREE_TIME)
+    found = {}
+    for feature in random.sample(list(GASES), len(GASES)):
+        box = gas(module, asked.n, feature, asked.seed)
+        box.advance(5.0 * FREE_TIME)
+        gc.disable()
+        costs = np.array([[cost(each) for each in (box, plain)] for _ in range(asked.repeats)])
+        gc.enable()
+        dear, cheap = np.median(costs, axis=0)
+        modes = [name for name, on in box._modes._asdict().items() if on]
+        found[feature] = {"ns": dear, "ratio": dear / cheap, "bytes": box.memory() / asked.n, "modes": modes}
+    return found
+
+
+def scene(name: str, instrument: str, small: bool) -> tuple[Any, Callable[[bool], None]]:
+    """Return the set-up of a scene, and a function that makes one frame, with an instrument or without it."""
+    from atmosbox import instruments, runner
+
+    prepared = runner.prepare(name, {"molecules": 60} if small else {})
+    setup = prepared.module.build(prepared.settings)
+    kind = getattr(instruments, instrument)
+    chosen = next((each for each in setup.instruments if isinstance(each, kind)), None) or kind()
+    others = [each for each in setup.instruments if each is not chosen]
+
+    def frame(watched: bool) -> None:
+        parcel = setup.parcel
+        watching = [*others, chosen] if watched else others
+        for _ in range(setup.samples):
+            parcel.advance(parcel.time + setup.frame / setup.samples)
+            snapshot = parcel.snapshot()
+            for each in watching:
+                each.look(parcel, snapshot)
+        for each in watching:
+            each.close(parcel, snapshot)
+
+    return setup, frame
+
+
+def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
+    """Return, by instrument, the cost of a collision with it and without it, in frames that take turns."""
+    found = {}
+    for feature, (name, instrument) in SCENES.items():
+        setup, frame = scene(name, instrument, asked.trial)
+        for watched in (False, True, False, True):
+            frame(watched)
+        before, times = setup.parcel.contacts, []
+        for _ in range(4 * asked.repeats):
+            pair = []
+            for watched in (False, True):
+                start = time.process_time()
+                frame(watched)
+                pair.append(time.process_time() - start)
+            times.append(pair)
+        collisions = (setup.parcel.contacts - before) / (2 * len(times))
+        bare, full = np.median(times, axis=0)
+        gc.collect()
+        tracemalloc.start()
+        frame(False)
+        start_bytes = tracemalloc.get_traced_memory()[0]
+        for _ in range(10):
+            frame(True)
+        kept = tracemalloc.get_traced_memory()[0] - start_bytes
+        for _ in range(10):
+            frame(False)
+        kept -= tracemalloc.get_traced_memory()[0] - start_bytes - kept
+        tracemalloc.stop()
+        found[feature] = {
+            "ns": 1e9 * full / max(collisions, 1e-9),
+            "ratio": full / bare,
+            "bytes": kept / (10 * setup.parcel.number),
+        }
+    return found
+
+
+def lines_of(work: Callable[[], None], files: tuple[str, ...]) -> set[tuple[str, int]]:
+    """Return the lines of code that a piece of work goes through in files whose paths begin so."""
+    seen: set[tuple[str, int]] = set()
+
+    def follow(frame: FrameType, event: str, argument: Any) -> Any:
+        file = frame.f_code.co_filename
+        if not file.startswith(files):
+            return None
+
+        def note(frame: FrameType, event: str, argument: Any) -> Any:
+            if event == "line":
+                seen.add((file, frame.f_lineno))
+            return note
+
+        return note
+
+    sys.settrace(follow)
+    try:
+        work()
+    finally:
+        sys.settrace(None)
+    return seen
+
+
+def count_lines(molecules: int) -> dict[str, int]:
+    """Return how many lines of code each gas, and each scene with an instrument, goes through."""
+    module = engine(ROOT)
+    counted = {}
+    for feature in (*GASES, "points"):
+        box = gas(module, molecules, feature)
+        counted[feature] = len(lines_of(functools.partial(box.advance, 10.0 * FREE_TIME), (str(ENGINE),)))
+    watching = (str(ROOT / "atmosbox" / "instruments.py"), str(ENGINE / "measure.py"))
+    for feature, (name, instrument) in SCENES.items():
+        _, frame = scene(name, instrument, True)
+        bare = lines_of(functools.partial(frame, False), watching)
+        counted[feature] = len(lines_of(functools.partial(frame, True), watching) - bare)
+    return counted
+
+
+def child(task: str, asked: argparse.Namespace, **changed: Any) -> Any:
+    """Do a task in a process of its own and return what it found."""
+    command = [sys.executable, __file__, "--task", task]
+    for name, value in (vars(asked) | changed).items():
+        if name == "trial":
+            command += ["--trial"] * value
+        elif name not in ("task", "json") and value is not None:
+            command += [f"--{name}", str(value)]
+    environment = os.environ | ({"NUMBA_DISABLE_JIT": "1"} if task == "lines" else {})
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def middle(values: list[float]) -> tuple[float, float]:
+    """Return the median and its standard error, from the half of the values that lies about it."""
+    quarters = np.percentile(values, [25.0, 75.0])
+    spread = float(quarters[1] - quarters[0]) / 1.349
+    return float(np.median(values)), 1.2533 * spread / math.sqrt(len(values))
+
+
+def measure(asked: argparse.Namespace) -> dict[str, Any]:
+    """Measure everything, in many processes."""
+    from atmosbox.engine.state import Modes
+
+    lines = child("lines", asked)
+    hasty = {"n": 30, "repeats": 1, "span": 1.0}
+    with tempfile.TemporaryDirectory() as name:
+        folder = asked.folder or Path(name)
+        missing = [feature for feature in ("whole", "nothing", *Modes._fields) if not (folder / feature).exists()]
+        for feature in missing:
+            without(feature, folder)
+        with ThreadPoolExecutor(os.cpu_count()) as workers:
+            compiling = [workers.submit(child, "on", asked, **hasty)]
+            compiling += [workers.submit(child, "off", asked, folder=folder, only=each, **hasty) for each in missing]
+        for each in compiling:
+            each.result()
+        samples = []
+        for seed in range(1, asked.processes + 1):
+            print(f"process {seed} of {asked.processes}", file=sys.stderr, flush=True)
+            sample = child("on", asked, seed=seed)
+            samples.append(sample | {"off": child("off", asked, seed=seed, folder=folder)})
+    result: dict[str, Any] = {"molecules": asked.n, "packing_fraction": PHI, "processes": asked.processes}
+    for part in ("on", "instruments"):
+        result[part] = {}
+        for feature in samples[0][part]:
+            each = [sample[part][feature] for sample in samples]
+            ratio, error = middle([one["ratio"] for one in each])
+            result[part][feature] = {
+                "ns": float(np.median([one["ns"] for one in each])),
+                "ratio": ratio,
+                "error": error,
+                "bytes": float(np.median([one["bytes"] for one in each])),
+                "lines": lines[feature],
+                **({"modes": each[0]["modes"], "shows": GASES[feature]} if part == "on" else {}),
+            }
+        result[part] = {feature: result[part][feature] for feature in (GASES if part == "on" else SCENES)}
+    result["off"] = {}
+    for feature in ("nothing", *Modes._fields):
+        ratio, error = middle([sample["off"][feature] for sample in samples])
+        result["off"][feature] = {"ratio": ratio, "error": error}
+    result["lines_of_points"] = lines["points"]
+    return result
+
+
+def show(result: dict[str, Any]) -> None:
+    """Print the tables."""
+    print("| on | ns per collision | over the plain gas | bytes per molecule | lines of code |")
+    print("|---|---|---|---|---|")
+    for feature, each in result["on"].items():
+        cells = f"{each['ns']:.0f} | {each['ratio']:.3f} ± {each['error']:.3f} | {each['bytes']:.0f} | {each['lines']}"
+        print(f"| {feature} | {cells} |")
+    print("\n| with | ns per collision | over the scene without | bytes per molecule and frame | more lines of code |")
+    print("|---|---|---|---|---|")
+    for feature, each in result["instruments"].items():
+        cells = f"{each['ns']:.0f} | {each['ratio']:.3f} ± {each['error']:.3f} | {each['bytes']:.0f} | {each['lines']}"
+        print(f"| {feature} | {cells} |")
+    print("\n| off | engine as it is over one without the feature |\n|---|---|")
+    for feature, each in result["off"].items():
+        print(f"| {feature} | {each['ratio']:.3f} ± {each['error']:.3f} |")
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Measure, and print the tables; or do one task of the measurement."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--n", type=int, default=4_000)
-    parser.add_argument("--repeats", type=int, default=15)
-    parser.add_argument("--span", type=float, default=100.0, help="reduced time of a slice")
+    parser.add_argument("--processes", type=int, default=12, help="over how many processes the medians are taken")
+    parser.add_argument("--repeats", type=int, default=5, help="turns that everything has in a process")
+    parser.add_argument("--span", type=float, default=100.0, help="reduced time of a turn")
+    parser.add_argument("--folder", type=Path, help="where to keep the copies of the engine for another time")
+    parser.add_argument("--trial", action="store_true", help="scenes of few molecules, to see that all works")
     parser.add_argument("--json", type=Path, help="file for the numbers")
+    parser.add_argument("--seed", type=int, default=1, help=argparse.SUPPRESS)
+    parser.add_argument("--only", help=argparse.SUPPRESS)
+    parser.add_argument("--task", choices=["lines", "on", "off"], help=argparse.SUPPRESS)
     asked = parser.parse_args(arguments)
-    gc.disable()
-    now = engine(ROOT)
-    plain = gas(now, asked.n)
-    result: dict[str, Any] = {"on": {}, "off": {}}
-    print("| on | ns per collision | of the plain gas | bytes per molecule |\n|---|---|---|---|")
-    print(f"| plain gas | {cost(plain, asked.span):.0f} | 1 | {plain.memory() / asked.n:.0f} |")
-    for feature in (
-        "gravity", "heat baths", "rotation", "two masses", "unequal sizes", "periodic", "piston", "50 layers",
-    ):  # fmt: skip
-        box = gas(now, asked.n, feature)
-        dear, _, ratio, error = compare(box, plain, asked.repeats, asked.span)
-        result["on"][feature] = {"ns": dear, "ratio": ratio, "error": error, "bytes": box.memory() / asked.n}
-        print(f"| {feature} | {dear:.0f} | {ratio:.2f} | {box.memory() / asked.n:.0f} |", flush=True)
-    print("\n| off | engine as it is over one without the feature |\n|---|---|")
-    with tempfile.TemporaryDirectory() as folder:
-        for feature in FEATURES:
-            bare = gas(engine(without(feature, Path(folder))), asked.n)
-            whole = gas(now, asked.n)
-            _, _, ratio, error = compare(whole, bare, asked.repeats, asked.span)
-            # what is common to all copies, such as where their memory lies, is no cost of a feature
-            common = result["off"]["nothing"]["ratio"] if feature != "nothing" else 1.0
-            result["off"][feature] = {"ratio": ratio / common, "error": error / common}
-            print(f"| {feature} | {ratio / common:.3f} ± {error / common:.3f} |", flush=True)
-    if asked.json:
-        asked.json.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-    return result
+    if asked.task == "lines":
+        print(json.dumps(count_lines(8 if asked.trial else 60)))
+    elif asked.task == "on":
+        print(json.dumps({"on": time_on(asked), "instruments": time_instruments(asked)}))
+    elif asked.task == "off":
+        print(json.dumps(time_off(asked)))
+    else:
+        result = measure(asked)
+        show(result)
+        if asked.json:
+            asked.json.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -39,8 +39,15 @@ FRAMES = 240
 SETTLE = 40
 LAYERS = 25
 
-ladder = (Series("exact", "duration", (50, 100, 200, 400)),)
-"""What is worth comparing: the exact engine has no error but noise."""
+ladder = (
+    Series("exact", "duration", (50, 100, 200, 400)),
+    Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2), {"duration": 50}),
+    Series("dsmc", "duration", (50, 100, 200, 400)),
+    Series("dsmc", "molecules", (3000, 10000, 30000), {"duration": 100}),
+    Series("exact", "duration", (50, 100), {"plane": True, "knudsen": 0.05}),
+    Series("classic", "delta", (8, 4, 2), {"plane": True, "knudsen": 0.05, "duration": 50}),
+)
+"""What is worth comparing: a column that is left alone forgives much, but not a fall that makes energy."""
 
 
 class Settings(SceneSettings):

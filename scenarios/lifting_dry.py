@@ -22,7 +22,7 @@ from atmosbox import theory as law
 from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
 from atmosbox.engine.walls import Piston, Specular
-from atmosbox.engines import EXACT, EngineChoice
+from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Environment, Lift
@@ -56,6 +56,10 @@ _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parc
 ladder = (
     Series("exact", "ascent", (50, 100, 200, 400, 800, 1600), order=_SLOW),
     Series("exact", "molecules", (250, 1000, 4000), {"ascent": 400}),
+    Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2, 0.1), {"ascent": 400}),
+    Series("dsmc", "ascent", (100, 200, 400, 800, 1600), order=_SLOW),
+    Series("dsmc", "molecules", (4000, 16000, 64000), {"ascent": 400}),
+    Series("dsmc", "dt", (2, 1, 0.5), {"ascent": 400}),
 )
 """What is worth comparing: the error of the ascent's speed goes as one over its length."""
 
@@ -85,10 +89,11 @@ class Settings(SceneSettings):
             )
 
 
-def _start(settings: Settings) -> tuple[Scale, float, np.ndarray, float]:
+def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
     """Return the scale, the density, the sides that centres can reach, and (Z - 1) / n [diameters], at the start.
 
-    The box is flat: it ends nearly as high as it is wide, and a slow piston does its work with less noise.
+    The box is flat: it ends nearly as high as it is wide, and a slow piston does its work with less noise. Molecules
+    of an ideal gas take no room, and Z is 1.
     """
     si = settings.si
     scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
@@ -98,7 +103,7 @@ def _start(settings: Settings) -> tuple[Scale, float, np.ndarray, float]:
         side = (settings.molecules / density / FLATNESS) ** (1.0 / 3.0)
         sides = side * np.array([1.0, 1.0, FLATNESS])
         excess = float(law.gas_pressure(density, 1.0, 1.0)) - density
-        excess *= law.contact_share(sides, 1.0, settings.molecules)
+        excess *= 0.0 if ideal else law.contact_share(sides, 1.0, settings.molecules)
         density *= wanted / (density + excess)
     return scale, density, sides, excess / density**2
 
@@ -122,7 +127,7 @@ def _finite_speed(settings: Settings, pressure: float) -> float:
     freedom = 5 if settings.rotation else 3
     fall = math.log(si.pressure / si.top_pressure) / settings.ascent
     power = (freedom + 1.0) / (freedom + 2.0)
-    longer = (si.pressure / pressure) ** power
+    longer: float = (si.pressure / pressure) ** power
     share = DISSIPATION / (float(law.adiabatic_index(freedom)) ** 2 * (0.5 * freedom + 1.0))
     return share * fall * (longer - 1.0) / power * (1.0 + 4.4 * fall * longer)
 
@@ -177,8 +182,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the parcel at the ground with its piston."""
     n = settings.molecules
     rng = np.random.default_rng(settings.seed)
-    scale, density, sides, excess = _start(settings)
+    scale, density, sides, excess = _start(settings, ideal=engine.ideal)
     mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+    if engine.ideal:  # nobody is crowded towards anybody
+        mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
     length = tuple(sides + 1.0)
     degrees = 2.0 if settings.rotation else 0.0
     spin = rotational_energies(1.0, np.full(n, degrees), rng)
@@ -237,6 +244,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     misfit = temperature - dataset.adiabat_temperature.values
     error = dataset.parcel_temperature_se.values
     order = np.argsort(pressure)
+    spheres = 0.0 if used(dataset).ideal else 1.0
     reason = "the ascent is not infinitely slow, and spheres take up room"
     found = []
     for level in (100.0 * shown for shown in _levels(settings)):
@@ -249,7 +257,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 expected + float(np.interp(level, pressure[order], misfit[order])),
                 float(np.interp(level, pressure[order], error[order])),
                 expected,
-                expected * (_finite_speed(settings, level) + _room(settings, level)),
+                expected * (_finite_speed(settings, level) + spheres * _room(settings, level)),
                 reason,
                 "K",
                 "degC",
@@ -267,7 +275,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 (si.temperature - first) / 1000.0,
                 float(np.interp(1000.0, height, error)) / 1000.0,
                 (si.temperature - ideal) / 1000.0,
-                ideal * (_lateness(settings, outside) + _room(settings, outside)) / 1000.0,
+                ideal * (_lateness(settings, outside) + spheres * _room(settings, outside)) / 1000.0,
                 reason,
                 "K m-1",
                 "K km-1",

@@ -19,7 +19,7 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions
 from atmosbox.engine.walls import HeatBath
-from atmosbox.engines import EXACT, EngineChoice
+from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Speeds
 from atmosbox.panels import Line, Panel
@@ -35,8 +35,14 @@ title = "Temperature"
 FRAMES = 1000
 SETTLE = 50
 
-ladder = (Series("exact", "duration", (2.5, 5, 10, 20)),)
-"""What is worth comparing: the exact engine has no error but noise."""
+_LATE = {"collision_rate": 2.0}
+ladder = (
+    Series("exact", "duration", (2.5, 5, 10, 20)),
+    Series("stepped", "delta", (0.8, 0.4, 0.2, 0.1), {"duration": 5}, _LATE),
+    Series("dsmc", "dt", (2, 1, 0.5, 0.2), {"duration": 5}, _LATE),
+    Series("classic", "delta", (0.8, 0.4), {"duration": 5}, _LATE),
+)
+"""What is worth comparing: steps miss collisions, by the square of their length."""
 
 
 class Settings(SceneSettings):
@@ -56,10 +62,11 @@ class Settings(SceneSettings):
     duration: float = setting(20.0, "ns", "how long to watch", low=0.01, high=1e5)
 
 
-def _start(settings: Settings) -> tuple[Scale, float, float, float]:
+def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, float]:
     """Return the scale, the density [1/diameter^3], the side that centres can reach [diameters], and Z.
 
-    Near a wall a molecule has fewer partners, and so Z - 1 is a little smaller than in open space.
+    Near a wall a molecule has fewer partners, and so Z - 1 is a little smaller than in open space. Molecules of
+    an ideal gas take no room, and Z is 1.
     """
     si = settings.si
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
@@ -70,7 +77,7 @@ def _start(settings: Settings) -> tuple[Scale, float, float, float]:
         possible = min(density, 0.9)
         side = (settings.molecules / possible) ** (1.0 / 3.0)
         excess = float(law.compressibility_factor(law.packing_fraction(possible, 1.0))) - 1.0
-        factor = 1.0 + excess * law.contact_share((side,) * 3, 1.0, settings.molecules)
+        factor = 1.0 + (0.0 if ideal else excess * law.contact_share((side,) * 3, 1.0, settings.molecules))
     return scale, density, (settings.molecules / density) ** (1.0 / 3.0), factor
 
 
@@ -92,7 +99,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     si = settings.si
     n = settings.molecules
     rng = np.random.default_rng(settings.seed)
-    scale, density, side, _ = _start(settings)
+    scale, density, side, _ = _start(settings, ideal=engine.ideal)
     length = (side + 1.0,) * 3
     cold = scale.reduced_temperature(si.start_temperature)
     velocity = (
@@ -131,7 +138,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return Maxwell's curve, the pressure n k T Z and the noise of a small thermometer."""
     si = settings.si
-    scale, density, _, factor = _start(settings)
+    scale, density, _, factor = _start(settings, ideal=used(dataset).ideal)
     frames = np.ones(dataset.sizes["elapsed_time"])
     pressure = density * factor * scale.pressure
     return {
@@ -147,7 +154,8 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return temperature, pressure, mean speed and how often molecules meet."""
     si = settings.si
-    scale, density, side, factor = _start(settings)
+    ideal = used(dataset).ideal
+    scale, density, side, factor = _start(settings, ideal=ideal)
     off = _crowding(density, side, settings.molecules)
     warm = dataset.isel(elapsed_time=slice(SETTLE, None))
     if warm.sizes["elapsed_time"] < 40:
@@ -163,6 +171,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     per_second = block_average(met * (len(met) / lasted))
     share_of_contacts = law.contact_share((side,) * 3, 1.0, settings.molecules)
     expected = float(law.collision_rate(density, 1.0, 1.0, 1.0)) * share_of_contacts / scale.time
+    if ideal:  # whom chance chooses is crowded by nobody, and has all the others for partners
+        crowded = float(law.contact_value(law.packing_fraction(density, 1.0))) * share_of_contacts
+        expected *= (1.0 - 1.0 / settings.molecules) / crowded
     mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
     nothing = "none: the model has no other error than chance"
     shape_error = float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2)))

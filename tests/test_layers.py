@@ -32,6 +32,7 @@ LAYERS = {
     **dict.fromkeys(FOUNDATION.split(), FACTS),
     "panels": Layer(),
     "engines": Layer("errors parameter spelling", lazily="engine numpy xarray"),
+    "accuracy": Layer("errors spelling"),
     "declaration": Layer("", "numpy"),
     "variables": Layer("declaration"),
     "diagnostics": Layer("version engine units errors panels statistics declaration variables", "numpy xarray"),
@@ -48,7 +49,7 @@ LAYERS = {
     ),
     "scenarios": Layer("errors"),
     "runner": Layer(
-        "version engine engines errors units parameter settings headline panels diagnostics provenance output"
+        "version accuracy engine engines errors units parameter settings headline panels diagnostics provenance output"
         " checkpoint instruments scene scenarios",
         "numpy xarray",
     ),

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.accuracy import cost
+from atmosbox.accuracy import TARGETS, cost, said
 from atmosbox.cli.table import table, wrapped
 
 if TYPE_CHECKING:
-    from atmosbox.accuracy import Expectation, ExpectedError
+    from atmosbox.accuracy import Expectation, ExpectedError, Wish
     from atmosbox.headline import Headline
 
 
@@ -32,16 +32,13 @@ def expectation_lines(
     if expectation is None:
         if engine == "exact":
             return []
-        return [f"no error was measured for the engine {engine} at these settings: hold it against --engine exact"]
+        nothing = f"no error was measured for the engine {engine} at these settings: compare with --engine exact"
+        return wrapped(nothing, width)
     way, wish = expectation.way, expectation.wish
-    said = f"{way.label}: {cost(way.cost)}"
-    if wish is not None:
-        limits = "the most accurate that was measured" if wish.best else f"within {wish.limits}"
-        within = limits if wish.limits.replace(" ", "") != wish.text else "within it"
-        said = f"accuracy {wish.text}, {within}: {said}"
-    lines = wrapped(said, width)
+    asked = "" if wish is None else f"accuracy {wish.text}{_meaning(wish)}: "
+    lines = wrapped(f"{asked}{way.label}, at {cost(way.cost)}; its errors were measured in {way.members} runs", width)
     if wish is not None and not expectation.met:
-        lines += wrapped(f"Nothing that was measured is within {wish.limits}: this is what comes nearest.", width)
+        lines += wrapped(f"Nothing that was measured is within {wish.limits}: this comes nearest.", width)
     found = {headline.name: headline for headline in headlines}
     rows = [
         [
@@ -57,16 +54,22 @@ def expectation_lines(
     if not headlines:
         header, rows = header[:-1], [row[:-1] for row in rows]
     lines += table(header, rows, width)
-    runs = f"measured in {way.members} runs"
     if expectation.differs:
-        where = f"with {', '.join(_setting(way.settings, name) for name in expectation.differs)}"
-        lines += wrapped(f"These errors were {runs} at other settings, {where}; here they may be others.", width)
+        where = ", ".join(_setting(way.settings, name) for name in expectation.differs)
+        lines += wrapped(f"These errors were measured at other settings, with {where}; here they may be others.", width)
     return lines
 
 
-def _setting(settings: Any, name: str) -> str:
+def _meaning(wish: Wish) -> str:
+    """Return what a target that has a name means, in brackets."""
+    if wish.text not in TARGETS:
+        return ""
+    return f" ({'the most accurate that was measured' if wish.best else wish.limits})"
+
+
+def _setting(settings: Mapping[str, Any], name: str) -> str:
     """Return a setting as it was when the errors were measured."""
-    return f"{name}={settings[name]}" if name in settings else f"the default of {name}"
+    return said(name, settings[name]) if name in settings else f"the default of {name}"
 
 
 def _shown(error: ExpectedError, size: float, sign: str = "") -> str:

@@ -157,9 +157,7 @@ def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: floa
     }
 
 
-def outcome_lines(
-    outcome: Outcome, *, path: Path, limit: float, width: int, expected: Sequence[str] = ()
-) -> list[str]:
+def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int, expected: Sequence[str] = ()) -> list[str]:
     """Return a run as text, with the lines that say which errors were to be expected."""
     return [
         *headline_lines(outcome.headlines, width),

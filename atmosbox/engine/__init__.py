@@ -22,6 +22,7 @@ Read it in this order:
 `scatter`    where molecules stand at the start, at random
 `lattice`    the same, on a lattice
 `start`      how they move at the start
+`account`    what a box has counted, and whether its energy adds up
 `parcel`     the box: what it is given, holds and tells
 `parcelset`  the box, advanced exactly
 `marching`   the box, advanced step by step
@@ -30,6 +31,18 @@ Read it in this order:
 `classic_lookahead`  unequal discs, which look ahead
 `classic_spheres`    spheres, all pairs
 `classic`            the box, as teaching applets move it: one of the three
+`window`        a glance at eight neighbours at once
+`neighbourhood` who overlaps whom, found in cells
+`gridding`      how the box is cut into those cells
+`flight`        a step of free flight
+`bounce`        a step of those that come near walls
+`stepped`       step by step: all move, those that overlap collide
+`stepped_start` what a start in time steps must be
+`stepped_parcel`  the box, advanced in such steps
+`swarm`      many molecules in columns, sorted into cells
+`streaming`  a step of free flight for all of them, with walls on the way
+`dsmc`       collisions with whom chance chooses nearby
+`dsmc_parcel`  the box, advanced by direct simulation Monte Carlo
 `measure`    what is read off it
 `lift`       a piston that follows a pressure
 `_jit`       the one door to numba

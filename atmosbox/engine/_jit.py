@@ -21,13 +21,16 @@ import numpy as np
 from numba.core import cgutils, config, types
 from numba.extending import intrinsic
 
-__all__ = ["COMPILED", "POSITIVE", "cache_folder", "kernel", "prefetch"]
+__all__ = ["COMPILED", "POSITIVE", "cache_folder", "kernel", "prange", "prefetch", "use_threads"]
 
 POSITIVE = (1 << 40) - 1
 """``index & POSITIVE`` tells the compiler that an index is not negative: that saves Python's counting from the end."""
 
 COMPILED = not config.DISABLE_JIT
 """Whether kernels are compiled (they are not under ``NUMBA_DISABLE_JIT=1``, which the coverage run uses)."""
+
+prange = numba.prange
+"""The ``range`` of a loop whose turns a kernel that is ``parallel`` shares among threads."""
 
 _SHARED: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
@@ -114,6 +117,12 @@ def kernel(
         return numba.njit(cache=True, nogil=True, **options)(function)
     finally:
         config.CACHE_DIR = before
+
+
+def use_threads(number: int) -> None:
+    """Let parallel kernels run on so many threads, or on as many as this machine has."""
+    if COMPILED:
+        numba.set_num_threads(min(number, config.NUMBA_NUM_THREADS))
 
 
 if COMPILED:

@@ -164,7 +164,8 @@ class ClassicParcel(MarchingParcel):
     def numerical_heat(self) -> float:
         """Energy that the scheme itself has made since the start [energy], by its falls and at the walls.
 
-        It is neither heat of a wall nor work, but an error; without gravity there is none.
+        It is neither heat of a wall nor work, but an error; without gravity there is none. That the books close says
+        only that nothing is unaccounted for.
         """
         return float(self._score.numerical_heat[0])
 
@@ -182,17 +183,6 @@ class ClassicParcel(MarchingParcel):
     def parting_contacts(self) -> int:
         """How many contacts were those of a pair that was already parting: they never happened."""
         return int(self._score.count[2])
-
-    def ledger(self) -> float:
-        """Return by how much the energy ledger fails to close, relative to the energy that there is.
-
-        Kinetic + potential = what there was at the start + heat from the walls + `numerical_heat`. That the books
-        close says that nothing is unaccounted for; how wrong the scheme is, the numerical heat says.
-        """
-        total = sum(self.energy())
-        given = float(self._tallies.heat.sum()) + self.numerical_heat
-        scale = max(abs(total), abs(self._start_energy))
-        return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
 
     # ------------------------------------------------------------------ how
 

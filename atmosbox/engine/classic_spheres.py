@@ -35,8 +35,11 @@ def mirror(x, low, high):
 
     Examples
     --------
-    >>> mirror(-0.25, 0.0, 2.0), mirror(5.0, 0.0, 2.0)
-    ((0.25, 1.0), (1.0, 2.0))
+    Five lengths up in a box of two, it has been at the ceiling and at the floor:
+
+    >>> place, times = mirror(5.0, 0.0, 2.0)
+    >>> float(place), float(times)
+    (1.0, 2.0)
     """
     width = high - low
     if not width > 0.0:

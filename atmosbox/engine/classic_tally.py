@@ -58,7 +58,7 @@ def wrap(x, length, inverse):
 
     Examples
     --------
-    >>> wrap(4.5, 4.0, 0.25)
+    >>> float(wrap(4.5, 4.0, 0.25))
     0.5
     """
     x -= length * np.floor(x * inverse)
@@ -71,7 +71,7 @@ def shortest(r, length, inverse):
 
     Examples
     --------
-    >>> shortest(3.0, 4.0, 0.25), shortest(3.0, 4.0, 0.0)
+    >>> float(shortest(3.0, 4.0, 0.25)), float(shortest(3.0, 4.0, 0.0))
     (-1.0, 3.0)
     """
     return r - length * np.rint(r * inverse)
@@ -99,8 +99,8 @@ def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
 
     Where it is then put differs from scheme to scheme. It gets its velocity at the end of the step and does not fly
     for what is left of it, as in the applets. Where the wall is a heat bath that makes the gas too hot: each flight
-    is about :math:`\Delta t / 2` longer than it should be, and those that the walls emit carry more energy than
-    the mean molecule, :math:`2 kT` for :math:`3/2\,kT` in space.
+    ends about :math:`\Delta t / 2` late, and the molecules that walls emit carry more energy than the mean one, in
+    space :math:`2 kT` for :math:`3/2\,kT`.
 
     Parameters
     ----------

@@ -1,34 +1,20 @@
 """What every engine's box is given, knows and tells, however it lets time pass."""
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar, NamedTuple, Protocol, TypedDict
+from typing import ClassVar, Protocol, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from atmosbox.engine.account import Account, Array, Snapshot
 from atmosbox.engine.inputs import column, inside, matrix, natural_time, number, sides_of, whole
 from atmosbox.engine.refusal import RefusedError
 from atmosbox.engine.state import Tallies
-from atmosbox.engine.walls import HEAT_BATH, PERIODIC, PISTON, Specular, Wall, new_walls, wall_kT
+from atmosbox.engine.walls import PERIODIC, PISTON, Specular, Wall, new_walls
 
-__all__ = ["Arrangement", "Driver", "Parcel", "Snapshot"]
-
-Array = NDArray[np.float64]
-
-
-class Snapshot(NamedTuple):
-    """All molecules at one time.
-
-    ``position``, ``velocity : (molecule, axis)`` [length, length/time]; ``rotational_energy :
-    (molecule,)`` [energy].
-    """
-
-    time: float
-    position: Array
-    velocity: Array
-    rotational_energy: Array
+__all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
 
 
 class Driver(Protocol):
@@ -57,7 +43,7 @@ class Arrangement(TypedDict, total=False):
     driver: Driver | None
 
 
-class Parcel(ABC):
+class Parcel(Account):
     """Molecules in a box: what is common to all engines.
 
     Parameters
@@ -203,10 +189,6 @@ class Parcel(ABC):
         """
 
     @abstractmethod
-    def snapshot(self) -> Snapshot:
-        """Return all molecules as they are now; nothing in the box changes by being looked at."""
-
-    @abstractmethod
     def memory(self) -> int:
         """Return the bytes that molecules and all that finds their collisions take."""
 
@@ -302,92 +284,6 @@ class Parcel(ABC):
     def ideal(self) -> bool:
         """Whether molecules take no room from each other, so that the pressure is n kT."""
         return not self._diameter.any()
-
-    @property
-    def contacts(self) -> int:
-        """Number of contacts since the start."""
-        return int(self._tallies.count[0])
-
-    @property
-    def events(self) -> dict[str, int]:
-        """Numbers of contacts, cells entered and left, stale predictions and wall hits since the start."""
-        names = ("contacts", "entered", "left", "stale", "wall_hits")
-        return {name: int(count) for name, count in zip(names, self._tallies.count, strict=True)}
-
-    @property
-    def wall_impulse(self) -> Array:
-        """Outward normal impulse that each wall has taken up since the start [momentum]."""
-        return np.array(self._tallies.impulse)
-
-    @property
-    def wall_heat(self) -> Array:
-        """Heat that each wall has given since the start [energy]."""
-        return np.array(self._tallies.heat)
-
-    @property
-    def wall_hits(self) -> NDArray[np.int64]:
-        """How often each wall has been hit since the start."""
-        return np.array(self._tallies.hits)
-
-    def wall_kT(self) -> Array:
-        """Return the temperature of each wall now [energy], NaN for one that has none."""
-        plain = getattr(wall_kT, "py_func", wall_kT)  # asked once a frame: not worth compiling
-        kT = [
-            plain(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)
-        ]
-        return np.array(kT)
-
-    @property
-    def work(self) -> float:
-        """Work that the piston has done on the molecules since the start [energy]."""
-        return float(self._tallies.work.sum())
-
-    @property
-    def virial(self) -> Array:
-        """Sum of r . dp over contacts since the start, by layer [energy]."""
-        return np.array(self._tallies.virial)
-
-    def energy(self) -> tuple[float, float, float]:
-        """Return kinetic, rotational and potential energy now [energy]."""
-        position, velocity, spin = self.snapshot()[1:]
-        kinetic = 0.5 * float(np.sum(self._mass * np.sum(velocity * velocity, axis=1)))
-        rotational = float(np.sum(spin)) if self._rotates else 0.0
-        potential = self.gravity * float(np.sum(self._mass * position[:, 2])) if self.gravity else 0.0
-        return kinetic, rotational, potential
-
-    def ledger(self) -> float:
-        """Return by how much the energy ledger fails to close, relative to the energy that there is.
-
-        Kinetic + rotational + potential = what there was at the start + heat from the walls + work of the
-        piston.
-        """
-        total = sum(self.energy())
-        given = float(self._tallies.heat.sum()) + self.work
-        scale = max(abs(total), abs(self._start_energy))
-        return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
-
-    @property
-    def numerical_heat(self) -> float:
-        """Energy that the engine's scheme itself has made, beside heat and work [energy]; an exact one makes none."""
-        return 0.0
-
-    def escaped(self) -> int:
-        """Return how many molecules are outside the box or nowhere: none, or the engine is wrong."""
-        position, velocity = self.snapshot()[1:3]
-        lawful = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
-        for axis in (0, 2) if self._planar else (0, 1, 2):
-            reach = 0.0 if self._periodic[axis] else 0.5 * self._diameter
-            slack = 1e-9 * self.length[axis]
-            lawful &= position[:, axis] >= reach - slack
-            lawful &= position[:, axis] <= self.length[axis] - reach + slack
-        return int(np.sum(~lawful))
-
-    def internal_energy(self) -> float:
-        """Return kinetic + rotational energy from the ledger, without looking at the molecules [energy].
-
-        Meant for boxes without gravity, where it costs nothing however many molecules there are.
-        """
-        return self._start_energy + float(self._tallies.heat.sum()) + self.work
 
     # ------------------------------------------------------------------ what moves it
 

@@ -7,9 +7,11 @@
           +-- PackingError   molecules that do not fit
     RuntimeError
      +-- StalledError     time no longer advances
+    UserWarning
+     +-- CoarseStepWarning   a time step so long that collisions come late
 """
 
-__all__ = ["PackingError", "RefusedError", "StalledError"]
+__all__ = ["CoarseStepWarning", "PackingError", "RefusedError", "StalledError"]
 
 
 class RefusedError(ValueError):
@@ -22,3 +24,7 @@ class PackingError(RefusedError):
 
 class StalledError(RuntimeError):
     """Events pile up without end in a vanishing time."""
+
+
+class CoarseStepWarning(UserWarning):
+    """A time step so long that molecules overlap deeply before they collide."""

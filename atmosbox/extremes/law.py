@@ -1,24 +1,27 @@
 r"""What is known of approximate engines: by which law each is off.
 
-A step sees a contact late by up to its length :math:`\Delta t`, and misses pairs that graze in passing. With
-:math:`\delta = \Delta t \sqrt{kT/m}/\sigma`, in a dilute gas,
+A step sees a contact only if it ends where the two overlap and still approach. Of all pairs that would touch
+within a step in which they come closer by :math:`x` diameters, at all impact parameters, that is the share
 
-.. math:: \frac{\nu}{\nu_{exact}} = 1 - \frac{8}{3} \delta^2, \qquad
-          \frac{Z - 1}{Z_{exact} - 1} = 1 - \frac{4}{\sqrt{\pi}} \delta ,
+.. math:: R(x) = 1 - \tfrac{1}{3} x^2 \quad (x \le 1), \qquad \frac{2}{3x} \quad (x > 1) .
 
-and in a dense one an error that is proportional to the step, once that is much shorter than the way between two
-contacts.
+With :math:`\delta = \Delta t \sqrt{kT/m}/\sigma` and the relative speeds of pairs that meet in a thin gas, its mean is
+:math:`1 - \frac{8}{3}\delta^2` for short steps and :math:`\sqrt{\pi}/6\delta` for long ones: `seen_share`. Contacts
+come late, too: the pressure of collisions is low by :math:`(4/\sqrt{\pi})\,\delta` of itself, and in a dense gas by an
+amount proportional to the step, once that is much shorter than the time between two contacts.
 
 Euler's fall makes the energy :math:`m g^2 \Delta t / 2` per molecule and time, and so does a floor that mirrors
 what has gone through it. Direct simulation Monte Carlo knows nobody's place within a cell: its molecules
 collide as often as points that are surrounded by nobody, and press as an ideal gas does.
 """
 
+import math
+
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.parcel import Parcel
 from atmosbox.extremes.verdict import Verdict, degraded, judged, wrong
 
-__all__ = ["by_chance", "euler_heat", "heat_made", "judged_contacts", "step_of"]
+__all__ = ["by_chance", "euler_heat", "heat_made", "judged_contacts", "seen_share", "step_of"]
 
 
 def by_chance(parcel: Parcel) -> bool:
@@ -31,6 +34,31 @@ def step_of(parcel: Parcel) -> float:
     return parcel.time_step if isinstance(parcel, MarchingParcel) else 0.0
 
 
+def seen_share(delta: float) -> float:
+    r"""Return which share of the contacts of a thin gas is seen by steps of a length.
+
+    Parameters
+    ----------
+    delta
+        Length of a step, :math:`\Delta t \sqrt{kT/m} / \sigma`.
+
+    Notes
+    -----
+    The mean of R over the relative speeds u of pairs that meet, :math:`u^3 \exp(-m u^2 / 4 k T)`.
+
+    Examples
+    --------
+    >>> [round(seen_share(delta), 4) for delta in (0.0, 0.05, 1.0, 10.0)]
+    [1.0, 0.9933, 0.2922, 0.0295]
+    """
+    if delta == 0.0:
+        return 1.0
+    a = 0.5 / delta
+    fast = math.exp(-a * a)
+    slow = 1.0 - (1.0 + a * a) * fast - 8.0 / 3.0 * delta**2 * (1.0 - (1.0 + a * a + 0.5 * a**4) * fast)
+    return slow + (2.0 * fast / delta + 2.0 * math.sqrt(math.pi) * math.erfc(a)) / (12.0 * delta)
+
+
 def judged_contacts(
     parcel: Parcel, what: str, value: float, expected: float, tolerance: float, distance: float = 1.0
 ) -> Verdict:
@@ -39,7 +67,7 @@ def judged_contacts(
     ``distance`` is that of the centres at a contact [length].
     """
     delta = step_of(parcel) / distance
-    share = 1.0 - 8.0 / 3.0 * delta**2
+    share = seen_share(delta)
     if by_chance(parcel) or share > 0.999:
         return judged(what, value, expected, tolerance)
     seen = f"{what}, of which steps of δ = {delta:.2g} see {share:.3g}"

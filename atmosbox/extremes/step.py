@@ -5,26 +5,12 @@ import math
 from atmosbox import theory
 from atmosbox.engine.walls import Periodic
 from atmosbox.extremes.extreme import ANY, extreme
-from atmosbox.extremes.law import by_chance, step_of
+from atmosbox.extremes.law import by_chance, seen_share, step_of
 from atmosbox.extremes.trial import Trial
 from atmosbox.extremes.verdict import Verdict, degraded, judged
 
 _NUMBER, _PACKING = 256, 0.01
 _STEPS = 1000
-
-
-def tunnelling_share(delta: float) -> float:
-    r"""Return which share of the contacts of a thin gas is left where steps are much longer than a molecule.
-
-    After such a step every place is as likely as any other. A pair overlaps with the probability :math:`4 \pi
-    \sigma^3 / 3 V`, and half of those approach, so that :math:`\nu / \nu_{exact} = \sqrt{\pi} / 6 \delta`.
-
-    Examples
-    --------
-    >>> round(tunnelling_share(10.0), 4)
-    0.0295
-    """
-    return math.sqrt(math.pi) / (6.0 * delta)
 
 
 def _coarse(trial: Trial, delta: float) -> Verdict:
@@ -42,7 +28,7 @@ def _coarse(trial: Trial, delta: float) -> Verdict:
         return judged("contacts over theory: there is no step", met / rate, 1.0, 4.0 / math.sqrt(rate) + 0.005)
     if by_chance(gas):
         return judged("contacts over theory: chance knows no step", met / thin, 1.0, 4.0 / math.sqrt(thin) + 0.005)
-    left = tunnelling_share(step_of(gas))
+    left = seen_share(step_of(gas))
     what = f"contacts over theory, with steps of δ = {step_of(gas):.3g}; as many as chance places on each other"
     # 4 standard errors of a count: 6 false alarms in 100 000
     return degraded(what, met / thin, left, 4.0 * math.sqrt(left / thin) + 0.03 * left)

@@ -7,7 +7,7 @@ import numpy as np
 from atmosbox import theory
 from atmosbox.engine.refusal import StalledError
 from atmosbox.engine.walls import HeatBath, Specular
-from atmosbox.extremes.extreme import extreme
+from atmosbox.extremes.extreme import ANY, extreme
 from atmosbox.extremes.trial import Trial
 from atmosbox.extremes.verdict import Verdict, judged, wrong
 from atmosbox.statistics import block_average
@@ -21,7 +21,8 @@ def hot_and_cold(trial: Trial) -> Verdict:
     hot = 1e6
     number = 200 if trial.exact else 20  # the hot ones make steps short
     walls = (HeatBath(hot), HeatBath(1.0), _S, _S, _S, _S)
-    gas = trial.gas(number, (1.0,) * 3, kT=1.0, diameter=0.0, walls=walls)
+    options = {"dt": 2e-5} if trial.engine == "stepped" else {}  # it wants to be told where molecules have no size
+    gas = trial.gas(number, (1.0,) * 3, kT=1.0, diameter=0.0, walls=walls, options=options)
     trial.run(gas, 5.0)
     fluxes = []
     for _ in range(20):
@@ -35,12 +36,12 @@ def hot_and_cold(trial: Trial) -> Verdict:
     return judged("heat flux over theory", float(mean) / expected, 1.0, 4.0 * float(error) / expected)
 
 
-@extreme("frozen-walls", "walls at kT = 10⁻³⁰⁰", may_refuse=("exact", "stepped", "dsmc", "classic"))
+@extreme("frozen-walls", "walls at kT = 10⁻³⁰⁰", may_refuse=ANY)
 def frozen_walls(trial: Trial) -> Verdict:
     """Enclose a gas in walls at hardly any temperature: they take all energy, or it is refused."""
     gas = trial.gas(50, (10.0,) * 3, walls=(HeatBath(1e-300),) * 6)
     before, refusal = sum(gas.energy()), ""
-    for until in (10.0, 1e3, 1e5):
+    for until in (10.0, 1e3, 1e5) if trial.exact else (10.0, 1e3):
         try:
             trial.run(gas, until)
         except StalledError as stalled:

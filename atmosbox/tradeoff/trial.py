@@ -88,9 +88,7 @@ def _trial(outcome: Outcome, settings: Any) -> Trial:
         if not absolute and headline.theory == 0.0:
             continue
         size = 1.0 if absolute else abs(headline.theory)
-        quantities[headline.name] = Quantity(
-            headline.name, headline.label, "K" if absolute else "1", headline.theory
-        )
+        quantities[headline.name] = Quantity(headline.name, headline.label, "K" if absolute else "1", headline.theory)
         error[headline.name] = np.array([headline.misfit / size])
         noise[headline.name] = np.array([headline.standard_error / size])
     dataset = outcome.dataset

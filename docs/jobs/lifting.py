@@ -16,11 +16,11 @@ SEEDS = {100: 24, 200: 24, 400: 24, 800: 16, 1600: 16}
 """How many seeds there are for each length of the ascent in mean free times."""
 SLOW = 200
 """From which length on the law of the finite speed is fitted; in faster ascents its next order shows."""
-_MEMORY: dict[tuple[int, int], dict[int, tuple[float, float]]] = {}
+_MEMORY: dict[tuple[int, int], dict[int, tuple[float, float, float]]] = {}
 
 
-def misfits(ascent: int, seed: int) -> dict[int, tuple[float, float]]:
-    """Return, by pressure [hPa], how much too warm a parcel arrives and the standard error that the run states [K]."""
+def misfits(ascent: int, seed: int) -> dict[int, tuple[float, float, float]]:
+    """Return by pressure [hPa] how much too warm a parcel arrives, with what error, and what the scene allows [K]."""
     if (ascent, seed) not in _MEMORY:
         prepared = runner.prepare("lifting-dry", {"ascent": ascent, "seed": seed})
         found = {each.name: each for each in runner.execute(prepared).headlines}
@@ -28,6 +28,7 @@ def misfits(ascent: int, seed: int) -> dict[int, tuple[float, float]]:
             level: (
                 found[f"temperature_at_{level}_hpa"].misfit or 0.0,
                 found[f"temperature_at_{level}_hpa"].standard_error,
+                found[f"temperature_at_{level}_hpa"].tolerance,
             )
             for level in LEVELS
         }
@@ -88,8 +89,9 @@ def finite_speed(found: Findings) -> None:
     found.number("room", f"{-room:.3f} K")
     found.number("allowed", f"{allowed:.0f} K")
     found.number("default", f"{c[0] / 1600:.2f} K")
-    for n, m, e in zip(ascents, mean, error, strict=True):
-        if not -4.0 * e <= m <= allowed / n + 4.0 * e:
+    limits = [each[0, 2] for each in values]
+    for n, m, e, limit in zip(ascents, mean, error, limits, strict=True):
+        if not -4.0 * e <= m <= limit + 4.0 * e:
             found.failures.append(f"an ascent of {n:.0f} mean free times ends {m:.3f} +- {e:.3f} K too warm")
     draw_finite_speed(found, ascents, mean, error, float(c[0]), room, scatter)
 

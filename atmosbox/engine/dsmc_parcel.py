@@ -1,0 +1,311 @@
+"""The parcel of air, advanced by direct simulation Monte Carlo: for columns and parcels of many molecules."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar, NamedTuple, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.engine._jit import use_threads
+from atmosbox.engine.dsmc import Desk, Gas, specialise
+from atmosbox.engine.inputs import number, whole
+from atmosbox.engine.marching import MarchingParcel
+from atmosbox.engine.parcel import Arrangement, Array, Snapshot
+from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.engine.state import Box
+from atmosbox.engine.swarm import BLOCK, Grid, Swarm, new_gather
+
+__all__ = ["DsmcParcel", "Resolution"]
+
+_REGROUP = 32
+_THREADED = 10_000
+_FASTEST = 6.5
+_FORGET = 1.0 - 1.0 / 512.0
+_COLUMNS = ("x", "y", "z", "vx", "vy", "vz", "spin")
+
+
+class Resolution(NamedTuple):
+    """How fine cells and steps are: both should stay below 1.
+
+    ``cell`` longest side of a cell, in mean free paths; ``step`` length of a step, in mean free times: both
+    of the densest layer of cells, whichever way the gas is layered.
+    """
+
+    cell: float
+    step: float
+
+
+class DsmcParcel(MarchingParcel):
+    """A parcel of dilute gas, whose molecules collide with whom chance chooses nearby.
+
+    What it is given, and what it tells, is described at `Parcel`; how it works, at `dsmc`. Molecules have
+    the cross section pi sigma^2 of spheres of their diameter sigma and take no room: they may overlap, the
+    pressure is n kT, and the virial of contacts stays 0. All of them are alike.
+
+    Parameters
+    ----------
+    position, velocity, **box
+        See `Parcel`.
+    dt
+        Length of a step, in mean free times of the start at its mean density, 0 to 10. Where a mean free path
+        is longer than the box, the time in which a molecule crosses the box takes its place.
+    occupancy
+        Mean number of molecules in a cell, at least 1.
+    cell
+        Side of a cell in mean free paths of the start at its mean density, in place of an occupancy.
+    threads
+        How many threads share the work of 10 000 molecules or more; the result is the same for any number.
+
+    Raises
+    ------
+    RefusedError
+        If an option is impossible, the gas is plane, or its molecules are not alike.
+
+    Notes
+    -----
+    The errors of transport grow with the squares of step and cell [1]_: of a viscosity by 11 % (Δx / λ)^2, of a
+    conductivity by 4.5 % (Δx / λ)^2. When a piston moves, cells stretch with the box: in proportion to the mean
+    free path they stay as high as they were.
+
+    References
+    ----------
+    .. [1] Alexander, F. J., Garcia, A. L., Alder, B. J. (1998), Phys. Fluids 10, 1540, doi:10.1063/1.869674.
+
+    Examples
+    --------
+    Twenty thousand molecules that all have the same speed collide until it is no longer so; their energy stays:
+
+    >>> rng = np.random.default_rng(1)
+    >>> angle = rng.normal(size=(20_000, 3))
+    >>> velocity = angle / np.sqrt(np.sum(angle**2, axis=1))[:, None]
+    >>> gas = DsmcParcel(1.0 + 98.0 * rng.random((20_000, 3)), velocity, length=(100, 100, 100))
+    >>> gas.advance(200.0)
+    >>> speed = np.sqrt(np.sum(gas.snapshot().velocity**2, axis=1))
+    >>> bool(speed.std() > 0.3), round(float(np.mean(speed**2)), 9)
+    (True, 1.0)
+    """
+
+    engine: ClassVar[str] = "dsmc"
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        *,
+        dt: float = 0.2,
+        occupancy: float = 10.0,
+        cell: float | None = None,
+        threads: int = 1,
+        **box: Unpack[Arrangement],
+    ) -> None:
+        self._share = number(dt, "dt", least=0.0, most=10.0)
+        if self._share == 0.0:
+            raise RefusedError("dt = 0 would never end: give a time step above 0, in mean free times")
+        self._occupancy = number(occupancy, "occupancy", least=1.0)
+        self._cell = None if cell is None else number(cell, "cell", least=1e-3, most=1e3)
+        self._threads = whole(threads, "threads", least=1)
+        if box.get("planar"):
+            raise RefusedError("the cells of dsmc are three-dimensional: a plane gas needs the engine exact")
+        super().__init__(position, velocity, **box)
+
+    # ------------------------------------------------------------------ what it tells
+
+    @property
+    def ideal(self) -> bool:
+        """Whether the pressure is n kT: it is, for molecules take no room."""
+        return True
+
+    def resolution(self) -> Resolution:
+        """Return how fine cells and steps are where the gas is densest now, at its present mean temperature."""
+        n, grid = self._number, self._grid
+        if not n:
+            return Resolution(0.0, 0.0)
+        crowding = 1.0
+        sides = self._open_sides()
+        numbers = (grid.number_x, grid.number_y, grid.number_z)
+        columns = (self._swarm.x, self._swarm.y, self._swarm.z)
+        for x, low, side, cells in zip(columns, self._low, sides, numbers, strict=True):
+            layer = np.minimum(((x - low) * (cells / side)).astype(np.int32), cells - 1)
+            crowding = max(crowding, float(np.bincount(layer, minlength=cells).max()) * cells / n)
+        path = self._path(float(math.prod(sides))) / crowding
+        speed = math.sqrt(8.0 / math.pi * self._mean_square_speed() / 3.0)
+        longest = max(side / cells for side, cells in zip(sides, numbers, strict=True))
+        return Resolution(longest / path, self._time_step * speed / path)
+
+    def snapshot(self) -> Snapshot:
+        """Return all molecules as they are after the last step, each at its own place in the list."""
+        s = self._swarm
+        position, velocity = np.empty((self._number, 3)), np.empty((self._number, 3))
+        for axis in range(3):
+            position[s.identity, axis] = s[axis]
+            velocity[s.identity, axis] = s[3 + axis]
+        spin = np.zeros(self._number)
+        if self._rotates:
+            spin[s.identity] = s.spin
+        return Snapshot(self.time, position, velocity, spin)
+
+    def energy(self) -> tuple[float, float, float]:
+        """Return kinetic, rotational and potential energy now [energy]."""
+        kinetic = 0.5 * self._gas.mass * self._number * self._mean_square_speed()
+        potential = self.gravity * self._gas.mass * float(np.sum(self._swarm.z)) if self.gravity else 0.0
+        return kinetic, float(np.sum(self._swarm.spin)) if self._rotates else 0.0, potential
+
+    def memory(self) -> int:
+        """Return the bytes that molecules, cells and the sorting of the ones into the others take."""
+        arrays = (*self._swarm, self._spare, *self._grid[3:], *self._desk)
+        return sum(int(a.nbytes) for a in arrays)
+
+    # ------------------------------------------------------------------ how
+
+    def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        n = self._number
+        if n and not self._alike:
+            raise RefusedError(
+                "the molecules of dsmc are all alike: give one mass, diameter and rotation, or take engine exact"
+            )
+        first = [float(a[0]) if n else b for a, b in ((self._mass, 1.0), (self._diameter, 0.0), (self._rotation, 0.0))]
+        self._gas = Gas(first[0], 0.5 * first[1], first[2])
+        self._cross_section = math.pi * first[1] ** 2
+        self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
+        length = [float(side) for side in self._sides]
+        inverse = [1.0 / side if turn else 0.0 for side, turn in zip(length, self._periodic, strict=True)]
+        self._box = Box(
+            length_x=length[0],
+            length_y=length[1],
+            length_z=length[2],
+            inverse_x=inverse[0],
+            inverse_y=inverse[1],
+            inverse_z=inverse[2],
+            gravity=self._gravity,
+            planar=False,
+            exchange=1.0 / self._collision_number,
+            stall=0.0,
+        )
+        sides = self._open_sides()
+        if n and not min(sides) > 0.0:
+            raise RefusedError(f"length = {tuple(self._sides)} leaves no room between walls: make the diameter smaller")
+        for axis in range(3):
+            if self._periodic[axis]:
+                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
+        x, y, z, vx, vy, vz = (np.ascontiguousarray(a[:, axis]) for a in (position, velocity) for axis in range(3))
+        spin = rotational_energy.copy() if self._rotates else np.zeros(1)
+        identity = np.arange(n, dtype=np.uint32)
+        self._swarm = Swarm(x, y, z, vx, vy, vz, spin, identity, np.zeros(n, np.uint32), np.zeros(n, np.uint32))
+        self._spare = np.zeros(n)
+        self._workers = self._threads if n >= _THREADED else 1
+        self._lay_out(sides)
+        self._march_kernel = specialise(self._rotates, self._workers > 1)
+        self._gather = new_gather(self._workers > 1)
+        fastest = self._fastest(velocity)
+        self._grid.fastest[:] = _FASTEST * fastest
+        path = min(self._path(math.prod(sides)), *sides)
+        crossing = path / (math.sqrt(8.0 / math.pi) * fastest) if fastest > 0.0 else self._spread
+        self._time_step = self._share * crossing
+
+    def _lay_out(self, sides: Sequence[float]) -> None:
+        """Choose cells that are as good as cubes."""
+        n = self._number
+        volume = math.prod(sides)
+        edge = math.cbrt(volume * self._occupancy / n) if n else math.inf
+        if self._cell is not None and n:
+            edge = self._cell * self._path(volume)
+        numbers = [1.0, 1.0, 1.0]
+        if self._cross_section > 0.0 and n > 1:
+            spare = math.ceil if self._cell is not None else round
+            numbers = [max(1.0, float(spare(side / edge))) for side in sides]
+        if math.prod(numbers) > max(n, 1000) * 10.0:
+            raise RefusedError(
+                f"cell = {self._cell} mean free paths would leave {n / math.prod(numbers):.2g} molecules to a cell: "
+                "make the cells larger, or give more molecules"
+            )
+        nx, ny, nz = (int(m) for m in numbers)
+        cells = nx * ny * nz
+        threads = self._workers
+        self._grid = Grid(
+            nx, ny, nz, np.zeros(cells + 1, np.uint32), np.zeros((threads, cells), np.uint32), np.zeros(cells)
+        )
+        blocks = -(-n // BLOCK)
+        self._desk = Desk(
+            flight=np.zeros((threads, BLOCK)),
+            queue=np.zeros((threads, BLOCK), np.int32),
+            random=np.zeros((threads, 8), np.uint64),
+            books=np.zeros((blocks, 3, 6)),
+            met=np.zeros((threads, 8), np.int64),
+        )
+
+    def _march(self, steps: int) -> None:
+        first, last = self._step, self._step + steps
+        if not steps and self._number:
+            self._resolve(first, 0, np.full(1, self.ceiling))
+        while first < last:
+            # the first step brings them into the order of cells, then every so many
+            turn = first + 1 if first == 0 else first + _REGROUP - (first - 1) % _REGROUP
+            many = min(last, turn) - first
+            position, speed, since = (float(value) for value in self._walls.piston)
+            times = np.arange(first, first + many + 1, dtype=np.float64) * self._time_step
+            ceilings: Array = position + speed * (times - since)
+            lowest = 2.0 * self._gas.radius + 1e-3 * (float(self._sides[2]) - 2.0 * self._gas.radius)
+            if speed < 0.0 and ceilings[-1] < lowest:
+                many = int(np.argmax(ceilings < lowest)) - 1
+            if many > 0 and self._number:
+                self._resolve(first, many, ceilings)
+            if speed < 0.0 and ceilings[-1] < lowest:
+                self._step = first + max(many, 0)
+                self._now = self._step * self._time_step
+                raise StalledError(
+                    f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, a thousandth of the box: "
+                    "stop it earlier, or let it move more slowly"
+                )
+            first += many
+            if first == turn and self._number:
+                self._regroup()
+
+    def _resolve(self, first: int, many: int, ceilings: Array) -> None:
+        if self._workers > 1:
+            use_threads(self._workers)
+        self._march_kernel(
+            first, many, self._time_step, ceilings, self._swarm, self._grid, self._gas, self._cross_section,
+            self._box, self._walls, self._tallies, self._desk,
+        )  # fmt: skip
+
+    def _regroup(self) -> None:
+        """Put the columns in the order of cells, and let cells forget the fastest pair that they ever saw."""
+        changed: dict[str, Any] = {}
+        for name in _COLUMNS[: 7 if self._rotates else 6]:
+            column = getattr(self._swarm, name)
+            self._gather(column, self._swarm.order, self._spare, self._workers)
+            changed[name], self._spare = self._spare, column
+        # every step writes the column of cells anew
+        self._gather(self._swarm.identity, self._swarm.order, self._swarm.cell, self._workers)
+        self._swarm = self._swarm._replace(identity=self._swarm.cell, cell=self._swarm.identity, **changed)
+        usual = _FASTEST * math.sqrt(self._mean_square_speed() / 3.0)
+        np.maximum(self._grid.fastest * _FORGET, usual, out=self._grid.fastest)
+
+    def _step_chosen(self) -> None:
+        """Need nothing: every step reads its length anew."""
+
+    def _open_sides(self) -> list[float]:
+        """Return the sides of the space that centres can reach now [length]."""
+        sides = zip(self.length, self._periodic, strict=True)
+        return [float(side) - (0.0 if turn else 2.0 * self._gas.radius) for side, turn in sides]
+
+    def _path(self, volume: float) -> float:
+        """Return the mean free path when molecules fill an open volume evenly [length]."""
+        swept = math.sqrt(2.0) * self._number * self._cross_section
+        return volume / swept if swept > 0.0 else math.inf
+
+    def _fastest(self, velocity: Array) -> float:
+        """Return sqrt(kT/m) of the start or of the hottest wall; of rest, what falling or the piston will give."""
+        if not self._number:
+            return 0.0
+        thermal = float(self._thermal_speeds(velocity)[0])
+        if thermal > 0.0:
+            return thermal
+        fall = self._gravity * float(np.mean(self._swarm.z)) * 2.0 / 3.0
+        return max(math.sqrt(fall), abs(self.piston_velocity))
+
+    def _mean_square_speed(self) -> float:
+        """Return the mean of the squared speed [length^2/time^2]."""
+        s = self._swarm
+        return sum(float(np.sum(v * v)) for v in (s.vx, s.vy, s.vz)) / max(self._number, 1)

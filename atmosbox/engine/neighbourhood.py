@@ -1,0 +1,261 @@
+"""Who overlaps whom: molecules sorted by cell, then a search of half of each one's neighbourhood.
+
+Cells are at least as wide as the largest molecule, so that two which overlap stand in the same cell or in
+adjacent ones. Every step the molecules are sorted by cell (a stable counting sort): each row of cells along x
+is then one stretch of memory, and three adjacent cells are one short stretch of it. A molecule looks at what
+follows it in its own row and at the four rows that follow its own, above and behind; those that precede it
+have looked already. A first look takes eight at a time, in single precision.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine._jit import kernel
+from atmosbox.engine.window import LANES, any_within
+
+__all__ = ["Grid", "Records", "count_up", "file_molecules", "find_pairs", "new_records"]
+
+_FAR = 1e18
+
+
+class Grid(NamedTuple):
+    """The cells: how many along each axis, how many per length along x and y [1/length], a molecule's least height.
+
+    There are ``number_z`` layers, fewer when the ceiling comes down so low that they would be thinner than
+    ``thinnest`` [length]. ``wraps_*`` tells where the last cell's neighbour is the first; ``simple`` that every
+    periodic axis has cells enough for that. ``reach`` is the distance of two that touch [length], 0 where it differs;
+    ``margin`` the distance from a wall where the largest may touch it [length].
+    """
+
+    number_x: int
+    number_y: int
+    number_z: int
+    inverse_x: float
+    inverse_y: float
+    thinnest: float
+    wraps_x: bool
+    wraps_y: bool
+    wraps_z: bool
+    simple: bool
+    reach: float
+    margin: float
+
+
+class Records(NamedTuple):
+    """The molecules in the order of their cells.
+
+    ``x``, ``y``, ``z``, ``radius : (record,)`` in single precision [length] (radius is None where all are equal),
+    ``slot`` where in memory the molecule is, ``cell`` where it stands. Cell c holds the records ``start[c]`` to
+    ``start[c + 1] - 1``; behind the last cell follows a row of empty ones, which stands for rows that do not
+    exist. ``histogram : (part, cell)`` counts molecules, one row for each part of them that a thread takes.
+    """
+
+    x: Any
+    y: Any
+    z: Any
+    radius: Any
+    slot: Any
+    cell: Any
+    start: Any
+    histogram: Any
+
+
+def new_records(molecules: int, grid: Grid, parts: int, *, mixed: bool) -> Records:
+    """Return room for the records, its end filled with neighbours that are far from everything.
+
+    Examples
+    --------
+    >>> grid = Grid(3, 3, 3, 1.0, 1.0, 1.0, False, False, False, True, 1.0, 0.5)
+    >>> new_records(10, grid, 1, mixed=False).start.size
+    31
+    """
+    cells = grid.number_x * grid.number_y * grid.number_z
+    return Records(
+        x=np.full(molecules + LANES, _FAR, np.float32),
+        y=np.full(molecules + LANES, _FAR, np.float32),
+        z=np.full(molecules + LANES, _FAR, np.float32),
+        radius=np.zeros(molecules + LANES, np.float32) if mixed else None,
+        slot=np.zeros(molecules, np.uint32),
+        cell=np.zeros(molecules, np.int32),
+        start=np.zeros(cells + grid.number_x + 1, np.int32),
+        histogram=np.zeros((parts, cells), np.int32),
+    )
+
+
+@kernel
+def count_up(records, cells, number_x, molecules):
+    """Turn the histograms into places: where each cell starts, and in it the share of each part."""
+    place = 0
+    for cell in range(cells):
+        records.start[cell] = place
+        for part in range(records.histogram.shape[0]):
+            here = records.histogram[part, cell]
+            records.histogram[part, cell] = place
+            place += here
+    for cell in range(cells, cells + number_x + 1):
+        records.start[cell] = molecules
+
+
+@kernel
+def file_molecules(position, cell, size, records, radius, part, first, last):
+    """File the molecules of one part, slots ``first`` to ``last - 1``, into their cells.
+
+    ``size : (slot,)`` is their radius, to be written to ``radius``, which is that of the records or None.
+    """
+    x = position[0]
+    y = position[1]
+    z = position[2]
+    for i in range(np.uint32(first), np.uint32(last)):
+        p = np.uint32(i)
+        c = np.uint32(cell[p])
+        q = np.uint32(records.histogram[part, c])
+        records.histogram[part, c] = q + np.uint32(1)
+        records.x[q] = x[p]
+        records.y[q] = y[p]
+        records.z[q] = z[p]
+        if radius is not None:
+            radius[q] = size[p]
+        records.slot[q] = p
+        records.cell[q] = c
+
+
+@kernel
+def _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes):
+    """Note every later neighbour of record q within reach; return how many pairs there are now."""
+    at_x = records.x[q]
+    at_y = records.y[q]
+    at_z = records.z[q]
+    for dz in range(2):
+        for dy in range(-dz, 2):
+            jz = iz + dz
+            jy = iy + dy
+            if jz == layers:
+                if not grid.wraps_z:
+                    continue
+                jz = 0
+            if jy < 0 or jy == grid.number_y:
+                if not grid.wraps_y:
+                    continue
+                jy += grid.number_y if jy < 0 else -grid.number_y
+            for dx in range(0 if dz == 0 and dy == 0 else -1, 2):
+                jx = ix + dx
+                if jx < 0 or jx == grid.number_x:
+                    if not grid.wraps_x:
+                        continue
+                    jx += grid.number_x if jx < 0 else -grid.number_x
+                there = (jz * grid.number_y + jy) * grid.number_x + jx
+                first = q + 1 if dx == 0 and dy == 0 and dz == 0 else np.int64(records.start[there])
+                for k in range(first, np.int64(records.start[there + 1])):
+                    rx = np.float64(records.x[k] - at_x)
+                    ry = np.float64(records.y[k] - at_y)
+                    rz = np.float64(records.z[k] - at_z)
+                    if modes.periodic:
+                        rx -= box.length_x * np.rint(rx * box.inverse_x)
+                        ry -= box.length_y * np.rint(ry * box.inverse_y)
+                        if not (modes.gravity or modes.piston):
+                            rz -= box.length_z * np.rint(rz * box.inverse_z)
+                    near = np.float64(reach)
+                    if radius is not None:
+                        near += np.float64(radius[k])
+                    if rx * rx + ry * ry + rz * rz < near * near:
+                        if found < pairs.shape[0]:
+                            pairs[found, 0] = records.slot[q]
+                            pairs[found, 1] = records.slot[k]
+                        found += 1
+    return found
+
+
+@kernel
+def _row(records, grid, iy, iz, layers, cells, shift_y, shift_z):
+    """Return where a row of cells begins and by how much the searcher is to be moved to stand before it."""
+    y = np.float32(0.0)
+    z = np.float32(0.0)
+    if iz == layers:
+        if not grid.wraps_z:
+            return cells, y, z
+        iz = 0
+        z = shift_z
+    if iy < 0 or iy == grid.number_y:
+        if not grid.wraps_y:
+            return cells, y, z
+        y = -shift_y if iy < 0 else shift_y
+        iy = grid.number_y - 1 if iy < 0 else 0
+    return (iz * grid.number_y + iy) * grid.number_x, y, z
+
+
+@kernel
+def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, modes):
+    """Find all pairs nearer than their mean diameter plus a slack, whose earlier record is in a part of all.
+
+    Parameters
+    ----------
+    first, last
+        The part: records ``first`` to ``last - 1``.
+    layers
+        Number of layers of cells now.
+    slack
+        By how much single precision may misjudge a distance, more than enough [length].
+    records, radius, grid, box, modes
+        The molecules in the order of their cells, their radius (None where equal), the cells, the box and what the
+        scene requires.
+    pairs : (pair, 2)
+        Filled with slots, in the order of the records.
+
+    Returns
+    -------
+    int
+        How many pairs there are; more than ``pairs`` holds if it is too short.
+    """
+    found = 0
+    if first >= last:
+        return found
+    number_x = np.int64(grid.number_x)
+    cells = number_x * grid.number_y * layers
+    end_x = number_x - 1
+    x = records.x
+    y = records.y
+    z = records.z
+    start = records.start
+    common = np.float32(grid.reach + slack)
+    shift_y = np.float32(-box.length_y)
+    shift_z = np.float32(-box.length_z)
+    for row in range(np.int64(records.cell[first]) // number_x, np.int64(records.cell[last - 1]) // number_x + 1):
+        iz = row // grid.number_y
+        iy = row - iz * grid.number_y
+        own = row * number_x
+        behind, behind_y, _ = _row(records, grid, iy + 1, iz, layers, cells, shift_y, shift_z)
+        low, low_y, low_z = _row(records, grid, iy - 1, iz + 1, layers, cells, shift_y, shift_z)
+        above, _, above_z = _row(records, grid, iy, iz + 1, layers, cells, shift_y, shift_z)
+        high, high_y, high_z = _row(records, grid, iy + 1, iz + 1, layers, cells, shift_y, shift_z)
+        for r in range(max(np.int64(start[own]), first), min(np.int64(start[own + number_x]), last)):
+            q = r & 0x7FFFFFFF
+            ix = np.int64(records.cell[q]) - own
+            left = max(ix - 1, 0)
+            right = min(ix + 1, end_x) + 1
+            at_x = x[q]
+            at_y = y[q]
+            at_z = z[q]
+            reach = common
+            if radius is not None:
+                reach = reach + radius[q]
+            b = np.int64(start[np.uint32(behind + left)])
+            c = np.int64(start[np.uint32(low + left)])
+            d = np.int64(start[np.uint32(above + left)])
+            e = np.int64(start[np.uint32(high + left)])
+            longest = np.int64(start[np.uint32(own + right)]) - q - 1
+            longest = max(longest, np.int64(start[np.uint32(behind + right)]) - b)
+            longest = max(longest, np.int64(start[np.uint32(low + right)]) - c)
+            longest = max(longest, np.int64(start[np.uint32(above + right)]) - d)
+            longest = max(longest, np.int64(start[np.uint32(high + right)]) - e)
+            some = longest > LANES
+            some |= any_within(x, y, z, radius, q + 1, at_x, at_y, at_z, reach)
+            some |= any_within(x, y, z, radius, b, at_x, at_y + behind_y, at_z, reach)
+            some |= any_within(x, y, z, radius, c, at_x, at_y + low_y, at_z + low_z, reach)
+            some |= any_within(x, y, z, radius, d, at_x, at_y, at_z + above_z, reach)
+            some |= any_within(x, y, z, radius, e, at_x, at_y + high_y, at_z + high_z, reach)
+            if modes.periodic:
+                some |= not grid.simple or (grid.wraps_x and (ix == 0 or ix == end_x))
+            if some:
+                found = _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes)
+    return found

@@ -1,0 +1,109 @@
+"""Molecules in columns, and sorted into cells: what the engines hold that do not care who exactly meets whom.
+
+Each property of all molecules is one array, so that a loop over molecules reads memory straight on and the
+compiler does eight of them at once. A cell must know its molecules: every step they are *counted* by cell
+and an index of them is written in the order of cells (a counting sort; who stood first stays first). Now
+and then the columns themselves are put in that order, so that the molecules of a cell stand close
+together in memory, too.
+
+Every thread takes a share of the molecules, one stretch of the columns. It counts its own, and its places in
+the index follow those of the threads before it: the index is the same for any number of threads.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine._jit import kernel, prange
+
+__all__ = ["BLOCK", "Grid", "Swarm", "index_by_cell", "new_gather", "reserve_places", "share_of"]
+
+BLOCK = 1024
+"""How many molecules are moved at a time: few enough to stay in the nearest cache."""
+
+
+class Swarm(NamedTuple):
+    """All molecules, as columns.
+
+    ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` their
+    rotational energy [energy] where they rotate, ``identity : (slot,)`` which molecule stands in a slot.
+    ``cell : (slot,)`` the cell it is in, ``order : (slot,)`` slots in the order of cells.
+    """
+
+    x: Any
+    y: Any
+    z: Any
+    vx: Any
+    vy: Any
+    vz: Any
+    spin: Any
+    identity: Any
+    cell: Any
+    order: Any
+
+
+class Grid(NamedTuple):
+    """Cells of equal size, ``number_*`` along each axis; x changes fastest in their index.
+
+    ``first : (cell + 1,)`` where the molecules of each cell begin in the index; ``place : (thread, cell)``
+    where each thread's do; ``fastest : (cell,)`` the largest relative speed met there [length/time].
+    """
+
+    number_x: int
+    number_y: int
+    number_z: int
+    first: Any
+    place: Any
+    fastest: Any
+
+
+@kernel
+def share_of(thread, threads, number):
+    """Return the first slot of a thread's share of the molecules, and the slot after its last: whole blocks.
+
+    Examples
+    --------
+    >>> [share_of(t, 2, 5000) for t in range(2)]
+    [(0, 2048), (2048, 5000)]
+    """
+    blocks = (number + BLOCK - 1) // BLOCK
+    return min(blocks * thread // threads * BLOCK, number), min(blocks * (thread + 1) // threads * BLOCK, number)
+
+
+@kernel
+def reserve_places(grid, cells):
+    """Turn each thread's counts by cell into its first place in the index, and mark where each cell begins."""
+    threads = grid.place.shape[0]
+    place = 0
+    for c in range(cells):
+        grid.first[c] = place
+        for t in range(threads):
+            count = grid.place[t, c]
+            grid.place[t, c] = place
+            place += count
+    grid.first[cells] = place
+
+
+@kernel
+def index_by_cell(cell, order, place, first, last):
+    """Write the slots from ``first`` to before ``last`` into the index, each at the next place of its cell."""
+    for p in range(first, last):
+        c = np.uint32(cell[np.uint32(p)])
+        q = np.uint32(place[c])
+        place[c] = q + np.uint32(1)
+        order[q] = p
+
+
+def new_gather(parallel: bool) -> Any:
+    """Return the kernel that puts a column in another order, on one thread or on several."""
+
+    @kernel(entry=True, allocates=parallel, parallel=parallel)
+    def gather(column, order, target, threads):
+        """Copy ``column[order]`` to ``target``."""
+        parts = threads if parallel else 1
+        for t in prange(parts):
+            first, last = share_of(t, parts, column.size)
+            for p in range(first, last):
+                target[p] = column[order[np.uint32(p)]]
+
+    return gather
