@@ -102,7 +102,8 @@ class Outcome(NamedTuple):
     seconds: float
     collisions: int
     ledger: float
-    cpu_seconds: float
+    engine_seconds: float
+    """Processor time of the engine alone, without instruments and files."""
     made: float
     """Energy that the engine's scheme itself has made, in that of the motion; zero for an engine that keeps it."""
     escaped: int
@@ -239,6 +240,7 @@ class _Recording:
     setup: Setup
     attributes: dict[str, Any]
     times: list[float] = field(default_factory=lambda: [0.0])
+    busy: float = 0.0
 
     def __post_init__(self) -> None:
         extra = (Molecules(),) if self.prepared.save_molecules else ()
@@ -256,7 +258,9 @@ class _Recording:
             until = (self.frames + sample / setup.samples) * setup.frame
             if sample == setup.samples:
                 until = (self.frames + 1) * setup.frame
+            busy = time.process_time()
             parcel.advance(max(until, parcel.time), watch)
+            self.busy += time.process_time() - busy
             snapshot = parcel.snapshot()
             for instrument in self.instruments:
                 instrument.look(parcel, snapshot)
@@ -346,7 +350,7 @@ def execute(
     )
     recording = _Recording(prepared, setup, attributes)
     setup.parcel.advance(0.0)
-    last = spent = cpu = 0.0
+    last = spent = 0.0
 
     def watch(now: float) -> None:
         nonlocal last
@@ -359,15 +363,14 @@ def execute(
         parcel = setup.parcel
         made = parcel.numerical_heat / (sum(parcel.energy()[:2]) or 1.0)
         return Outcome(
-            dataset, headlines, spent, parcel.contacts, parcel.ledger(), cpu, made, parcel.escaped()
+            dataset, headlines, spent, parcel.contacts, parcel.ledger(), recording.busy, made, parcel.escaped()
         )  # fmt: skip
 
     try:
         while recording.frames < setup.frames:
-            began, busy = time.perf_counter(), time.process_time()
+            began = time.perf_counter()
             recording.advance(watch)
             spent += time.perf_counter() - began
-            cpu += time.process_time() - busy
             watch(setup.parcel.time)
             if checkpoint is not None and recording.frames < setup.frames:
                 checkpoint(lambda: recording.dataset("partial")[0])

@@ -64,7 +64,7 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
         way = {
             "engine": str(one.engine.values),
             "settings": settings,
-            "cost": float(one.cpu_seconds),
+            "cost": float(one.engine_seconds),
             "members": members,
             "errors": errors,
         }

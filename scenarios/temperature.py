@@ -37,10 +37,10 @@ SETTLE = 50
 
 _LATE = {"collision_rate": 2.0}
 ladder = (
-    Series("exact", "duration", (2.5, 5, 10, 20)),
-    Series("stepped", "delta", (0.8, 0.4, 0.2, 0.1), {"duration": 5}, _LATE),
-    Series("dsmc", "dt", (2, 1, 0.5, 0.2), {"duration": 5}, _LATE),
-    Series("classic", "delta", (0.8, 0.4), {"duration": 5}, _LATE),
+    Series("exact", "duration", (5, 20, 80, 320)),
+    Series("stepped", "delta", (0.8, 0.4, 0.2, 0.1, 0.05), {"duration": 20}, _LATE),
+    Series("dsmc", "duration", (5, 20, 80, 320)),
+    Series("classic", "delta", (0.8, 0.4, 0.2), {"duration": 5}, _LATE),
 )
 """What is worth comparing: steps miss collisions, by the square of their length."""
 
@@ -122,7 +122,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         si.duration / scale.time,
         FRAMES,
         (Air(), Speeds(np.linspace(0.0, fastest, 37))),
-        samples=4,
         settle=SETTLE,
         facts={
             "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",

@@ -22,7 +22,7 @@ from atmosbox.errors import SettingError
 if TYPE_CHECKING:
     import xarray as xr
 
-_COLUMNS = ("wall_seconds", "cpu_seconds", "cost", "members", "energy_drift", "ledger", "missed", "escaped")
+_COLUMNS = ("wall_seconds", "engine_seconds", "cost", "members", "energy_drift", "ledger", "missed", "escaped")
 
 
 def tradeoff(
@@ -149,7 +149,7 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
         if not members:
             notes.append(f"{label}: {found.left_out.values[k]}")
             continue
-        cells = [str(label), number(found.cpu_seconds.values[k], 2), number(found.cost.values[k], 3), str(members)]
+        cells = [str(label), number(found.engine_seconds.values[k], 2), number(found.cost.values[k], 3), str(members)]
         for name in chosen:
             one = found.isel(rung=k).sel(quantity=name)
             scale = 1.0 if _unit(found, name) == "K" else 100.0

@@ -46,12 +46,12 @@ def _few(trial: Trial, number: int) -> Verdict:
     trial.run(box, 20_100.0)
     counted = box.contacts - before
     free = (_SIDE - 1.0,) * 3
-    per_pair = 4.0 * math.sqrt(math.pi) / math.prod(free) * theory.contact_share(free, 1.0, 2) * 2.0
-    # centres keep a sphere of one diameter clear of each other, less what of it lies beyond the walls
-    closed = 4.0 / 3.0 * math.pi * (1.0 - 3.0 / 8.0 * sum(1.0 / side for side in free)) / math.prod(free)
-    room = 1.0 if by_chance(box) else 1.0 - closed
-    expected = 0.5 * number * (number - 1) * per_pair / room * (box.time - time)
-    # 4 standard errors of a count: 6 false alarms in 100 000; and what is second order in the room they take
+    pairs = 0.5 * number * (number - 1)
+    expected = pairs * 4.0 * math.sqrt(math.pi) / math.prod(free) * (box.time - time)
+    if not by_chance(box):
+        # walls are in the way of some contacts, and centres keep a sphere of one diameter clear of each other
+        closed = 4.0 / 3.0 * math.pi * (1.0 - 3.0 / 8.0 * sum(1.0 / side for side in free)) / math.prod(free)
+        expected *= 2.0 * theory.contact_share(free, 1.0, 2) / (1.0 - closed)
     tolerance = 4.0 * math.sqrt(expected) + 0.02 * expected
     return judged_contacts(box, f"contacts of {number} molecules", counted, expected, tolerance)
 

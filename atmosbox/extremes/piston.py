@@ -21,8 +21,8 @@ def _pressed(trial: Trial, number: int, diameter: float, speed: float, until: fl
         trial.run(gas, until)
     except StalledError as stalled:
         sentence = str(stalled)
-        if "crush" not in sentence:
-            return wrong(f"the refusal does not say that the piston crushes: {sentence}")
+        if "the piston has come down" not in sentence:
+            return wrong(f"the refusal does not name the piston: {sentence}")
         if gas.time > until:
             return wrong(f"refused at t = {gas.time:g}, beyond what was asked")
         return Verdict("refused", sentence)

@@ -65,7 +65,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         for place, name in enumerate(chosen):
             _draw(axes[place], dataset, name, look)
             if place + columns >= len(chosen):
-                axes[place].set_xlabel("processor time of a run (s)")
+                axes[place].set_xlabel("processor time of the engine in a run (s)")
                 axes[place].tick_params(labelbottom=True)
         drawing.legend(
             handles=_legend(dataset, look),
@@ -94,7 +94,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
     one = dataset.sel(quantity=name)
     scale = 1.0 if str(one.unit.values) == "K" else 100.0
     unit = "K" if scale == 1.0 else "%"
-    seconds = dataset.cpu_seconds.values
+    seconds = dataset.engine_seconds.values
     bias, se, noise = (scale * np.abs(one[key].values) for key in ("bias", "bias_se", "noise"))
     rows = json.loads(dataset.attrs["atmosbox_parameters"]).get("series", [])
     axes.set_xscale("log")
@@ -215,7 +215,7 @@ def _colour(dataset: xr.Dataset, row: int) -> str:
 def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
     """Return what the marks mean: the series, then bias, noise, front and laws."""
     rows = json.loads(dataset.attrs["atmosbox_parameters"]).get("series", [])
-    made = np.isfinite(dataset.cpu_seconds.values)
+    made = np.isfinite(dataset.engine_seconds.values)
     entries = []
     for row in sorted({int(k) for k in dataset.series.values[made]}):
         vary = rows[row]["vary"] if row < len(rows) else "settings"

@@ -178,7 +178,7 @@ def _dataset(
     def worst(pick: Callable[[Trial], float]) -> NDArray[np.float64]:
         return np.array([max(abs(pick(one)) for one in done) if done else np.nan for done in trials])
 
-    cpu = median(lambda one: one.cpu_seconds)
+    cpu = median(lambda one: one.engine_seconds)
     reference = _reference(ways, trials)
     rate = np.array([np.mean([one.collisions for one in done]) if done else np.nan for done in trials])
     missed = np.full(len(ways), np.nan)
@@ -191,11 +191,11 @@ def _dataset(
         "bias_se": (("rung", "quantity"), bias_se, {"long_name": "standard error of bias"}),
         "noise": (("rung", "quantity"), noise, {"long_name": "standard deviation of a single run"}),
         "wall_seconds": ("rung", median(lambda one: one.wall_seconds), _of("wall-clock time of a run", "s")),
-        "cpu_seconds": ("rung", cpu, _of("processor time of a run", "s")),
+        "engine_seconds": ("rung", cpu, _of("processor time that the engine takes in a run", "s")),
         "cost": (
             "rung",
             cpu / (cpu[reference] if reference is not None else np.nan),
-            _of("processor time of a run as a multiple of that of the reference", "1"),
+            _of("processor time of the engine as a multiple of that in the reference", "1"),
         ),
         "members": ("rung", np.array([len(done) for done in trials]), _of("number of runs", "1")),
         "energy_drift": (

@@ -52,7 +52,7 @@ class Trial(NamedTuple):
     error: Mapping[str, NDArray[np.float64]]
     noise: Mapping[str, NDArray[np.float64]]
     wall_seconds: float
-    cpu_seconds: float
+    engine_seconds: float
     ledger: float
     made: float
     escaped: int
@@ -107,6 +107,6 @@ def _trial(outcome: Outcome, settings: Any) -> Trial:
     lasted = float(dataset.elapsed_time_bnds.values[-1, 1] - dataset.elapsed_time_bnds.values[0, 0])
     per_molecule = outcome.collisions / max(getattr(settings, "molecules", 1), 1)
     return Trial(
-        quantities, error, noise, outcome.seconds, outcome.cpu_seconds, outcome.ledger, outcome.made,
+        quantities, error, noise, outcome.seconds, outcome.engine_seconds, outcome.ledger, outcome.made,
         outcome.escaped, per_molecule / lasted if lasted > 0.0 else math.nan,
     )  # fmt: skip

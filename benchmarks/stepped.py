@@ -1,0 +1,130 @@
+"""The pace of the time-stepped engine: molecule-steps per CPU second, alone or beside another engine in the same run.
+
+    python benchmarks/stepped.py
+    python benchmarks/stepped.py --against FOLDER --repeats 9
+
+Equal spheres in gravity between two heat baths. Machines are noisy: what counts is the ratio of two engines that
+take turns, the median over many short slices. FOLDER holds a module ``stepped.py`` with ``Sim(N, phi, delta, T, par,
+mgH=..., thermal=...)``, which lays out as many equal spheres itself, for T threads (par tells whether to use threads at
+all), and advances them by ``go(steps)``. With more than one thread, wall time is measured.
+"""
+
+import argparse
+import gc
+import importlib
+import json
+import math
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from atmosbox.engine import HeatBath, Specular
+from atmosbox.engine.refusal import CoarseStepWarning
+from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine.stepped_parcel import SteppedParcel
+
+WARM_UP = 70
+HEIGHT = 1.0  # of the box, in scale heights
+
+
+def column(n: int, phi: float, delta: float, threads: int) -> SteppedParcel:
+    """Return a column of equal spheres."""
+    side = (n * math.pi / 6.0 / phi) ** (1.0 / 3.0)
+    rng = np.random.default_rng(1)
+    x = random_positions((side,) * 3, np.ones(n), rng)
+    v = maxwell_velocities(1.0, np.ones(n), rng, exact=True)
+    walls = (Specular(),) * 4 + (HeatBath(1.0),) * 2
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CoarseStepWarning)
+        return SteppedParcel(
+            x, v, length=(side,) * 3, walls=walls, gravity=HEIGHT / side, delta=delta, threads=threads
+        )  # fmt: skip
+
+
+def pace(advance: Callable[[int], Any], steps: int, n: int, clock: Callable[[], float]) -> float:
+    """Return molecule-steps per second of one slice."""
+    start = clock()
+    advance(steps)
+    return steps * n / (clock() - start)
+
+
+def measure(n: int, phi: float, delta: float, threads: int, repeats: int, other: Any) -> dict[str, Any]:
+    """Return the medians of one case."""
+    box = column(n, phi, delta, threads)
+
+    def advance(steps: int) -> None:
+        box.advance((box.steps + steps) * box.time_step)
+
+    advance(WARM_UP)
+    theirs = other.Sim(n, phi, delta, threads, threads > 1, mgH=HEIGHT, thermal=True) if other else None
+    if theirs:
+        theirs.go(WARM_UP)
+    slice_ = max(4, 2_000_000 // n)
+    clock = time.process_time if threads == 1 else time.perf_counter
+    paces, others = [], []
+    gc.disable()
+    for _ in range(repeats):
+        paces.append(pace(advance, slice_, n, clock))
+        if theirs:
+            others.append(pace(theirs.go, slice_, n, clock))
+    gc.enable()
+    result = {
+        "packing_fraction": phi,
+        "delta": delta,
+        "molecules": n,
+        "threads": threads,
+        "molecule_steps_per_second": float(np.median(paces)),
+        "bytes_per_molecule": box.memory() / n,
+        "contacts_per_molecule_step": box.contacts / (n * box.steps),
+    }
+    if theirs:
+        result["other_molecule_steps_per_second"] = float(np.median(others))
+        result["ratio"] = float(np.median(np.array(paces) / np.array(others)))
+    return result
+
+
+def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
+    """Run the cases asked for and print a table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--n", type=int, nargs="+", default=[10_000, 100_000, 1_000_000])
+    parser.add_argument("--phi", type=float, nargs="+", default=[0.01, 0.1])
+    parser.add_argument("--delta", type=float, nargs="+", default=[0.02, 0.1])
+    parser.add_argument("--threads", type=int, nargs="+", default=[1])
+    parser.add_argument("--repeats", type=int, default=9)
+    parser.add_argument("--against", type=Path, help="folder of another engine, to take turns with")
+    parser.add_argument("--json", type=Path, help="file for the numbers")
+    asked = parser.parse_args(arguments)
+    other = None
+    if asked.against:
+        sys.path.insert(0, str(asked.against))
+        sys.modules.pop("stepped", None)
+        other = importlib.import_module("stepped")
+    print("| phi | delta | N | threads | million molecule-steps / s | other | ratio | bytes per molecule |")
+    print("|---|---|---|---|---|---|---|---|")
+    results = []
+    for phi in asked.phi:
+        for n in asked.n:
+            for delta in asked.delta:
+                for threads in asked.threads:
+                    r = measure(n, phi, delta, threads, asked.repeats, other)
+                    results.append(r)
+                    beside = f"{r['other_molecule_steps_per_second'] / 1e6:.1f} | {r['ratio']:.3f}" if other else " | "
+                    print(
+                        f"| {phi:g} | {delta:g} | {n} | {threads} | {r['molecule_steps_per_second'] / 1e6:.1f} "
+                        f"| {beside} | {r['bytes_per_molecule']:.0f} |",
+                        flush=True,
+                    )
+    if asked.json:
+        asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    return results
+
+
+if __name__ == "__main__":
+    main()

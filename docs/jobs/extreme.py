@@ -1,0 +1,217 @@
+"""What breaks simulations: the assessment of all engines, a ball under nine integrators, contacts that are missed."""
+
+import math
+import warnings
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from jobs.drawing import BLUE, VERMILLION, axes_of, save, sheet
+from jobs.registry import Findings, job, rounded
+
+from atmosbox import theory
+from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine.walls import Periodic
+from atmosbox.engines import choose, names
+from atmosbox.extremes import Finding, Verdict, assess
+from atmosbox.extremes.catalogue import FAMILIES
+from atmosbox.extremes.law import seen_share
+
+Array = np.ndarray
+
+
+def cell(verdict: Verdict) -> str:
+    """Return what a cell of the table says."""
+    if verdict.value is None:
+        return verdict.outcome
+    if verdict.expected:
+        expected = f"{rounded(verdict.expected, 4)} ± {rounded(verdict.tolerance or 0.0)}"
+        return f"{verdict.outcome}: {rounded(verdict.value, 4)} ({expected})"
+    limit = f" (≤ {rounded(verdict.tolerance)})" if verdict.tolerance else ""
+    return f"{verdict.outcome}: {rounded(verdict.value)}{limit}"
+
+
+@job("extremes")
+def extremes(found: Findings) -> None:
+    """Put all engines through all extremes that do not take minutes."""
+    engines = [choose(name) for name in names()]
+    results: dict[str, list[Finding]] = {}
+    for each in assess(engines):
+        results.setdefault(each.extreme.name, []).append(each)
+        if not each.verdict.passed:
+            found.failures.append(f"{each.engine} in {each.extreme.name}: {each.verdict.told}")
+    rows, sentences = [], []
+    for family, members in FAMILIES.items():
+        rows.append([f"**{family}**", *[""] * len(engines)])
+        for each in members:
+            if each.name not in results:
+                continue
+            rows.append([f"{each.title} (`{each.name}`)", *(cell(one.verdict) for one in results[each.name])])
+            for one in results[each.name]:
+                if one.verdict.outcome != "right":
+                    sentences.append([f"`{each.name}`", f"`{one.engine}`", one.verdict.outcome, one.verdict.sentence])
+    found.table(["extreme", *(f"`{engine.name}`" for engine in engines)], rows)
+    found.table(["extreme", "engine", "outcome", "sentence"], sentences, key="sentences")
+
+
+class Integrator(NamedTuple):
+    """A way of computing a ball: one step of its fall, the rule of its floor, and its drift in units of m g² Δt."""
+
+    name: str
+    fall: Callable[[Array, Array, float], tuple[Array, Array]]
+    floor: str
+    law: float
+
+
+def explicit(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    return z + v * dt, v - dt
+
+
+def kick_first(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    v = v - dt
+    return z + v * dt, v
+
+
+def drift_first(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    z = z + v * dt
+    return z, v - dt
+
+
+def verlet(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    middle = v - 0.5 * dt
+    return z + middle * dt, middle - 0.5 * dt
+
+
+def midpoint(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    return z + (v - 0.5 * dt) * dt, v - dt
+
+
+def parabola(z: Array, v: Array, dt: float) -> tuple[Array, Array]:
+    return z + v * dt - 0.5 * dt * dt, v - dt
+
+
+INTEGRATORS = (
+    Integrator("Euler, flip", explicit, "flip", 0.5),
+    Integrator("Euler, drift first, mirror", drift_first, "mirror", 1.0),
+    Integrator("Euler, undo", explicit, "undo", 1.0),
+    Integrator("semi-implicit Euler, flip", kick_first, "flip", -0.5),
+    Integrator("leapfrog, flip", kick_first, "leapfrog", -0.5),
+    Integrator("midpoint, mirror", midpoint, "mirror", 0.5),
+    Integrator("exact parabola, mirror", parabola, "mirror", 0.5),
+    Integrator("velocity Verlet, flip", verlet, "flip", 0.0),
+    Integrator("exact parabola, flip", parabola, "flip", 0.0),
+)
+"""In units of the height of the drop and of g; energies per mass."""
+
+
+def energies(integrator: Integrator, height: Array, dt: float, steps: int, every: int) -> Array:
+    """Return the energy of balls that are dropped from some heights, over what it was: (time, ball)."""
+    z, v = height.copy(), np.zeros_like(height)
+    staggered = integrator.floor == "leapfrog"
+    if staggered:
+        v += 0.5 * dt
+    kept = [np.ones_like(height)]
+    for step in range(1, steps + 1):
+        old = z
+        z, v = integrator.fall(z, v, dt)
+        below = (z < 0.0) & (v < 0.0)
+        if integrator.floor == "mirror":
+            z = np.where(below, -z, z)
+        elif integrator.floor == "undo":
+            z = np.where(below, old, z)
+        v = np.where(below, -v, v)
+        if step % every == 0:
+            speed = v - 0.5 * dt if staggered else v
+            kept.append((0.5 * speed**2 + z) / height)
+    return np.array(kept)
+
+
+@job("bouncing-ball")
+def bouncing_ball(found: Findings) -> None:
+    """Drop four hundred balls under nine integrators and compare the drift of their energy with its law."""
+    dt, steps, every, balls = 0.01 * math.sqrt(2.0), 8000, 20, 400
+    height = np.random.default_rng(5).uniform(0.9, 1.1, balls)
+    time = dt * every * np.arange(steps // every + 1)
+    found.number("step", "1/100")
+    curves = []
+    for integrator in INTEGRATORS:
+        energy = energies(integrator, height, dt, steps, every)
+        curves.append(energy)
+        change = (energy[-1] - 1.0) * height / (dt * time[-1])
+        error = float(change.std(ddof=1) / math.sqrt(balls))
+        # a bounce more or less at either end of the run, each of the drift of one period
+        found.agree(integrator.name, float(change.mean()), error, integrator.law, tolerance=0.02, unit="m g² Δt")
+    fall = math.sqrt(2.0)
+    with sheet((9.0, 7.4)) as drawing:
+        axes = drawing.subplots(3, 3, sharex=True, sharey=True)
+        for axis, integrator, energy in zip(axes.flat, INTEGRATORS, curves, strict=True):
+            axis.plot(time / fall, energy[:, :4], lw=0.7, color=BLUE, alpha=0.5)
+            axis.plot([], [], lw=0.7, color=BLUE, alpha=0.8, label="four balls")
+            axis.plot(time / fall, energy.mean(axis=1), color=BLUE, lw=2.4, label="mean of 400")
+            axis.plot(time / fall, 1.0 + integrator.law * dt * time, "--", color="#1a1a1a", lw=1.4, label="law")
+            sign = {0.0: "0", 1.0: "m g² Δt"}.get(integrator.law, f"{'−' if integrator.law < 0 else ''}½ m g² Δt")
+            axis.set_title(integrator.name)
+            axis.text(0.05, 0.87, f"law: {sign}", transform=axis.transAxes)
+            axis.set_ylim(-0.1, 2.9)
+        axes[0, 0].legend(loc="lower left", frameon=False, fontsize=9)
+        for axis in axes[-1]:
+            axis.set_xlabel("time, in times of the first fall")
+        for axis in axes[:, 0]:
+            axis.set_ylabel("energy over that at the start")
+        save(found, drawing, "bouncing-ball")
+
+
+def contacts_seen(engine: str, delta: float, contacts: float) -> tuple[float, float]:
+    """Return contacts over theory in a thin gas, and the standard error of counting them."""
+    number, packing = 500, 0.005
+    side = (number * math.pi / 6.0 / packing) ** (1.0 / 3.0)
+    rng = np.random.default_rng(round(1e4 * delta))
+    gas = choose(engine).make(
+        random_positions((side,) * 3, np.ones(number), rng, periodic=(True,) * 3),
+        maxwell_velocities(1.0, np.ones(number), rng, exact=True),
+        length=(side,) * 3,
+        walls=(Periodic(),) * 6,
+        seed=1,
+    )
+    rate = 0.5 * (number - 1) * float(theory.collision_rate(number / side**3, 1.0, 1.0, 1.0))
+    gas.advance(20.0 * delta)
+    before, time = gas.contacts, gas.time
+    gas.advance(time + contacts / (rate * seen_share(delta)))
+    met = gas.contacts - before
+    return met / (rate * (gas.time - time)), math.sqrt(met) / (rate * (gas.time - time))
+
+
+@job("tunnelling")
+def tunnelling(found: Findings) -> None:
+    """Count the contacts that steps of all lengths see."""
+    lengths = {"stepped": (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4), "classic": (0.1, 0.3, 1.0, 3.0, 10.0, 30.0)}
+    points = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that these steps are too long is what is to be seen
+        for engine, deltas in lengths.items():
+            points[engine] = [contacts_seen(f"{engine}:delta={delta:g}", delta, 4000.0) for delta in deltas]
+            for delta, (share, error) in zip(deltas, points[engine], strict=True):
+                found.agree(
+                    f"{engine}, δ = {delta:g}", share, error, seen_share(delta), tolerance=0.01 * seen_share(delta)
+                )
+    delta = np.geomspace(0.02, 50.0, 300)
+    with axes_of(1, (7.0, 4.8)) as (drawing, (axis,)):
+        axis.plot(delta, [seen_share(each) for each in delta], color="#1a1a1a", label="law for all steps")
+        small = delta[delta < 0.58]
+        axis.plot(small, 1.0 - 8.0 / 3.0 * small**2, ":", color="#595959", label="1 − 8δ²/3")
+        large = delta[delta > 0.32]
+        axis.plot(large, math.sqrt(math.pi) / 6.0 / large, "--", color="#595959", label="√π / 6δ")
+        for (engine, deltas), marker, colour in zip(lengths.items(), "os", (BLUE, VERMILLION), strict=True):
+            share, error = np.array(points[engine]).T
+            axis.errorbar(deltas, share, error, fmt=marker, color=colour, capsize=3, label=engine)
+        axis.set(
+            title="The longer the step, the fewer contacts it sees",
+            xlabel="δ, length of a step in diameters at thermal speed",
+            ylabel="contacts over those of kinetic theory",
+            xscale="log",
+            yscale="log",
+            xlim=(0.02, 50.0),
+            ylim=(0.004, 2.0),
+        )
+        axis.legend(loc="lower left")
+        save(found, drawing, "tunnelling")
