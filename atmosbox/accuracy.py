@@ -118,7 +118,7 @@ class Measured:
     settings
         What differs from the scene's defaults.
     cost
-        Processor time of a run, as a multiple of that of the scene's default run.
+        Processor time of the engine, as a multiple of that in the scene's default run.
     members
         How many runs were made.
     errors
@@ -186,9 +186,19 @@ class Table:
         )
 
     def same_experiment(self, settings: Mapping[str, Any]) -> tuple[Measured, ...]:
-        """Return the ways of running the experiment that a user has set, in so far as any of them tells it apart."""
-        apart = {name for way in self.ways for name in way.settings} - set(self.varies)
-        return tuple(way for way in self.ways if all(way.settings.get(name) == settings.get(name) for name in apart))
+        """Return the ways of running the experiment that a user has set, in so far as any of them tells it apart.
+
+        A switch or a word makes another experiment; of numbers, those count that come nearest to the user's.
+        """
+        apart = {name: value for way in self.ways for name, value in way.settings.items() if name not in self.varies}
+        other = {name for name, value in apart.items() if isinstance(value, bool | str)}
+
+        def misses(way: Measured, names: set[str]) -> int:
+            return sum(way.settings.get(name) != settings.get(name) for name in names)
+
+        same = [way for way in self.ways if not misses(way, other)]
+        fewest = min((misses(way, set(apart)) for way in same), default=0)
+        return tuple(way for way in same if misses(way, set(apart)) == fewest)
 
 
 @dataclass(frozen=True)
@@ -199,6 +209,8 @@ class Expectation:
     ----------
     way
         The run that was measured.
+    sets
+        The settings that trade accuracy for time, as they were picked.
     labels
         What a table calls the headlines, by name.
     wish
@@ -211,6 +223,7 @@ class Expectation:
 
     way: Measured
     labels: Mapping[str, str]
+    sets: Mapping[str, Any] = field(default_factory=dict)
     wish: Wish | None = None
     met: bool = True
     differs: tuple[str, ...] = ()
@@ -281,17 +294,19 @@ def parse(text: object) -> Wish:
         problem = f"is neither one of {', '.join(TARGETS)} nor an error"
         raise SettingError("accuracy", text, problem, f"give --accuracy {near}" if near else _FIX)
     size, unit = float(found[1]), found[2]
-    if "," in word:
-        raise SettingError("accuracy", text, "is written with a comma", f"give --accuracy {size:g}{unit or 'K'}")
+
+    def refusal(problem: str, *units: str) -> SettingError:
+        fix = " or ".join(f"--accuracy {size:g}{one}" for one in units) if 0.0 < size <= 100.0 else ""
+        return SettingError("accuracy", text, problem, f"give {fix}" if fix else _FIX)
+
     if unit.casefold() in ("degc", "°c", "c", "degf", "°f", "f"):
-        problem = "is a temperature and not the error of one"
-        raise SettingError("accuracy", text, problem, f"give --accuracy {size:g}K")
+        raise refusal("is a temperature and not the error of one", "K")
     if unit not in ("K", "k", "%"):
-        problem = f"has {'an unknown unit' if unit else 'no unit'}"
-        raise SettingError("accuracy", text, problem, f"give --accuracy {size:g}K or --accuracy {size:g}%")
+        raise refusal(f"has {'an unknown unit' if unit else 'no unit'}", "K", "%")
     if not 0.0 < size <= (100.0 if unit == "%" else 1000.0):
-        problem = "is not an error above 0 and of at most " + ("100 %" if unit == "%" else "1000 K")
-        raise SettingError("accuracy", text, problem, _FIX)
+        raise refusal("is not an error above 0 and of at most " + ("100 %" if unit == "%" else "1000 K"))
+    if "," in word:
+        raise refusal("is written with a comma", unit)
     name = f"{found[1]}{unit.upper()}"
     return Wish(name, share=size / 100.0, absolute=True) if unit == "%" else Wish(name, kelvin=size)
 
@@ -330,7 +345,7 @@ def choose(
     >>> choose("temperature", "reference").met
     True
     """
-    wish = parse(wish) if isinstance(wish, str) else wish
+    wish = wish if isinstance(wish, Wish) else parse(wish)
     tables = load() if tables is None else tables
     if scene not in tables:
         fix = f"leave it out, or take one of {', '.join(tables)}"
@@ -343,18 +358,27 @@ def choose(
         raise SettingError("accuracy", wish.text, problem, "leave it out")
     worst = {id(way): way.excess(wish) for way in ways}
     good = [way for way in ways if worst[id(way)] <= 1.0]
+
+    def picked(way: Measured, met: bool) -> Expectation:
+        sets = {name: value for name, value in way.settings.items() if name in table.varies}
+        return Expectation(way, table.labels, sets, wish, met)
+
     if good and not wish.best:
         if not any(worst.values()):
             raise SettingError("accuracy", wish.text, f"says nothing of {scene}, which has no temperature", _FIX)
-        return Expectation(min(good, key=lambda way: way.cost), table.labels, wish)
+        return picked(min(good, key=lambda way: way.cost), True)
     best = min(ways, key=lambda way: worst[id(way)])
     if wish.text in TARGETS:
-        return Expectation(best, table.labels, wish, met=wish.best)
+        return picked(best, wish.best)
+    reached = worst[id(best)] * (100.0 * wish.share if wish.absolute else wish.kelvin)
+    digits = 1 - math.floor(math.log10(reached))
+    enough = math.ceil(reached * 10.0**digits) / 10.0**digits  # never less than what is reached
+    unit = "%" if wish.absolute else "K"
     raise SettingError(
         "accuracy", wish.text,
         f"is more than any measured run of {scene} reaches: the best, {best.label}, comes to "
-        f"{_reached(wish, worst[id(best)])} at {cost(best.cost)}",
-        f"give --accuracy {_reached(wish, worst[id(best)], up=True)}, or reference",
+        f"{reached:.2g} {unit} at {cost(best.cost)}",
+        f"give --accuracy {enough:.6g}{unit}, or reference",
     )  # fmt: skip
 
 
@@ -377,12 +401,10 @@ def expect(
     tables
         What was measured, by scene; what comes with atmosbox if None.
     """
-    table = (load() if tables is None else tables).get(scene)
-    for way in table.ways if table else ():
-        found = Expectation(way, table.labels).at(changed) if table else None
-        if found and way.engine == engine and not found.differs:
-            return found
-    return None
+    tables = load() if tables is None else tables
+    table = tables.get(scene, Table((), {}, ()))
+    same = (Expectation(way, table.labels).at(changed) for way in table.ways if way.engine == engine)
+    return next((found for found in same if not found.differs), None)
 
 
 def cost(ratio: float) -> str:
@@ -407,11 +429,3 @@ def said(name: str, value: bool | int | float | str) -> str:
     if isinstance(value, bool):
         return f"{name}={'on' if value else 'off'}"
     return f"{name}={value:.12g}" if isinstance(value, float) else f"{name}={value}"
-
-
-def _reached(wish: Wish, excess: float, *, up: bool = False) -> str:
-    """Return an error in the unit of a wish, with two digits, as it is typed; `up` never rounds it down."""
-    size = excess * (wish.kelvin if math.isfinite(wish.kelvin) else 100.0 * wish.share)
-    digits = 1 - math.floor(math.log10(size))
-    rounded = math.ceil(size * 10.0**digits) / 10.0**digits if up else round(size, digits)
-    return f"{rounded:.6g}{'K' if math.isfinite(wish.kelvin) else '%'}"

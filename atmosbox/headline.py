@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 __all__ = ["Headline"]
 
@@ -43,10 +43,9 @@ class Headline:
 
     An engine that is known to be 5 K too warm may be that, but not as much too cold:
 
-    >>> from dataclasses import replace
     >>> sharp = replace(warm, standard_error=0.5, bias=5.0)
-    >>> sharp.agrees, replace(sharp, value=283.0).agrees
-    (True, False)
+    >>> sharp.agrees, sharp.excused, replace(sharp, value=283.0).agrees
+    (True, True, False)
     """
 
     name: str
@@ -71,6 +70,11 @@ class Headline:
         """How large the misfit may be [unit]: four standard errors, the tolerance, and a bias to the same side."""
         chance = 4.0 * math.hypot(self.standard_error, self.bias_se) + self.tolerance
         return chance + max(math.copysign(1.0, self.misfit or 0.0) * self.bias, 0.0)
+
+    @property
+    def excused(self) -> bool:
+        """Whether it agrees for no other reason than that its engine is known to be so far off."""
+        return bool(self.agrees) and not replace(self, bias=0.0, bias_se=0.0).agrees
 
     @property
     def agrees(self) -> bool | None:

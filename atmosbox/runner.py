@@ -174,7 +174,7 @@ def prepare(
             raise SettingError("accuracy", accuracy, "picks the engine itself", f"leave it out, or the engine {engine}")
         picked = accuracies.choose(name, accuracy, checked.changed())
         own = {setting.strip().replace("-", "_"): value for setting, value in settings.items()}
-        checked = module.Settings.from_user({**picked.way.settings, **own})
+        checked = module.Settings.from_user({**picked.sets, **own})
         engine = picked.way.engine
     chosen = choose(EXACT if engine is None else engine)
     if chosen.name != EXACT.name and "engine" not in inspect.signature(module.build).parameters:
@@ -531,7 +531,7 @@ def verify(dataset: xr.Dataset) -> list[Check]:
                     headline.name,
                     bool(headline.agrees),
                     f"{headline.label}: misfit {headline.misfit:.3g} {headline.unit}, allowed {headline.allowed:.3g}"
-                    + (f", for the engine was measured to be off by {headline.bias:.3g}" if headline.bias else ""),
+                    + (f", for its engine is known to be off by {headline.bias:.3g}" if headline.excused else ""),
                 )
             )
     return checks

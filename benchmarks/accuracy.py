@@ -4,10 +4,10 @@
 
 Every scene that declares a ladder is measured by `atmosbox.tradeoff`: each way of running it as often as the budget
 allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard error, and
-the standard deviation of a single run (noise), in K or as a share of the theory; and for each way its processor
-time as a ratio to that of the scene's default run, both from this measurement. Left out is what ran less than four
-times, so that the scatter of the seeds says nothing, left the box, or did not close its ledger. Scenes that are not
-named keep what they have.
+the standard deviation of a single run (noise), in K or as a share of the theory; and for each way the processor time
+of its engine as a ratio to that of the scene's default run, both from this measurement. Left out is what ran less than
+four times, so that the scatter of the seeds says little, left the box, or did not close its ledger. Scenes that are
+not named keep what they have.
 """
 
 import argparse
@@ -64,7 +64,7 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
         way = {
             "engine": str(one.engine.values),
             "settings": settings,
-            "cost": float(one.engine_seconds),
+            "cost": float(one.cost),
             "members": members,
             "errors": errors,
         }
@@ -74,9 +74,9 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
     default = found.get(json.dumps([str(engines.EXACT), {}]))
     if default is None:
         raise AtmosboxError("The scene's default run did not run often enough: give a longer --budget.")
-    seconds = default["cost"]
+    unit = default["cost"]  # the reference of the measurement may be a longer run
     for way in found.values():
-        way["cost"] = float(f"{way['cost'] / seconds:.3g}")
+        way["cost"] = float(f"{way['cost'] / unit:.3g}")
     return list(found.values())
 
 

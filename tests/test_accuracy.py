@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import math
+import re
 import subprocess
 import sys
 import warnings
@@ -11,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import example, given
+from hypothesis import strategies as st
 from scipy import stats
 from typer.testing import CliRunner
 
@@ -36,6 +39,7 @@ def way(engine="exact", cost=1.0, kelvin=0.1, share=0.001, bias=0.0, **settings)
     return Measured(engine, settings, cost, 8, errors)
 
 
+UNITS = ("", "K", " K", "%", " %", "degC", "apples", " a b")
 LABELS = {"mean_temperature": "temperature", "mean_pressure": "pressure"}
 TABLES = {
     "temperature": Table(
@@ -109,6 +113,24 @@ def test_what_is_no_wish_is_refused_with_what_to_type(text, problem, fix):
     assert str(caught.value).endswith(fix) or fix in str(caught.value)
 
 
+@given(st.text(max_size=30) | st.builds("{}{}".format, st.floats() | st.integers(), st.sampled_from(UNITS)))
+@example("1e999")
+@example("9999degC")
+@example("0,5apples")
+@example("0")
+def test_any_wish_is_read_or_refused_in_a_sentence_that_tells_what_is_read(text):
+    refusal = ""
+    try:
+        assert parse(parse(text).text) == parse(text)
+    except SettingError as error:
+        refusal = str(error)
+    assert refusal.isprintable()
+    if refusal:
+        (tell,) = re.findall(r": (give --accuracy .*)\.$", refusal)
+        for told in re.findall(r"(?:--accuracy|such as) (\S+?)(?=,|$| )", tell):
+            assert parse(told)
+
+
 def test_the_targets_are_in_order():
     sketch, lecture, reference = (TARGETS[name] for name in ("sketch", "lecture", "reference"))
     assert sketch.kelvin > lecture.kelvin
@@ -155,6 +177,16 @@ def test_another_experiment_is_not_picked_for_its_accuracy_but_when_it_is_asked_
         choose("temperature", "sketch", {"start": "unequal"}, TABLES)
 
 
+def test_of_other_experiments_the_nearest_is_taken_and_what_it_does_not_vary_is_not_set():
+    plane = way(cost=0.1, plane=True, knudsen=0.05, duration=100.0)
+    tables = {"atmosphere": Table(("duration",), LABELS, (way(), plane))}
+    flat = choose("atmosphere", "sketch", {"plane": True}, tables)
+    assert (flat.way, flat.sets) == (plane, {"duration": 100.0})
+    assert flat.at({"plane": True, "duration": 100.0}).differs == ("knudsen",)
+    assert choose("atmosphere", "sketch", {"knudsen": 0.05}, tables).way == way()
+    assert choose("atmosphere", "sketch", {"knudsen": 0.2}, tables).sets == {}
+
+
 def test_a_way_that_does_not_come_to_every_headline_is_not_picked():
     assert choose("temperature", "100%", tables=TABLES).way.settings != {"molecules": 2}
 
@@ -163,10 +195,10 @@ def test_a_number_that_nothing_reaches_is_refused_with_the_best_and_its_cost():
     with pytest.raises(SettingError) as caught:
         choose("temperature", "0.01K", tables=TABLES)
     assert str(caught.value) == (
-        "accuracy = 0.01K is more than any measured run of temperature reaches: the best, exact, comes to 0.1K at "
+        "accuracy = 0.01K is more than any measured run of temperature reaches: the best, exact, comes to 0.1 K at "
         "the cost of the default run: give --accuracy 0.1K, or reference."
     )
-    with pytest.raises(SettingError, match=r"comes to 0\.1% at .* give --accuracy 0\.1%"):
+    with pytest.raises(SettingError, match=r"comes to 0\.1 % at .* give --accuracy 0\.1%"):
         choose("temperature", "0.01%", tables=TABLES)
 
 
@@ -186,7 +218,9 @@ def test_a_target_that_nothing_reaches_is_answered_with_the_best():
     assert "Nothing that was measured is within 5 % and 3 K" in " ".join(expectation_lines(picked, (), "exact", 80))
 
 
-def test_a_scene_that_was_not_measured_is_refused():
+def test_a_scene_that_was_not_measured_and_a_bare_number_are_refused():
+    with pytest.raises(SettingError, match="is not a text"):
+        choose("temperature", 0.5, tables=TABLES)
     with pytest.raises(SettingError, match="not for lifting-dry, whose errors were not measured: leave it out, or"):
         choose("lifting-dry", "sketch", tables=TABLES)
 
@@ -332,9 +366,10 @@ def test_a_known_bias_excuses_a_misfit_to_its_side_alone(value, known, agrees):
 
 
 def test_a_misfit_that_only_a_known_bias_excuses_is_told():
-    assert headline_lines([headline(302.5, bias=2.0)], 200)[-1] == (
-        "temperature: up to +2.00 K off, for so far off was this engine measured to be."
-    )
+    lines = headline_lines([headline(302.5, bias=2.0)], 200)
+    assert lines[1].endswith("known bias")
+    assert lines[-1] == "temperature: up to +2.00 K off, for so far off was this engine measured to be."
+    assert headline_lines([headline(300.5, bias=2.0)], 200)[1].endswith("yes")
 
 
 def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_file_is_read(tmp_path, monkeypatch):
@@ -344,17 +379,20 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     known = Measured("classic:delta=8", settings, 0.1, 8, errors)
     tables = {"temperature": Table(("duration", "molecules"), LABELS, (known,))}
     monkeypatch.setattr(accuracy, "load", lambda: tables)
-    file = tmp_path / "classic.nc"
     outcome = runner.execute(runner.prepare("temperature", settings, engine="classic:delta=8"))
     found = {one.name: one for one in outcome.headlines}
     assert (found["mean_temperature"].bias, found["mean_temperature"].bias_se) == (-3.0, 0.5)
     assert found["mean_pressure"].bias == pytest.approx(0.01 * found["mean_pressure"].theory)
     assert found["mean_speed"].bias == 0.0
-    output.write(outcome.dataset, file)
-    again = {one.name: one for one in runner.headlines_of(output.read(file))}
-    assert again["mean_temperature"].bias == -3.0
-    sentence = next(one.sentence for one in runner.verify(output.read(file)) if one.name == "mean_temperature")
-    assert "measured to be off by -3" in sentence
+    cold = outcome.dataset
+    cold["mean_temperature"] = cold.mean_temperature.copy(data=cold.mean_temperature_theory.item() - 43.0)
+    cold["mean_temperature_se"] = cold.mean_temperature_se.copy(data=10.0)
+    again = output.read(output.write(cold, tmp_path / "classic.nc"))
+    warm = next(one for one in runner.headlines_of(again) if one.name == "mean_temperature")
+    assert (warm.bias, warm.agrees, warm.excused) == (-3.0, True, True)
+    (said,) = (one for one in runner.verify(again) if one.name == "mean_temperature")
+    assert said.passed
+    assert said.sentence.endswith("known to be off by -3")
     other = runner.execute(runner.prepare("temperature", {**settings, "pressure": 900.0}, engine="classic:delta=8"))
     assert all(one.bias == 0.0 for one in other.headlines)
 
@@ -460,7 +498,7 @@ def tool():
 
 
 def test_the_tool_makes_a_table_of_ratios_of_what_can_be_relied_on(tmp_path, monkeypatch, tool, capsys):
-    rungs = {  # cost [s], members, escaped, ledger, why there are no more
+    rungs = {  # cost, members, escaped, ledger, why there are no more
         "exact, duration=2": (0.5, 9, 0, 1e-15, ""),
         "exact, duration=20": (2.0, 8, 0, 1e-15, ""),
         "exact, molecules=200, duration=2": (0.6, 5, 0, 1e-15, ""),
@@ -470,13 +508,13 @@ def test_the_tool_makes_a_table_of_ratios_of_what_can_be_relied_on(tmp_path, mon
         "exact, molecules=6": (1.0, 4, 0, 1e-5, ""),
         "exact, molecules=7": (1.0, 4, 0, 1e-15, "The run cannot go on."),
     }
-    seconds, members, escaped, ledger, why = map(list, zip(*rungs.values(), strict=True))
+    costs, members, escaped, ledger, why = map(list, zip(*rungs.values(), strict=True))
     each = ("rung", "quantity"), np.full((len(rungs), 3), 0.123456)
     settings = [dict(pair.split("=") for pair in label.split(", ")[1:]) for label in rungs]
     dataset = xr.Dataset(
         {
             **dict.fromkeys(("bias", "bias_se", "noise"), each),
-            "engine_seconds": ("rung", seconds),
+            "cost": ("rung", costs),
             "members": ("rung", members),
             "escaped": ("rung", escaped),
             "ledger": ("rung", ledger),

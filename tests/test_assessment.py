@@ -15,9 +15,8 @@ from atmosbox.engine.refusal import RefusedError
 from atmosbox.extremes import EXTREMES, Extreme, Finding, Trial, Verdict, assess, degraded, examine, judged
 from atmosbox.extremes.catalogue import FAMILIES
 
-SECONDS = {  # what takes more than a second or two
-    "classic": {"frozen-walls", "hot-and-cold", "packing-0.49", "packing-0.58", "packing-0.64", "size-ratio"},
-}
+SLOW = {"cold-floor", "frozen-walls", "hot-and-cold", "packing-0.49", "packing-0.58", "packing-0.64", "size-ratio"}
+"""What takes engines that go in steps more than a second or two."""
 REFUSED_BY_EXACT = {
     "ball-at-rest",
     "cold-floor",
@@ -36,7 +35,7 @@ REFUSED_BY_EXACT = {
 def cases():
     for name in engines.names():
         for each in EXTREMES.values():
-            slow = each.long or each.name in SECONDS.get(name, ())
+            slow = each.long or (name in ("stepped", "classic") and each.name in SLOW)
             yield pytest.param(name, each, id=f"{name}-{each.name}", marks=[pytest.mark.validate] if slow else [])
 
 

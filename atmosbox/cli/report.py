@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,12 +84,15 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
             if error > 0.0 and math.isfinite(shown["misfit"] / error):
                 misfit += f" ({abs(shown['misfit']) / error:.1f}σ)"
             if headline.agrees and abs(shown["misfit"]) > 4.0 * error:
-                known = replace(headline, bias=0.0, bias_se=0.0).agrees
-                may_be = number(shown["tolerance" if known else "bias"], decimals, power, "" if known else "+")
-                reason = headline.reason if known else "so far off was this engine measured to be"
+                may_be = number(shown["tolerance"], decimals, power)
+                reason = headline.reason
+                if headline.excused:
+                    may_be = number(shown["bias"], decimals, power, "+")
+                    reason = "so far off was this engine measured to be"
                 notes.append(f"{headline.label}: up to {may_be}{_unit(headline)} off, for {reason}.")
         unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
-        rows.append([headline.label + unit, measurement(value, error), theory, misfit, _VERDICT[headline.agrees]])
+        verdict = "known bias" if headline.excused else _VERDICT[headline.agrees]
+        rows.append([headline.label + unit, measurement(value, error), theory, misfit, verdict])
     header = ["quantity", "measured", "theory", "misfit", "within error?"]
     lines = table(header, rows, width) if rows else ["No frame is late enough for an average."]
     return [*lines, *(line for note in notes for line in wrapped(note, width))]

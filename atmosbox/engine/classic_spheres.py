@@ -12,10 +12,11 @@ two steps, back into each other. There they hang together, exchanging step by st
 third sets them free: it counts collisions that never happened, more and more of them the longer it runs, and energy
 does not tell, because every exchange keeps it.
 
-What the scheme costs: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low by
-:math:`(4/\sqrt{\pi}) \delta` of itself, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`; pairs that graze each
-other are missed, a part :math:`(8/3) \delta^2`. In gravity Euler's fall, and the mirror at the floor, each heat a
-molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy is kept to rounding.
+What the scheme costs: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low
+by :math:`(4/\sqrt{\pi}) \delta` of itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`;
+pairs that graze each other are missed, a part :math:`(8/3) \delta^2`. In gravity Euler's fall, and the mirror at
+the floor, each heat a molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy is kept to
+rounding.
 """
 
 import numpy as np

@@ -6,10 +6,11 @@ Then the discs are sorted into upright strips, and each is tested against those 
 pair that overlaps, :math:`d^2 < \sigma^2`, and approaches, :math:`r \cdot v > 0`, exchanges the components of its
 velocities along the line of centres.
 
-What that costs: the contact comes late, so that the collisional pressure is low by :math:`(3/\sqrt{\pi}) \delta`
-of itself, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`, and pairs that graze each other between two steps are
-missed, a part :math:`\delta^2`. An undone move returns the height but not the fall of the velocity: on a floor that
-heats each molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy is kept to rounding.
+What that costs: the contact comes late, so that the collisional pressure is low by :math:`(3/\sqrt{\pi}) \delta` of
+itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`, and pairs that graze each other
+between two steps are missed, a part :math:`\delta^2`. An undone move returns the height but not the fall of the
+velocity: on a floor that heats each molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy
+is kept to rounding.
 """
 
 import math

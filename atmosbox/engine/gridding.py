@@ -10,7 +10,7 @@ from atmosbox.engine.refusal import RefusedError
 
 __all__ = ["choose_cells"]
 
-_OCCUPANCY = 0.55
+_OCCUPANCY = 1.0
 _MOST_CELLS = 6
 _CROWD = 4096.0
 _MARGIN = 1.0001
@@ -25,7 +25,7 @@ def choose_cells(
     scale_height: float = math.inf,
     equal: bool = True,
 ) -> Grid:
-    """Return cells as wide as the largest molecule or wider, holding half a molecule where they are most crowded.
+    """Return cells as wide as the largest molecule or wider, holding about one where they are most crowded.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def choose_cells(
 
     Notes
     -----
-    Measured, the pace of the search is flat around half a molecule to a cell.
+    Measured, the pace of a step is flat around one molecule to a cell.
 
     Examples
     --------

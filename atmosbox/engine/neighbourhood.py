@@ -138,26 +138,29 @@ def _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pa
                 if not grid.wraps_y:
                     continue
                 jy += grid.number_y if jy < 0 else -grid.number_y
-            for dx in range(0 if dz == 0 and dy == 0 else -1, 2):
-                jx = ix + dx
-                if jx < 0 or jx == grid.number_x:
-                    if not grid.wraps_x:
-                        continue
-                    jx += grid.number_x if jx < 0 else -grid.number_x
-                there = (jz * grid.number_y + jy) * grid.number_x + jx
-                first = q + 1 if dx == 0 and dy == 0 and dz == 0 else np.int64(records.start[there])
-                for k in range(first, np.int64(records.start[there + 1])):
-                    rx = np.float64(records.x[k] - at_x)
-                    ry = np.float64(records.y[k] - at_y)
-                    rz = np.float64(records.z[k] - at_z)
+            row = (jz * grid.number_y + jy) * grid.number_x
+            own = dz == 0 and dy == 0
+            for turn in range(2):
+                left = max(ix - 1, 0)
+                right = min(ix + 1, grid.number_x - 1)
+                if turn == 1:  # the cell on the far side, where the row goes on round the box
+                    if not grid.wraps_x or (ix > 0 and ix < grid.number_x - 1) or (own and ix == 0):
+                        break
+                    left = right = 0 if ix > 0 else grid.number_x - 1
+                first = q + 1 if own and turn == 0 else np.int64(records.start[row + left])
+                for r in range(first, np.int64(records.start[row + right + 1])):
+                    k = r & 0x7FFFFFFF
+                    rx = records.x[k] - at_x
+                    ry = records.y[k] - at_y
+                    rz = records.z[k] - at_z
                     if modes.periodic:
-                        rx -= box.length_x * np.rint(rx * box.inverse_x)
-                        ry -= box.length_y * np.rint(ry * box.inverse_y)
+                        rx -= np.float32(box.length_x * np.rint(rx * box.inverse_x))
+                        ry -= np.float32(box.length_y * np.rint(ry * box.inverse_y))
                         if not (modes.gravity or modes.piston):
-                            rz -= box.length_z * np.rint(rz * box.inverse_z)
-                    near = np.float64(reach)
+                            rz -= np.float32(box.length_z * np.rint(rz * box.inverse_z))
+                    near = reach
                     if radius is not None:
-                        near += np.float64(radius[k])
+                        near = near + radius[k]
                     if rx * rx + ry * ry + rz * rz < near * near:
                         if found < pairs.shape[0]:
                             pairs[found, 0] = records.slot[q]

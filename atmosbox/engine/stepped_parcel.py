@@ -105,7 +105,11 @@ class SteppedParcel(MarchingParcel):
 
     @property
     def receding(self) -> int:
-        """How many times a pair was found that overlaps and parts: most have collided a step earlier."""
+        """How many times a pair was found that overlaps and parts.
+
+        One that collided has parted a step later, so in a dilute gas these are collisions missed: three in four of
+        them are seen this way, when the pair has passed the place where it is nearest but is still in overlap.
+        """
         return int(self._seen[0])
 
     @property
@@ -181,18 +185,9 @@ class SteppedParcel(MarchingParcel):
             cell=np.zeros(n, np.int32),
             hitting=np.zeros(n, np.uint32),
         )
-        self._box = Box(
-            length_x=float(self._sides[0]),
-            length_y=float(self._sides[1]),
-            length_z=float(self._sides[2]),
-            inverse_x=1.0 / float(self._sides[0]) if self._periodic[0] else 0.0,
-            inverse_y=1.0 / float(self._sides[1]) if self._periodic[1] else 0.0,
-            inverse_z=1.0 / float(self._sides[2]) if self._periodic[2] else 0.0,
-            gravity=self._gravity,
-            planar=self._planar,
-            exchange=1.0 / self._collision_number,
-            stall=0.0,
-        )
+        inverse = np.where(self._periodic, 1.0 / self._sides, 0.0)
+        sides = [float(side) for side in (*self._sides, *inverse)]
+        self._box = Box._make([*sides, self._gravity, self._planar, 1.0 / self._collision_number, 0.0])
         self._pairs = np.zeros((self._threads, 256 + n // (4 * self._threads), 2), np.uint32)
         self._numbers = np.zeros((self._threads, 2), np.int64)
         self._seen = np.zeros(1, np.int64)
@@ -297,6 +292,6 @@ class SteppedParcel(MarchingParcel):
 
 def _choice(value: Any, choices: dict[str, int], name: str) -> int:
     """Return the number of a choice, or refuse."""
-    if value not in choices:
+    if not isinstance(value, str) or value not in choices:
         raise RefusedError(f"{name} = {value!r} is unknown: give one of {', '.join(choices)}")
     return choices[value]

@@ -42,7 +42,7 @@ def compressibility(trial: Trial, gas: Parcel, settle: float, block: float) -> t
 
 
 def crystal_compressibility(packing: float) -> float:
-    """Return Z of the face-centred crystal of hard spheres (Speedy 1998, doi:10.1088/0953-8984/10/20/006)."""
+    """Return Z of the face-centred crystal of hard spheres (Speedy 1998, J. Phys.: Condens. Matter 10, 4387)."""
     share = packing / (math.pi / math.sqrt(18.0))
     return 3.0 / (1.0 - share) - 0.5921 * (share - 0.7072) / (share - 0.601)
 

@@ -29,22 +29,35 @@ def speed(found: Findings) -> None:
         head = ["gas", "packing fraction", "molecules", "thousand collisions per CPU second", "bytes per molecule"]
         found.table(head, rows)
     if features is None:
-        found.text("`python benchmarks/features.py` measures it.", key="features")
+        for key in ("features", "instruments"):
+            found.text("`python benchmarks/features.py` measures it.", key=key)
         return
+    off = features["off"]
     rows = []
     for name, each in features["on"].items():
-        off = features["off"].get({"unequal sizes": "mixed"}.get(name, name))
-        idle = f"{off['ratio']:.2f} ± {off['error']:.2f}" if off else "–"
-        rows.append([name, f"{each['ratio']:.2f} ± {each['error']:.2f}", idle, f"{each['bytes']:.0f}"])
-    if "nothing" in features["off"]:
-        idle = features["off"]["nothing"]
+        idle = off.get(each["shows"])
         rows.append(
             [
-                "none; the others are relative to it",
-                "–",
-                f"{idle['ratio']:.2f} ± {idle['error']:.2f}",
-                "–",
+                name,
+                f"{each['ns']:.0f}",
+                ratio(each),
+                ratio(idle) if idle else "–",
+                f"{each['bytes']:.0f}",
+                each["lines"],
             ]
         )
-    head = ["feature", "time of a collision over that of the plain gas", "where it is off, over an engine without it"]
-    found.table([*head, "bytes per molecule"], rows, key="features")
+    head = ["gas", "nanoseconds per collision", "over the plain gas", "off: engine as it is over one without it"]
+    found.table([*head, "bytes per molecule", "lines of code"], rows, key="features")
+    rows = [
+        [name, f"{each['ns']:.0f}", ratio(each), f"{each['bytes']:.0f}", each["lines"]]
+        for name, each in features["instruments"].items()
+    ]
+    head = ["instrument", "nanoseconds per collision", "over the scene without it", "bytes per molecule and frame"]
+    found.table([*head, "more lines of code"], rows, key="instruments")
+    found.number("control", ratio(off["nothing"]))
+    found.number("points", features["lines_of_points"])
+
+
+def ratio(each: dict[str, float]) -> str:
+    """Return a ratio with its standard error."""
+    return f"{each['ratio']:.3f} ± {each['error']:.3f}"

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from atmosbox.engine import HeatBath, Periodic, Piston, Ramp, RefusedError, Specular
 from atmosbox.engine._jit import COMPILED
 from atmosbox.engine.classic import SCHEMES, ClassicParcel
+from atmosbox.engine.classic_strips import strips_across
 from atmosbox.engine.start import maxwell_velocities, random_positions
 
 many_steps = pytest.mark.skipif(not COMPILED, reason="so many pairs take minutes without numba")
@@ -194,7 +195,8 @@ def test_strips_find_the_pairs_that_all_pairs_find(seed, number, side, periodic)
         side = max(side, 3.1)
     rng = np.random.default_rng(seed)
     x = np.full((number, 3), 1.0)
-    x[:, [0, 2]] = rng.uniform(0.5, side - 0.5, (number, 2))
+    edge = 0.0 if periodic else 0.5
+    x[:, [0, 2]] = rng.uniform(edge, side - edge, (number, 2))
     v = rng.normal(size=(number, 3))
     v[:, 1] = 0.0
     walls = (Periodic(),) * 2 + SMOOTH[:2] + ((Periodic(),) * 2 if periodic else SMOOTH[:2])
@@ -202,7 +204,9 @@ def test_strips_find_the_pairs_that_all_pairs_find(seed, number, side, periodic)
         x, v, length=(side, 2.0, side), planar=True, walls=walls if periodic else SMOOTH, scheme="strips", dt=1e-300
     )
     box.advance(1e-300)
-    expected, contacts = by_all_pairs(x[:, [0, 2]], v[:, [0, 2]], side, periodic, max(1, math.floor(side)))
+    strips = strips_across(side, 1.0, number, periodic)
+    expected, contacts = by_all_pairs(x[:, [0, 2]], v[:, [0, 2]], side, periodic, strips)
+    assert strips == math.floor(side * (1.0 - 1e-12)) or 4 * number < side
     assert box.contacts == contacts
     assert box.snapshot().velocity[:, [0, 2]] == pytest.approx(expected, abs=1e-11)
 

@@ -82,6 +82,7 @@ def state(box):
     return b"".join(np.ascontiguousarray(a).tobytes() for a in arrays) + repr((box.contacts, box.receding)).encode()
 
 
+@many_steps
 @pytest.mark.parametrize("name", BOXES)
 def test_a_run_is_the_same_however_it_is_cut(name):
     whole, pieces = (gas(300, delta=0.03, **BOXES[name]) for _ in range(2))
@@ -105,6 +106,19 @@ def test_a_run_has_the_same_bits_on_any_number_of_threads(name):
     assert len({state(box) for box in boxes}) == 1
 
 
+@pytest.mark.parametrize("name", BOXES)
+def test_a_short_run_is_the_same_in_two_halves(name):
+    options = {key: (value[:20] if isinstance(value, np.ndarray) else value) for key, value in BOXES[name].items()}
+    whole, halves = (gas(20, delta=0.05, **options) for _ in range(2))
+    whole.advance(1.0)
+    halves.advance(0.4)
+    halves.advance(1.0)
+    assert whole.wall_hits.sum() > 3
+    assert state(whole) == state(halves)
+    assert whole.ledger() < 1e-12
+
+
+@many_steps
 def test_another_seed_is_another_run():
     runs = []
     for seed in (1, 2):
@@ -145,6 +159,7 @@ def test_the_books_close_whatever_the_rules(walls, motion):
     assert (abs(box.numerical_heat) > 1e-4 * box.energy()[0]) == makes
 
 
+@many_steps
 def test_every_collision_keeps_energy_and_momentum():
     box = gas(300, (8.0, 8.0, 8.0), walls=(P,) * 6, delta=0.1, **mixture() | {"rotation": 0.0})
     before = box.energy()[0]
@@ -177,6 +192,7 @@ def test_nobody_is_ever_outside_however_long_the_step(dt, walls):
         assert box.ledger() < 1e-11
 
 
+@many_steps
 def test_one_that_flips_overshoots_by_no_more_than_a_step():
     box = gas(100, (9.0, 9.0, 9.0), smooth_walls="flip", dt=0.1, diameter=0.0)
     way = 0.1 * np.abs(box.snapshot().velocity).max()
@@ -187,6 +203,7 @@ def test_one_that_flips_overshoots_by_no_more_than_a_step():
     assert 0.5 * way < furthest <= way
 
 
+@many_steps
 @pytest.mark.parametrize("number", [0, 1, 2, 3])
 @pytest.mark.parametrize("walls", [(S,) * 6, (P,) * 6, (HeatBath(1.0),) * 5 + (Piston(0.01),)])
 def test_few_molecules_are_no_exception(number, walls):
@@ -201,6 +218,7 @@ def test_few_molecules_are_no_exception(number, walls):
     assert number == 0 or reach_through(box) <= 1e-12
 
 
+@many_steps
 def test_nothing_happens_where_nothing_moves():
     box = parcel([[1, 1, 1], [3, 3, 3]], np.zeros((2, 3)), length=(4, 4, 4))
     box.advance(1e3)
@@ -208,6 +226,7 @@ def test_nothing_happens_where_nothing_moves():
     assert box.snapshot().position.tolist() == [[1, 1, 1], [3, 3, 3]]
 
 
+@many_steps
 def test_one_at_rest_on_the_floor_stays_there():
     box = parcel([[2, 2, 0.5]], np.zeros((1, 3)), length=(4, 4, 4), gravity=1.0, delta=0.01)
     box.advance(50.0)
@@ -215,6 +234,7 @@ def test_one_at_rest_on_the_floor_stays_there():
     assert sum(box.energy()) == pytest.approx(0.5, abs=1e-12)
 
 
+@many_steps
 def test_one_that_bounces_in_gravity_rises_as_high_as_it_fell():
     box = parcel([[2, 2, 2.5]], np.zeros((1, 3)), length=(4, 4, 4), gravity=1.0, dt=0.1)
     heights = []
@@ -294,6 +314,7 @@ def test_what_cannot_be_is_refused_with_a_sentence(options, said):
         parcel(given.pop("position"), given.pop("velocity"), **given)
 
 
+@many_steps
 def test_one_giant_among_thousands_of_dwarfs_is_refused():
     rng = np.random.default_rng(1)
     x = np.concatenate([[[10, 10, 10]], rng.uniform([0.1, 0.1, 0.1], [19.9, 19.9, 2.0], (9000, 3))])
@@ -312,6 +333,7 @@ def test_a_coarse_step_is_warned_of_with_the_step_that_would_do():
         SteppedParcel(x, v, length=(4, 4, 4), dt=0.05)
 
 
+@many_steps
 def test_a_piston_is_stopped_before_it_crushes():
     box = gas(20, (5.0, 5.0, 5.0), walls=(S,) * 5 + (Piston(-0.2),), delta=0.05)
     with pytest.raises(StalledError, match="would crush"):

@@ -49,7 +49,7 @@ def dilute(delta, dimensions):
 
 
 def scattered(delta, dimensions, pairs, seed, steps=1, **options):
-    """Let many pairs meet, each alone, in one step; return the shares of collisions missed and of virial missing."""
+    """Let pairs meet, each alone; return the shares of collisions missed, of virial missing, of pairs seen to part."""
     rng = np.random.default_rng(seed)
     g = 2.0 * np.sqrt(rng.standard_gamma(0.5 * (dimensions + 1), pairs))
     b = np.sqrt(rng.random(pairs)) if dimensions == 3 else rng.uniform(-1.0, 1.0, pairs)
@@ -71,7 +71,7 @@ def scattered(delta, dimensions, pairs, seed, steps=1, **options):
     )  # fmt: skip
     box.advance(steps * delta)
     assert box.steps == steps
-    return 1.0 - box.contacts / pairs, 1.0 - float(box.virial.sum() / np.sum(g * half))
+    return 1.0 - box.contacts / pairs, 1.0 - float(box.virial.sum() / np.sum(g * half)), box.receding / pairs
 
 
 @pytest.mark.parametrize("dimensions", [3, 2])
@@ -80,11 +80,13 @@ def test_pairs_that_meet_are_missed_and_late_as_the_laws_say(dimensions):
     curvature = 8.0 / 3.0 if dimensions == 3 else 1.0
     missed, late = [], []
     for k, delta in enumerate(STEPS):
-        blocks = [scattered(delta, dimensions, 20_000, 100 * k + block) for block in range(20)]
+        blocks = np.array([scattered(delta, dimensions, 20_000, 100 * k + block) for block in range(20)])
         mean, error = block_average(blocks)
+        # of the missed ones three in four are seen when they part: the later half of their chord is as long
+        traces, scatter = block_average(blocks[:, 2] - 0.75 * blocks[:, 0])
+        assert abs(traces) <= 4.0 * scatter + delta**3
         rate, virial = dilute(delta, dimensions)
-        assert np.abs(mean - [1.0 - rate, 1.0 - virial])[0] <= 4.0 * error[0] + 1e-5
-        assert np.abs(mean - [1.0 - rate, 1.0 - virial])[1] <= 4.0 * error[1] + 1e-5
+        assert (np.abs(mean[:2] - [1.0 - rate, 1.0 - virial]) <= 4.0 * error[:2] + 1e-5).all()
         # the laws themselves, which are the first terms
         assert abs(mean[0] - curvature * delta**2) <= 4.0 * error[0] + 10.0 * delta**3
         assert abs(mean[1] - slope / math.sqrt(math.pi) * delta) <= 4.0 * error[1] + 5.0 * delta**3
@@ -152,12 +154,12 @@ def test_a_gas_meets_and_presses_as_its_pairs_do_to_a_part_in_a_thousand(dimensi
 
 def test_without_the_test_for_approach_pairs_cling_to_each_other_and_energy_does_not_tell():
     # alone, a pair leaves by the mirror image of the way it came, in the one step that it was in overlap
-    missed, _ = scattered(0.0125, 3, 20_000, 24, approaching=False, steps=8)
+    missed, _, _ = scattered(0.0125, 3, 20_000, 24, approaching=False, steps=8)
     assert abs(missed) < 0.01
     # in a gas a third molecule comes between, and the two then swap in every step, for ever deeper and outward again:
     # the longer the run the more such pairs; that energy is kept is asserted with the rate
-    (rate, _), error = rate_and_excess(3, 0.01, 2000, 1e4, 23, approaching=False)
-    assert rate - 4.0 * error[0] > 1.3
+    (rate, _), error = rate_and_excess(3, 0.01, 4000, 6e4, 23, approaching=False)
+    assert rate - 4.0 * error[0] > 1.2
 
 
 def forces(rule, d, seed, number=500):
