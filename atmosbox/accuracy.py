@@ -154,7 +154,7 @@ class Table:
     ways
         The ways of running it.
     how
-        How it was measured: the version, the budget [s], the first seed, the command.
+        How it was measured: the version, the budget [s], the command.
     """
 
     varies: tuple[str, ...]

@@ -1,6 +1,7 @@
 """How accurate a scene is, and what that costs, by engine and settings: the table that comes with atmosbox.
 
     python benchmarks/accuracy.py [SCENE ...] [--budget 60s]
+    python benchmarks/accuracy.py FILE.nc ...                  from what `atmosbox tradeoff` has measured
 
 Every scene that declares a ladder is measured by `atmosbox.tradeoff`: each way of running it as often as the budget
 allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard error, and
@@ -21,9 +22,11 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from atmosbox import __version__, engines, scenarios, tradeoff  # noqa: E402
+from atmosbox import engines, scenarios, tradeoff  # noqa: E402
 from atmosbox.accuracy import said  # noqa: E402
 from atmosbox.errors import AtmosboxError  # noqa: E402
+from atmosbox.output import read  # noqa: E402
+from atmosbox.provenance import parameters  # noqa: E402
 from atmosbox.quantity import parse_quantity  # noqa: E402
 from atmosbox.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.tradeoff.trial import PROFILES  # noqa: E402
@@ -80,9 +83,8 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
     return list(found.values())
 
 
-def measured(scene: str, budget: float, seed: int, command: str) -> dict[str, Any]:
-    """Return the entry of a scene."""
-    module = scenarios.load(scene)
+def measured(scene: str, budget: float, seed: int, command: str) -> Any:
+    """Return the measurement of a scene."""
     last = -1
 
     def tell(share: float, word: str) -> None:
@@ -91,11 +93,22 @@ def measured(scene: str, budget: float, seed: int, command: str) -> dict[str, An
             last = int(10 * share)
             print(f"  {100 * share:.0f} %: {word}", file=sys.stderr, flush=True)
 
-    dataset = tradeoff.measure(scene, budget=budget, seed=seed, progress=tell, command=command)
+    return tradeoff.measure(scene, budget=budget, seed=seed, progress=tell, command=command)
+
+
+def entry_of(dataset: Any) -> tuple[str, dict[str, Any]]:
+    """Return the scene of a measurement and its entry in the table."""
+    made = parameters(dataset)
+    scene = str(made["scene"])
+    module = scenarios.load(scene)
     names = [str(name) for name in dataset.quantity.values if name not in PROFILES]
     about = dataset.sel(quantity=names)
-    return {
-        "measured": {"version": __version__, "budget": budget, "seed": seed, "command": command},
+    return scene, {
+        "measured": {
+            "version": dataset.attrs["product_version"],
+            "budget": made["tradeoff"]["budget"],
+            "command": dataset.attrs["history"].partition(": ")[2],
+        },
         "varies": varies(module),
         "headlines": {
             name: {"label": str(label), "unit": str(unit), "theory": float(f"{theory:.6g}")}
@@ -134,18 +147,21 @@ def write(path: Path, scene: str, entry: dict[str, Any]) -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Measure, print the tables and keep them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="the scenes; all that have a ladder by default")
+    parser.add_argument(
+        "sources", nargs="*", metavar="SCENE|FILE.nc", help="scenes or measurements; all that have a ladder by default"
+    )
     parser.add_argument("--budget", default="60s", help="for how long each of them is measured")
     parser.add_argument("--seed", type=int, default=1, help="the first seed")
     parser.add_argument("--json", type=Path, default=TABLE, help="file for the table")
     asked = parser.parse_args(arguments)
     try:
         budget = parse_quantity(asked.budget, "s", "budget")
-        scenes = asked.scenes or [name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")]
-        for scene in scenes:
-            print(f"\n{scene}", flush=True)
-            command = f"python benchmarks/accuracy.py {scene} --budget {asked.budget} --seed {asked.seed}"
-            entry = measured(scene, budget, asked.seed, command)
+        declared = [name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")]
+        for source in asked.sources or declared:
+            print(f"\n{source}", flush=True)
+            command = f"python benchmarks/accuracy.py {source} --budget {asked.budget} --seed {asked.seed}"
+            file = source.endswith(".nc")
+            scene, entry = entry_of(read(source) if file else measured(source, budget, asked.seed, command))
             write(asked.json, scene, entry)
             print(printed(entry), flush=True)
     except AtmosboxError as error:

@@ -9,12 +9,13 @@ Off: the engine as it is, beside a copy from whose sources the feature has been 
 made ``False``), both with a gas that does not have it. The row ``nothing`` is the control: a copy from which nothing
 was struck out, and which must cost the same.
 
-Three things make such a comparison go wrong by 5 to 10 %, and are kept apart here. Where arrays happen to lie in
+Three things make such a comparison go wrong by some per cent, and are kept apart here. Where arrays happen to lie in
 memory decides which of them push each other out of the cache: so all copies of the engine work on the very same
-arrays, put back to the same state each time, and do the same events. Machine code that has just been compiled lies
-elsewhere than the same code read from disk: so all are copies, the whole engine too, and all are read from disk. And
-a process keeps its luck for life: so there are many, and the median and its standard error are over processes. Other
-programs can only add to a time: so of the same work, done several times in a process, the shortest time counts.
+arrays, put back to the same state each time, and do the same events. The same machine code at another place takes
+another time, and most of all if it has just been compiled and not been read from disk: so the whole engine is a copy
+like the others, all are read from disk, and each of many processes reads them anew, in another order; the median and
+its standard error are over processes. And other programs can only add to a time: so of the same work, done several
+times in a process, the shortest time counts.
 
 Lines of code are those of the engine that a gas of sixty molecules goes through while time passes, counted while
 nothing is compiled.
@@ -94,6 +95,7 @@ def engine(root: Path) -> Any:
             setattr(module, name, importlib.import_module(f"atmosbox.engine.{name}"))
     finally:
         sys.path.pop(0)
+    module.modules = {name: each for name, each in sys.modules.items() if name.split(".")[0] == "atmosbox"}
     return module
 
 
@@ -156,6 +158,8 @@ class Bench:
 
     def kernel(self, module: Any) -> Callable[[], float]:
         """Return a function that does the work with another engine's kernel, and tells the CPU seconds it took."""
+        # numba finds machine code on disk only if the classes of its arguments are those that a name leads to
+        sys.modules.update(module.modules)
         state = module.state
         arguments = [
             getattr(state, type(each).__name__)(*each) if isinstance(each, tuple) else each for each in self._arguments
@@ -172,14 +176,13 @@ class Bench:
                 raise RuntimeError("a row of the cells is full: choose another seed")
             return lasted
 
+        work()
         return work
 
 
 def shortest(works: dict[str, Callable[[], float]], repeats: int) -> dict[str, float]:
     """Return the shortest time of each work, of several turns that all take in changing order."""
     times: dict[str, list[float]] = {name: [] for name in works}
-    for work in works.values():
-        work()
     gc.disable()
     for _ in range(repeats):
         for name in random.sample(list(works), len(works)):
@@ -190,7 +193,7 @@ def shortest(works: dict[str, Callable[[], float]], repeats: int) -> dict[str, f
 
 def time_off(asked: argparse.Namespace) -> dict[str, float]:
     """Return the time of the whole engine over that of each copy, in this process."""
-    copies = sorted(path.name for path in asked.folder.iterdir())
+    copies = [asked.only] if asked.only else [path.name for path in asked.folder.iterdir()]
     random.shuffle(copies)
     engines = {}
     for name in copies:
@@ -198,12 +201,14 @@ def time_off(asked: argparse.Namespace) -> dict[str, float]:
         engines[name] = engine(asked.folder / name)
     ratios = {}
     for what, of_points in (("plain gas", False), ("points", True)):
-        box = gas(engines[asked.only or "whole"], asked.n, what, asked.seed)
+        module = engines[asked.only or "whole"]
+        sys.modules.update(module.modules)
+        box = gas(module, asked.n, what, asked.seed)
         box.advance(5.0 * FREE_TIME)
         bench = Bench(box, asked.span)
         chosen = [name for name in copies if name == "whole" or of_points == (name == "contacts")]
-        if asked.only:
-            chosen = [name for name in chosen if name == asked.only]
+        if not (chosen := [name for name in chosen if name in engines]):
+            continue
         found = shortest({name: bench.kernel(engines[name]) for name in chosen}, asked.repeats)
         ratios |= {name: found["whole"] / each for name, each in found.items() if name != "whole" and not asked.only}
     return ratios
@@ -263,10 +268,10 @@ def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
     found = {}
     for feature, (name, instrument) in SCENES.items():
         setup, frame = scene(name, instrument, asked.trial)
-        for watched in (False, True, False, True):
+        for watched in (False, True):
             frame(watched)
         before, times = setup.parcel.contacts, []
-        for _ in range(4 * asked.repeats):
+        for _ in range(1 if asked.trial else 4 * asked.repeats):
             pair = []
             for watched in (False, True):
                 start = time.process_time()
@@ -275,21 +280,23 @@ def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
             times.append(pair)
         collisions = (setup.parcel.contacts - before) / (2 * len(times))
         bare, full = np.median(times, axis=0)
-        gc.collect()
+        filmed = 1 if asked.trial else 10
         tracemalloc.start()
         frame(False)
-        start_bytes = tracemalloc.get_traced_memory()[0]
-        for _ in range(10):
-            frame(True)
-        kept = tracemalloc.get_traced_memory()[0] - start_bytes
-        for _ in range(10):
-            frame(False)
-        kept -= tracemalloc.get_traced_memory()[0] - start_bytes - kept
+        memory = []
+        for watched in (True, False):
+            gc.collect()
+            memory.append(tracemalloc.get_traced_memory()[0])
+            for _ in range(filmed):
+                frame(watched)
+        gc.collect()
+        memory.append(tracemalloc.get_traced_memory()[0])
         tracemalloc.stop()
+        kept = (memory[1] - memory[0]) - (memory[2] - memory[1])
         found[feature] = {
             "ns": 1e9 * full / max(collisions, 1e-9),
             "ratio": full / bare,
-            "bytes": kept / (10 * setup.parcel.number),
+            "bytes": kept / (filmed * setup.parcel.number),
         }
     return found
 
@@ -359,16 +366,17 @@ def measure(asked: argparse.Namespace) -> dict[str, Any]:
     """Measure everything, in many processes."""
     from atmosbox.engine.state import Modes
 
-    lines = child("lines", asked)
-    hasty = {"n": 30, "repeats": 1, "span": 1.0}
+    hasty = {"repeats": 1, "span": 1.0}
     with tempfile.TemporaryDirectory() as name:
         folder = asked.folder or Path(name)
         missing = [feature for feature in ("whole", "nothing", *Modes._fields) if not (folder / feature).exists()]
         for feature in missing:
             without(feature, folder)
         with ThreadPoolExecutor(os.cpu_count()) as workers:
+            counting = workers.submit(child, "lines", asked)
             compiling = [workers.submit(child, "on", asked, **hasty)]
             compiling += [workers.submit(child, "off", asked, folder=folder, only=each, **hasty) for each in missing]
+        lines = counting.result()
         for each in compiling:
             each.result()
         samples = []

@@ -529,6 +529,9 @@ def test_the_tool_makes_a_table_of_ratios_of_what_can_be_relied_on(tmp_path, mon
             "unit": ("quantity", ["K", "1", "K"]),
             "theory": ("quantity", [298.15, 1e5, 298.15]),
         },
+        attrs=provenance.global_attributes(
+            {"scene": "temperature", "tradeoff": {"budget": 60.0}}, title="A trade", command="a test --seed 1"
+        ),
     )
     monkeypatch.setattr(tool.tradeoff, "measure", lambda scene, **words: dataset)
     file = tmp_path / "accuracy.json"
@@ -537,7 +540,8 @@ def test_the_tool_makes_a_table_of_ratios_of_what_can_be_relied_on(tmp_path, mon
     held = json.loads(file.read_text(encoding="utf-8"))["scenes"]
     assert list(held) == ["another", "temperature"]
     table = Table.of(held["temperature"])
-    assert (table.how["budget"], table.labels) == (60.0, LABELS)
+    assert table.labels == LABELS
+    assert table.how == {"version": atmosbox.__version__, "budget": 60.0, "command": "a test --seed 1"}
     assert [(dict(one.settings), one.cost, one.members) for one in table.ways] == [
         ({"duration": 2.0}, 0.25, 9),
         ({}, 1.0, 8),
@@ -548,7 +552,11 @@ def test_the_tool_makes_a_table_of_ratios_of_what_can_be_relied_on(tmp_path, mon
     assert "| exact, duration=2 | 0.25 | 9 |" in printed
     for reason in ("3 runs, give a longer", "left the box", "ledger does not close", "cannot go on"):
         assert reason in printed
+    output.write(dataset, tmp_path / "trade.nc")
+    file.unlink()
+    tool.main([str(tmp_path / "trade.nc"), "--json", str(file)])
+    assert json.loads(file.read_text(encoding="utf-8"))["scenes"] == {"temperature": held["temperature"]}
     monkeypatch.setattr(tool, "FEWEST", 9)
     with pytest.raises(SystemExit, match="default run did not run often enough"):
         tool.main(["temperature", "--json", str(file)])
-    assert json.loads(file.read_text(encoding="utf-8"))["scenes"] == held
+    assert json.loads(file.read_text(encoding="utf-8"))["scenes"] == {"temperature": held["temperature"]}

@@ -27,7 +27,7 @@ References
 
 import functools
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +37,7 @@ from atmosbox.engine.random import uniform
 from atmosbox.engine.streaming import bounce, fall, glide, turn_round, wait_at_ends, wait_at_walls
 from atmosbox.engine.swarm import BLOCK, index_by_cell, reserve_places, share_of
 
-__all__ = ["Desk", "Gas", "scramble", "specialise"]
+__all__ = ["scramble", "specialise"]
 
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -45,31 +45,11 @@ _MIX_2 = np.uint64(0x94D049BB133111EB)
 _HALF = np.uint64(32)
 _LOW = np.uint64(0xFFFFFFFF)
 _FRACTION = 1.0 / 4294967296.0
+_HIGH, _MIDDLE, _PART, _ONE = np.uint64(43), np.uint64(22), np.uint64(21), np.uint64(1)
+_MASK, _LAST = np.uint64(0x1FFFFF), np.uint64(0x3FFFFF)
+_DECIDE = 1.0 / 4194304.0
 _TOGETHER = 64
-_MANY = 30_000
-
-
-class Gas(NamedTuple):
-    """What all molecules are: mass [mass], radius [length], rotational degrees of freedom."""
-
-    mass: float
-    radius: float
-    rotation: float
-
-
-class Desk(NamedTuple):
-    """What a step writes on and forgets.
-
-    ``flight : (thread, BLOCK)`` for how long each of a block flies unhindered [time], ``queue : (thread,
-    BLOCK)`` those that do not, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
-    what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts.
-    """
-
-    flight: Any
-    queue: Any
-    random: Any
-    books: Any
-    met: Any
+_MANY = 200_000
 
 
 @kernel
@@ -99,21 +79,22 @@ def _collide_in_cell(c, first, number, sweep, word, state, swarm, fastest, gas, 
     collisions = 0
     seen = most
     order = swarm.order
+    many = np.uint64(number)
+    begin = np.uint64(first)
     for _ in range(tries):
         word += _STEP
         draw = scramble(word)
-        i = np.int64(((draw >> _HALF) * np.uint64(number)) >> _HALF)
-        j = np.int64(((draw & _LOW) * np.uint64(number - 1)) >> _HALF)
-        j += np.int64(j >= i)
-        i = np.uint32(order[np.uint32(first + i)])
-        j = np.uint32(order[np.uint32(first + j)])
+        # one word makes three numbers: 21 bits choose a molecule, 21 another, 22 decide
+        i = ((draw >> _HIGH) * many) >> _PART
+        j = (((draw >> _MIDDLE) & _MASK) * (many - _ONE)) >> _PART
+        j += np.uint64(j >= i)
+        i = np.uint32(order[begin + i])
+        j = np.uint32(order[begin + j])
         ux = swarm.vx[i] - swarm.vx[j]
         uy = swarm.vy[i] - swarm.vy[j]
         uz = swarm.vz[i] - swarm.vz[j]
         square = ux * ux + uy * uy + uz * uz
-        word += _STEP
-        draw = scramble(word)
-        enough = np.int64(draw >> _HALF) * _FRACTION * most
+        enough = np.int64(draw & _LAST) * _DECIDE * most
         if enough * enough >= square:
             continue
         speed = math.sqrt(square)

@@ -8,17 +8,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
-from atmosbox.engine.dsmc import Desk, Gas, specialise
+from atmosbox.engine.dsmc import specialise
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.state import Box
-from atmosbox.engine.swarm import BLOCK, Grid, Swarm, new_gather
+from atmosbox.engine.swarm import Gas, Swarm, new_desk, new_gather, new_grid
 
 __all__ = ["DsmcParcel", "Resolution"]
 
-_REGROUP = 32
+_REGROUP, _REGROUP_MANY, _MANY = 48, 16, 200_000
 _THREADED = 10_000
 _FASTEST = 6.5
 _FORGET = 1.0 - 1.0 / 512.0
@@ -53,7 +53,8 @@ class DsmcParcel(MarchingParcel):
     occupancy
         Mean number of molecules in a cell, at least 1.
     cell
-        Side of a cell in mean free paths of the start at its mean density, in place of an occupancy.
+        Side of a cell in mean free paths of the start at its mean density, in place of an occupancy; as nearly as
+        the box allows.
     threads
         How many threads share the work of 10 000 molecules or more; the result is the same for any number.
 
@@ -65,7 +66,8 @@ class DsmcParcel(MarchingParcel):
     Notes
     -----
     The errors of transport grow with the squares of step and cell [1]_: of a viscosity by 11 % (Δx / λ)^2, of a
-    conductivity by 4.5 % (Δx / λ)^2. When a piston moves, cells stretch with the box: in proportion to the mean
+    conductivity by 4.5 % (Δx / λ)^2; and with one over the occupancy, for the molecules of a cell keep their common
+    momentum. When a piston moves, cells stretch with the box: in proportion to the mean
     free path they stay as high as they were.
 
     References
@@ -87,6 +89,7 @@ class DsmcParcel(MarchingParcel):
     """
 
     engine: ClassVar[str] = "dsmc"
+    _shares = True
 
     def __init__(
         self,
@@ -124,8 +127,7 @@ class DsmcParcel(MarchingParcel):
         crowding = 1.0
         sides = self._open_sides()
         numbers = (grid.number_x, grid.number_y, grid.number_z)
-        columns = (self._swarm.x, self._swarm.y, self._swarm.z)
-        for x, low, side, cells in zip(columns, self._low, sides, numbers, strict=True):
+        for x, low, side, cells in zip(self._swarm[:3], self._low, sides, numbers, strict=True):
             layer = np.minimum(((x - low) * (cells / side)).astype(np.int32), cells - 1)
             crowding = max(crowding, float(np.bincount(layer, minlength=cells).max()) * cells / n)
         path = self._path(float(math.prod(sides))) / crowding
@@ -165,6 +167,7 @@ class DsmcParcel(MarchingParcel):
                 "the molecules of dsmc are all alike: give one mass, diameter and rotation, or take engine exact"
             )
         first = [float(a[0]) if n else b for a, b in ((self._mass, 1.0), (self._diameter, 0.0), (self._rotation, 0.0))]
+        self._mass, self._diameter, self._rotation = (np.broadcast_to(np.float64(value), n) for value in first)
         self._gas = Gas(first[0], 0.5 * first[1], first[2])
         self._cross_section = math.pi * first[1] ** 2
         self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
@@ -187,52 +190,39 @@ class DsmcParcel(MarchingParcel):
             raise RefusedError(f"length = {tuple(self._sides)} leaves no room between walls: make the diameter smaller")
         for axis in range(3):
             if self._periodic[axis]:
-                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
+                np.mod(position[:, axis], self._sides[axis], out=position[:, axis])
+        # their columns are in one piece, and ours
         x, y, z, vx, vy, vz = (np.ascontiguousarray(a[:, axis]) for a in (position, velocity) for axis in range(3))
         spin = rotational_energy.copy() if self._rotates else np.zeros(1)
-        identity = np.arange(n, dtype=np.uint32)
-        self._swarm = Swarm(x, y, z, vx, vy, vz, spin, identity, np.zeros(n, np.uint32), np.zeros(n, np.uint32))
+        self._swarm = Swarm(
+            x, y, z, vx, vy, vz, spin, np.arange(n, dtype=np.uint32), np.zeros(n, np.uint32), np.zeros(n, np.uint32)
+        )
         self._spare = np.zeros(n)
+        self._round = _REGROUP_MANY if n >= _MANY else _REGROUP
         self._workers = self._threads if n >= _THREADED else 1
         self._lay_out(sides)
         self._march_kernel = specialise(self._rotates, self._workers > 1)
         self._gather = new_gather(self._workers > 1)
-        fastest = self._fastest(velocity)
+        fastest = self._fastest()
         self._grid.fastest[:] = _FASTEST * fastest
         path = min(self._path(math.prod(sides)), *sides)
-        crossing = path / (math.sqrt(8.0 / math.pi) * fastest) if fastest > 0.0 else self._spread
-        self._time_step = self._share * crossing
+        self._time_step = self._share * (path / (math.sqrt(8.0 / math.pi) * fastest) if fastest > 0.0 else self._spread)
 
     def _lay_out(self, sides: Sequence[float]) -> None:
         """Choose cells that are as good as cubes."""
         n = self._number
         volume = math.prod(sides)
-        edge = math.cbrt(volume * self._occupancy / n) if n else math.inf
-        if self._cell is not None and n:
-            edge = self._cell * self._path(volume)
         numbers = [1.0, 1.0, 1.0]
         if self._cross_section > 0.0 and n > 1:
-            spare = math.ceil if self._cell is not None else round
-            numbers = [max(1.0, float(spare(side / edge))) for side in sides]
+            edge = math.cbrt(volume * self._occupancy / n) if self._cell is None else self._cell * self._path(volume)
+            numbers = [max(1.0, float(np.rint(side / edge))) for side in sides]
         if math.prod(numbers) > max(n, 1000) * 10.0:
             raise RefusedError(
                 f"cell = {self._cell} mean free paths would leave {n / math.prod(numbers):.2g} molecules to a cell: "
                 "make the cells larger, or give more molecules"
             )
-        nx, ny, nz = (int(m) for m in numbers)
-        cells = nx * ny * nz
-        threads = self._workers
-        self._grid = Grid(
-            nx, ny, nz, np.zeros(cells + 1, np.uint32), np.zeros((threads, cells), np.uint32), np.zeros(cells)
-        )
-        blocks = -(-n // BLOCK)
-        self._desk = Desk(
-            flight=np.zeros((threads, BLOCK)),
-            queue=np.zeros((threads, BLOCK), np.int32),
-            random=np.zeros((threads, 8), np.uint64),
-            books=np.zeros((blocks, 3, 6)),
-            met=np.zeros((threads, 8), np.int64),
-        )
+        self._grid = new_grid((int(numbers[0]), int(numbers[1]), int(numbers[2])), self._workers)
+        self._desk = new_desk(n, self._workers)
 
     def _march(self, steps: int) -> None:
         first, last = self._step, self._step + steps
@@ -240,7 +230,7 @@ class DsmcParcel(MarchingParcel):
             self._resolve(first, 0, np.full(1, self.ceiling))
         while first < last:
             # the first step brings them into the order of cells, then every so many
-            turn = first + 1 if first == 0 else first + _REGROUP - (first - 1) % _REGROUP
+            turn = first + 1 if first == 0 else first + self._round - (first - 1) % self._round
             many = min(last, turn) - first
             position, speed, since = (float(value) for value in self._walls.piston)
             times = np.arange(first, first + many + 1, dtype=np.float64) * self._time_step
@@ -283,7 +273,7 @@ class DsmcParcel(MarchingParcel):
         np.maximum(self._grid.fastest * _FORGET, usual, out=self._grid.fastest)
 
     def _step_chosen(self) -> None:
-        """Need nothing: every step reads its length anew."""
+        pass  # every step reads its length anew
 
     def _open_sides(self) -> list[float]:
         """Return the sides of the space that centres can reach now [length]."""
@@ -295,17 +285,16 @@ class DsmcParcel(MarchingParcel):
         swept = math.sqrt(2.0) * self._number * self._cross_section
         return volume / swept if swept > 0.0 else math.inf
 
-    def _fastest(self, velocity: Array) -> float:
+    def _fastest(self) -> float:
         """Return sqrt(kT/m) of the start or of the hottest wall; of rest, what falling or the piston will give."""
         if not self._number:
             return 0.0
-        thermal = float(self._thermal_speeds(velocity)[0])
-        if thermal > 0.0:
-            return thermal
+        kT = self._warmest(self._gas.mass * self._mean_square_speed() / 3.0)
+        if kT > 0.0:
+            return math.sqrt(kT / self._gas.mass)
         fall = self._gravity * float(np.mean(self._swarm.z)) * 2.0 / 3.0
         return max(math.sqrt(fall), abs(self.piston_velocity))
 
     def _mean_square_speed(self) -> float:
         """Return the mean of the squared speed [length^2/time^2]."""
-        s = self._swarm
-        return sum(float(np.sum(v * v)) for v in (s.vx, s.vy, s.vz)) / max(self._number, 1)
+        return sum(float(np.sum(v * v)) for v in self._swarm[3:6]) / max(self._number, 1)

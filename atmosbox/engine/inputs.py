@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def matrix(values: ArrayLike, name: str) -> Array:
-    """Return three finite numbers per molecule, or refuse.
+    """Return three finite numbers per molecule, or refuse; a copy, each of its three columns in one piece.
 
     Examples
     --------
@@ -23,7 +23,7 @@ def matrix(values: ArrayLike, name: str) -> Array:
     array([[1., 2., 3.]])
     """
     try:
-        array = np.array(values, np.float64)
+        array = np.array(values, np.float64, order="F")
     except (TypeError, ValueError):
         raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
     if array.size == 0:
@@ -36,8 +36,18 @@ def matrix(values: ArrayLike, name: str) -> Array:
     return array
 
 
-def column(values: ArrayLike, n: int, name: str, *, above: float | None = None, least: float | None = None) -> Array:
+def column(
+    values: ArrayLike,
+    n: int,
+    name: str,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    shared: bool = False,
+) -> Array:
     """Return one finite number per molecule within its limits, or refuse.
+
+    Where it is ``shared`` one number for all takes the memory of one, and cannot be changed.
 
     Examples
     --------
@@ -59,7 +69,8 @@ def column(values: ArrayLike, n: int, name: str, *, above: float | None = None, 
         value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
         limit = f"above {above:g}" if above is not None else f"{least:g} or above"
         raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
-    return np.broadcast_to(array, (n,)).copy()
+    column = np.broadcast_to(array, (n,))
+    return column if shared else column.copy()
 
 
 def number(value: Any, name: str, *, least: float = -math.inf, most: float = math.inf, infinite: bool = False) -> float:
@@ -114,7 +125,7 @@ def sides_of(length: Any) -> Array:
 
 
 def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, bool]) -> Array:
-    """Return the centres, those that rounding has put into a wall moved out of it; refuse what stands outside.
+    """Return the centres, those that rounding has put into a wall moved out of it in place; refuse what stands outside.
 
     Examples
     --------
@@ -122,7 +133,6 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
     array([[1., 1., 1.]])
     """
     radius = 0.5 * diameter
-    x = x.copy()
     for axis in range(3):
         if periodic[axis]:
             continue
@@ -136,7 +146,7 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
                 f"molecule {i} at {'xyz'[axis]} = {x[i, axis]:.6g} reaches through wall {wall}: its centre must lie "
                 f"between {radius[i]:.6g} and {sides[axis] - radius[i]:.6g}"
             )
-        x[:, axis] = np.clip(x[:, axis], radius, sides[axis] - radius)
+        np.clip(x[:, axis], radius, sides[axis] - radius, out=x[:, axis])
     return x
 
 

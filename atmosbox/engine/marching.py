@@ -105,8 +105,12 @@ class MarchingParcel(Parcel):
             return np.zeros(0)
         dimensions = 2.0 if self._planar else 3.0
         kT = float(np.sum(self._mass[:, None] * velocity**2)) / (dimensions * self._number)
+        return np.sqrt(self._warmest(kT) / self._mass)
+
+    def _warmest(self, kT: float) -> float:
+        """Return the highest of a temperature [energy] and those that the walls ever have."""
         for wall, law in enumerate(self._walls.law):
             if law == HEAT_BATH:
                 first, last = self._walls.schedule[wall], self._walls.schedule[wall + 1]
                 kT = max(kT, float(self._walls.schedule_kT[first:last].max()))
-        return np.sqrt(kT / self._mass)
+        return kT

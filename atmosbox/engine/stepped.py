@@ -9,8 +9,12 @@ makes, in a dilute gas,
 .. math:: \frac{Z - 1}{Z_{exact} - 1} = 1 - \frac{4}{\sqrt{\pi}} \delta, \qquad
           \frac{\nu}{\nu_{exact}} = 1 - \frac{8}{3} \delta^2
 
-(in a plane :math:`3/\sqrt{\pi}` and 1). Energy is kept to rounding by each impulse, however wrong the rest: it says
-nothing about accuracy.
+(in a plane :math:`3/\sqrt{\pi}` and 1). In a denser one both are low by another :math:`6.6\, \phi\, \delta` (in a plane
+2.8), because molecules that overlap leave each other more room. Energy is kept to rounding by each impulse, however
+wrong the rest: it says nothing about accuracy.
+
+The virial takes r as it is, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls aside, between
+collisions the sum of r . p changes by twice the kinetic energy alone, and at each by what the virial counts.
 
 Notes
 -----

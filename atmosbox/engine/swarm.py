@@ -10,13 +10,26 @@ Every thread takes a share of the molecules, one stretch of the columns. It coun
 the index follow those of the threads before it: the index is the same for any number of threads.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from atmosbox.engine._jit import kernel, prange
 
-__all__ = ["BLOCK", "Grid", "Swarm", "index_by_cell", "new_gather", "reserve_places", "share_of"]
+__all__ = [
+    "BLOCK",
+    "Desk",
+    "Gas",
+    "Grid",
+    "Swarm",
+    "index_by_cell",
+    "new_desk",
+    "new_gather",
+    "new_grid",
+    "reserve_places",
+    "share_of",
+]
 
 BLOCK = 1024
 """How many molecules are moved at a time: few enough to stay in the nearest cache."""
@@ -55,6 +68,51 @@ class Grid(NamedTuple):
     first: Any
     place: Any
     fastest: Any
+
+
+class Gas(NamedTuple):
+    """What all molecules are: mass [mass], radius [length], rotational degrees of freedom."""
+
+    mass: float
+    radius: float
+    rotation: float
+
+
+class Desk(NamedTuple):
+    """What a step writes on and forgets.
+
+    ``flight : (thread, BLOCK)`` for how long each of a block flies unhindered [time], ``queue : (thread,
+    BLOCK)`` those that do not, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
+    what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts.
+    """
+
+    flight: Any
+    queue: Any
+    random: Any
+    books: Any
+    met: Any
+
+
+def new_desk(number: int, threads: int) -> Desk:
+    """Return an empty desk for so many molecules and threads."""
+    return Desk(
+        flight=np.zeros((threads, BLOCK)),
+        queue=np.zeros((threads, BLOCK), np.int32),
+        random=np.zeros((threads, 8), np.uint64),
+        books=np.zeros((-(-number // BLOCK), 3, 6)),
+        met=np.zeros((threads, 8), np.int64),
+    )
+
+
+def new_grid(numbers: tuple[int, int, int], threads: int) -> Grid:
+    """Return so many empty cells along each axis, for so many threads to count in."""
+    cells = math.prod(numbers)
+    return Grid(
+        *numbers,
+        first=np.zeros(cells + 1, np.uint32),
+        place=np.zeros((threads, cells), np.uint32),
+        fastest=np.zeros(cells),
+    )
 
 
 @kernel

@@ -67,7 +67,7 @@ def _pressed(trial: Trial, new: Callable[[], Parcel], expected: float, settle: f
     (coarse, error), (better, less) = fine
     # what is off by the first order of the step goes away; the square of what is off stays
     off = (better - coarse) ** 2 / (expected - 1.0)
-    what = f"Z = {z:.3g} with its own step; as steps of {_FINE} and of half that are off in proportion to them, without"
+    what = f"Z as steps of δ = {_FINE} and of half of that point to; with its own step the engine has {z:.3g}"
     tolerance = 4.0 * math.hypot(error, 2.0 * less) + 4.0 * off + 1.5 * (expected - 1.0) / _NUMBER
     return degraded(what, 2.0 * better - coarse, expected, tolerance)
 

@@ -84,11 +84,11 @@ def million(trial: Trial) -> Verdict:
     if trial.engine == "classic":
         return _all_pairs(trial)
     number = 1_000_000
-    side = (number * math.pi / 6.0 / 0.05) ** (1.0 / 3.0)
+    side = (number * math.pi / 6.0 / 0.01) ** (1.0 / 3.0)
     box = trial.gas(number, (side,) * 3)
     trial.run(box, 2.0)  # pushed apart at the start, they must first forget it
     before, time = box.contacts, box.time
-    trial.run(box, 3.0)
+    trial.run(box, 4.0)
     density = number / (side - 1.0) ** 3
     rate = 0.5 * number * float(theory.collision_rate(density, 1.0, 1.0, 1.0)) * (box.time - time)
     if by_chance(box):

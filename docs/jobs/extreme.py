@@ -22,13 +22,16 @@ Array = np.ndarray
 
 def cell(verdict: Verdict) -> str:
     """Return what a cell of the table says."""
-    if verdict.value is None:
+    value, expected, tolerance = verdict.value, verdict.expected, verdict.tolerance
+    if value is None or expected is None or tolerance is None:
         return verdict.outcome
-    if verdict.expected:
-        expected = f"{rounded(verdict.expected, 4)} ± {rounded(verdict.tolerance or 0.0)}"
-        return f"{verdict.outcome}: {rounded(verdict.value, 4)} ({expected})"
-    limit = f" (≤ {rounded(verdict.tolerance)})" if verdict.tolerance else ""
-    return f"{verdict.outcome}: {rounded(verdict.value)}{limit}"
+    if not expected:
+        return f"{verdict.outcome}: {rounded(value)}" + (f" (≤ {rounded(tolerance)})" if tolerance else "")
+    if not tolerance:
+        return f"{verdict.outcome}: {value:g} of {expected:g}"
+    if verdict.outcome == "right" and expected == 1.0 and tolerance < 1e-6:
+        return f"{verdict.outcome}: off by {rounded(value - 1.0)} (≤ {rounded(tolerance)})"
+    return f"{verdict.outcome}: {rounded(value, 4)} ({rounded(expected, 4)} ± {rounded(tolerance)})"
 
 
 @job("extremes")
@@ -47,11 +50,14 @@ def extremes(found: Findings) -> None:
             if each.name not in results:
                 continue
             rows.append([f"{each.title} (`{each.name}`)", *(cell(one.verdict) for one in results[each.name])])
+            said: dict[tuple[str, str], list[str]] = {}
             for one in results[each.name]:
-                if one.verdict.outcome != "right":
-                    sentences.append([f"`{each.name}`", f"`{one.engine}`", one.verdict.outcome, one.verdict.sentence])
+                said.setdefault((one.verdict.outcome, one.verdict.sentence), []).append(f"`{one.engine}`")
+            sentences += [
+                [f"`{each.name}`", ", ".join(who), outcome, sentence] for (outcome, sentence), who in said.items()
+            ]
     found.table(["extreme", *(f"`{engine.name}`" for engine in engines)], rows)
-    found.table(["extreme", "engine", "outcome", "sentence"], sentences, key="sentences")
+    found.table(["extreme", "engine", "outcome", "what the number is, or what is refused"], sentences, key="sentences")
 
 
 class Integrator(NamedTuple):

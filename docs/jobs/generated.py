@@ -63,7 +63,7 @@ ATTRIBUTES = {
     "product_version": "version of atmosbox",
     "atmosbox_format": "version of this layout",
     "atmosbox_status": "`complete`, `partial` (the run is under way or was killed) or `interrupted` (by Ctrl-C)",
-    "atmosbox_parameters": "JSON: scene, settings, seed, engine, version; `--from FILE` repeats the run from it",
+    "atmosbox_parameters": "JSON: scene, settings, engine, version, expected errors; `--from FILE` repeats the run",
     "atmosbox_panels": "JSON: what the figure shows; `atmosbox plot` needs nothing else",
     "atmosbox_headlines": "JSON: the names of the headline numbers, in order",
 }

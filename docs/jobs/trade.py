@@ -1,10 +1,15 @@
 """Speed against accuracy, as `atmosbox tradeoff` has measured it."""
 
+import json
 import math
+import warnings
 
 import numpy as np
 from jobs.registry import ROOT, Findings, job, rounded
 
+from atmosbox import engines, theory
+from atmosbox.engine import Periodic
+from atmosbox.engine.start import maxwell_velocities, random_positions
 from atmosbox.output import read
 from atmosbox.plot import tradeoff
 
@@ -46,3 +51,52 @@ def trade(found: Findings) -> None:
         drift = float(np.nanmax(np.abs(data.energy_drift.values)))
         found.number(f"{scene}-drift", rounded(drift))
         found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
+
+
+@job("approaching")
+def approaching(found: Findings) -> None:
+    """Leave out the test whether a pair approaches, and count its collisions as time goes on."""
+    n, phi = 2000, 0.01
+    side = (n * math.pi / 6.0 / phi) ** (1.0 / 3.0)
+    rng = np.random.default_rng(3)
+    start = (
+        random_positions((side,) * 3, np.ones(n), rng, periodic=(True,) * 3),
+        maxwell_velocities(1.0, np.ones(n), rng),
+    )
+    expected = float(theory.collision_rate(n / side**3, 1.0, 1.0, 1.0)) * n / 2.0
+    rows = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a coarse step is what is shown
+        boxes = [
+            engines.choose(f"stepped:delta=0.01,approaching={word}").make(
+                *start, length=(side,) * 3, walls=(Periodic(),) * 6, seed=1
+            )
+            for word in ("on", "off")
+        ]
+    energy = [sum(box.energy()) for box in boxes]
+    before, last = [0, 0], 0.0
+    for time in (10.0, 20.0, 40.0, 80.0):
+        row = [f"{last:g} to {time:g}"]
+        for k, box in enumerate(boxes):
+            box.advance(time)
+            row.append(f"{(box.contacts - before[k]) / (expected * (time - last)):.2f}")
+            before[k] = box.contacts
+        row += [rounded(abs(sum(box.energy()) / e - 1.0), 1) for box, e in zip(boxes, energy, strict=True)]
+        rows.append(row)
+        last = time
+    found.table(
+        ["time [σ/√(kT/m)]", "collisions over theory", "without the test", "change of the energy", "without the test"],
+        rows,
+    )
+
+
+@job("classic-cost", quick=True)
+def classic_cost(found: Findings) -> None:
+    """Make the table of what all pairs cost, beside the exact engine at the same error."""
+    path = FOLDER / "classic.json"
+    data = json.loads(path.read_text(encoding="utf-8"))
+    rows = [
+        [f"{one['packing_fraction']:g}", one["molecules"], f"{one['delta']:.4f}", f"{100.0 * one['bias']:.1f} %",
+         f"{one['ratio']:.0f}"] for one in data["against_exact"]
+    ]  # fmt: skip
+    found.table(["packing fraction", "molecules", "δ", "Z − 1 too low by", "times dearer than exact"], rows)

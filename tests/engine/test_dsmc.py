@@ -1,0 +1,251 @@
+"""Direct simulation Monte Carlo keeps its books, keeps its molecules at home, and does the same on any
+number of threads; what chance has no hand in, it does as the exact engine does.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, Ramp, RefusedError, Specular, StalledError
+from atmosbox.engine._jit import COMPILED
+from atmosbox.engine.dsmc_parcel import DsmcParcel
+from atmosbox.engine.measure import momentum
+from atmosbox.engine.swarm import BLOCK
+
+many_molecules = pytest.mark.skipif(not COMPILED, reason="so many molecules take minutes without numba")
+
+SMOOTH, TURNING = (Specular(),) * 6, (Periodic(),) * 6
+RAMP = HeatBath(Ramp(0.5, 2.0, start=1.0, end=20.0), accommodation=0.7)
+ALL_LAWS = (*SMOOTH[:2], RAMP, HeatBath(1.5), HeatBath(1.0), Piston())
+
+
+class Pulse:
+    """A driver that moves the piston out and in, by what it sees of the gas."""
+
+    interval = 3.3
+
+    def velocity(self, parcel):
+        return 0.05 * math.sin(parcel.time) + 1e-3 * parcel.internal_energy() / max(parcel.number, 1)
+
+
+def box(number, side=30.0, *, kT=1.0, seed=5, **changes):
+    """Return a gas at random places, molecules of it overlapping as chance will have it."""
+    rng = np.random.default_rng(seed)
+    made = {
+        "position": 0.5 + (side - 1.0) * rng.random((number, 3)),
+        "velocity": math.sqrt(kT) * rng.normal(size=(number, 3)),
+        "length": (side,) * 3,
+        "walls": TURNING,
+        "seed": seed,
+    }
+    return DsmcParcel(**(made | changes))
+
+
+def everything(number=12_000, **changes):
+    """Return a gas with all that there is: every law of walls, gravity, rotation, a piston that is driven."""
+    spin = np.random.default_rng(6).exponential(size=number)
+    return box(
+        number, 60.0, walls=ALL_LAWS, gravity=0.02, driver=Pulse(), rotation=2, rotational_energy=spin,
+        collision_number=3.0, **changes,
+    )  # fmt: skip
+
+
+def books(parcel):
+    """Return all that a run leaves, as bytes."""
+    now = parcel.snapshot()
+    told = (*now[1:], parcel.wall_heat, parcel.wall_impulse, parcel.wall_hits, [parcel.work, parcel.contacts, now.time])
+    return b"".join(np.asarray(a, np.float64).tobytes() for a in told)
+
+
+@pytest.mark.parametrize("rotation", [0, 2, 3])
+def test_collisions_keep_energy_and_momentum(rotation):
+    number = 3000
+    spin = np.full(number, 0.7) if rotation else None
+    gas = box(number, rotation=rotation, rotational_energy=spin)
+    energy, total = sum(gas.energy()), momentum(gas, gas.snapshot())
+    gas.advance(20.0)
+    assert gas.contacts > 5 * number
+    assert sum(gas.energy()) == pytest.approx(energy, rel=1e-12)
+    assert np.abs(momentum(gas, gas.snapshot()) - total).max() < 1e-10 * number
+    assert (np.ptp(gas.snapshot().rotational_energy) > 0.0) == bool(rotation)
+
+
+@many_molecules
+def test_the_ledger_closes_with_every_wall_gravity_rotation_and_a_driven_piston():
+    gas = everything()
+    gas.advance(100.0)
+    assert min(gas.wall_hits) > 1000
+    assert gas.work != 0.0
+    assert np.abs(gas.wall_heat[2:5]).min() > 1.0
+    assert gas.ledger() <= 1e-12
+    assert gas.escaped() == 0
+    assert gas.virial.sum() == 0.0
+    assert gas.ideal
+
+
+@many_molecules
+def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
+    runs = []
+    for threads in (1, 2, 3, 7):
+        gas = everything(threads=threads)
+        gas.advance(30.0)
+        runs.append(books(gas))
+    gas = everything()
+    for time in np.linspace(0.0, 30.0, 37):
+        gas.advance(time)
+    runs.append(books(gas))
+    assert gas.steps > 65
+    assert gas.contacts > 10_000
+    assert len(set(runs)) == 1
+    other = everything(seed=8)
+    other.advance(30.0)
+    assert books(other) not in runs
+
+
+@pytest.mark.parametrize("walls", [SMOOTH, TURNING, (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05))])
+@pytest.mark.parametrize("gravity", [0.0, 0.3])
+def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):
+    if gravity and walls == TURNING:
+        walls = (*TURNING[:4], *SMOOTH[:2])
+    number, side = (BLOCK + 500, 8.0) if COMPILED else (40, 8.0)
+    small = 1e-7  # so that there are cells to be sorted into, and nobody meets anybody
+    gas = box(number, side, walls=walls, gravity=gravity, diameter=small, dt=0.2)
+    start = gas.snapshot()
+    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=gravity, diameter=small)
+    gas.advance(75.0)  # far enough to be put in the order of cells twice
+    exact.advance(gas.time)
+    assert gas.steps > 65
+    ours, theirs = gas.snapshot(), exact.snapshot()
+    apart = np.abs(ours.position - theirs.position)
+    apart = np.minimum(apart, np.where(gas.periodic, gas.length - apart, np.inf))
+    assert apart.max() < 1e-9
+    assert np.abs(ours.velocity - theirs.velocity).max() < 1e-9
+    assert gas.wall_impulse == pytest.approx(exact.wall_impulse, rel=1e-10)
+    assert gas.wall_hits.tolist() == exact.wall_hits.tolist()
+    assert gas.work == pytest.approx(exact.work, rel=1e-9, abs=1e-12)
+    assert gas.contacts == 0
+
+
+@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize("walls", [TURNING, ALL_LAWS])
+def test_a_handful_of_molecules_is_a_gas_too(number, walls):
+    gas = box(number, 5.0, walls=walls, rotation=2, gravity=0.1 if walls == ALL_LAWS else 0.0)
+    gas.advance(500.0)
+    assert gas.steps > 0
+    assert gas.escaped() == 0
+    assert gas.ledger() <= 1e-12
+    assert (gas.contacts > 0) == (number > 1)
+    assert math.isfinite(gas.resolution().cell)
+
+
+@pytest.mark.parametrize("dt", [0.01, 1.0, 10.0])
+def test_nobody_is_ever_outside(dt):
+    gas = box(500, 12.0, walls=(*SMOOTH[:4], HeatBath(1.0), Piston(-0.2)), gravity=5.0, dt=dt)
+    for time in np.arange(1.0, 30.0, 2.0):
+        gas.advance(time)
+        assert gas.escaped() == 0
+    assert gas.ledger() <= 1e-12
+
+
+def test_a_hot_start_collides_as_it_should_and_cools_to_its_walls():
+    gas = box(3000, 20.0, kT=1e6, walls=(HeatBath(1.0),) * 6)
+    gas.advance(200.0 * gas.time_step)
+    assert gas.contacts > 1000
+    gas.advance(20_000.0 * gas.time_step)
+    assert 1.4 * gas.number < gas.energy()[0] < 1e-4 * 1.5e6 * gas.number
+    assert gas.escaped() == 0
+    assert gas.ledger() <= 1e-12
+
+
+def test_a_gas_at_rest_falls_and_collides():
+    number = 1000
+    gas = box(number, 20.0, velocity=np.zeros((number, 3)), walls=SMOOTH, gravity=0.1)
+    gas.advance(300.0)
+    assert gas.contacts > number
+    assert gas.energy()[0] > 0.0
+    assert gas.ledger() <= 1e-12
+    still = box(number, 20.0, velocity=np.zeros((number, 3)))
+    still.advance(10.0)
+    assert still.contacts == 0
+
+
+def test_a_cold_floor_in_strong_gravity_does_not_stop_time():
+    gas = box(50, 5.0, walls=(*SMOOTH[:4], HeatBath(1e-12), Specular()), gravity=100.0)
+    gas.advance(5.0)
+    assert gas.escaped() == 0
+    assert gas.energy()[0] < 0.1 * gas.number
+
+
+def test_cells_and_steps_are_as_asked():
+    number, side = 5000, 50.0
+    path = (side - 1.0) ** 3 / (math.sqrt(2.0) * number * math.pi)
+    free_time = path / math.sqrt(8.0 / math.pi)
+    velocity = np.random.default_rng(1).normal(size=(number, 3))
+    velocity *= math.sqrt(3.0 * number / np.sum(velocity**2))
+    for options, edge in (({}, (10.0 * 49.0**3 / number) ** (1.0 / 3.0)), ({"cell": 0.5, "dt": 0.1}, 0.5 * path)):
+        gas = box(number, side, walls=SMOOTH, velocity=velocity, **options)
+        assert gas.time_step == pytest.approx(options.get("dt", 0.2) * free_time, rel=1e-12)
+        found = gas.resolution()
+        # of the densest layer, which a few hundred molecules make by chance
+        assert 0.9 * edge / path < found.cell < 1.6 * edge / path
+        assert options.get("dt", 0.2) < found.step < 1.6 * options.get("dt", 0.2)
+    gas.divide(1.0)
+    assert 1.0 / gas.time_step == pytest.approx(round(1.0 / gas.time_step), rel=1e-12)
+    assert gas.time_step <= 0.1 * free_time
+
+
+def test_cells_stretch_with_the_box():
+    gas = box(4000, 30.0, walls=(*TURNING[:4], Specular(), Piston(0.5)))
+    before = gas.resolution()
+    gas.advance(29.0 / 0.5)
+    assert gas.ceiling == pytest.approx(59.0, rel=0.01)
+    after = gas.resolution()
+    # twice as high, twice the mean free path: the upright side of a cell keeps up, the mean free time is longer
+    assert after.cell == pytest.approx(before.cell, rel=0.15)
+    assert after.step < 0.6 * before.step
+    assert gas.escaped() == 0
+
+
+def test_a_piston_that_comes_down_too_far_says_so():
+    gas = box(30, 10.0, walls=(*SMOOTH[:5], Piston(-1.0)))
+    with pytest.raises(StalledError, match=r"the piston has come down to 1\.\d+ at t = [89]\.\d+"):
+        gas.advance(20.0)
+    assert gas.escaped() == 0
+    with pytest.raises(StalledError, match="the piston has come down"):
+        gas.advance(21.0)
+    gas.set_piston_velocity(1.0)
+    gas.advance(20.0)
+    assert gas.ceiling > 5.0
+
+
+@many_molecules
+def test_a_molecule_takes_few_bytes():
+    assert box(100_000, 200.0).memory() < 80 * 100_000
+    spinning = box(100_000, 200.0, rotation=2)
+    assert spinning.memory() < 88 * 100_000
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"planar": True, "velocity": np.zeros((9, 3))}, "the cells of dsmc are three-dimensional"),
+        ({"mass": np.arange(1.0, 10.0)}, "the molecules of dsmc are all alike"),
+        ({"diameter": np.linspace(0.1, 1.0, 9)}, "the molecules of dsmc are all alike"),
+        ({"rotation": [0, 2, 2, 2, 2, 2, 2, 2, 2]}, "the molecules of dsmc are all alike"),
+        ({"dt": 0.0}, "dt = 0 would never end"),
+        ({"dt": -1.0}, r"dt = -1\.0 is impossible"),
+        ({"dt": 11.0}, r"dt = 11\.0 is impossible: give a finite number from 0 to 10"),
+        ({"dt": "fast"}, "dt = 'fast' is not a number"),
+        ({"occupancy": 0.5}, r"occupancy = 0\.5 is impossible: give a finite number from 1 up"),
+        ({"occupancy": math.nan}, "occupancy = nan is impossible"),
+        ({"cell": 0.0}, r"cell = 0\.0 is impossible"),
+        ({"cell": 0.001}, r"would leave .* molecules to a cell"),
+        ({"threads": 0}, "threads = 0 is impossible"),
+        ({"threads": 1.5}, r"threads = 1\.5 is not a whole number"),
+        ({"gravity": 1.0}, "periodic along z cannot have gravity"),
+    ],
+)
+def test_what_it_cannot_do_is_refused_in_a_sentence(changes, why):
+    with pytest.raises(RefusedError, match=why):
+        box(9, 5.0, **changes)
