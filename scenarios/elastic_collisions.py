@@ -19,7 +19,7 @@ from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Discs
 from atmosbox.panels import Line, Panel
-from atmosbox.scene import Setup
+from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import block_average
 from atmosbox.units import Scale
@@ -30,6 +30,13 @@ if TYPE_CHECKING:
 title = "Elastic collisions"
 FRAMES = 1200
 SETTLE = 400
+
+ladder = (
+    Series("exact", "duration", (15, 60, 240)),
+    Series("stepped", "delta", (0.4, 0.1), {"duration": 60}),
+    Series("classic", "delta", (0.4, 0.1), {"duration": 60}),
+)
+"""What is worth comparing: every scheme that swaps momentum shares the energy out; they differ in what it costs."""
 
 
 class Settings(SceneSettings):

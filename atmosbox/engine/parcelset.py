@@ -106,6 +106,8 @@ class ParcelSet(Parcel):
                 break
             self._turn += 1
             self._drive()
+            if watch is not None:
+                watch(self.time)
             if stop >= until:
                 break
         self._asked = until

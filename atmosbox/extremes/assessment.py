@@ -17,7 +17,7 @@ from atmosbox.extremes.verdict import Verdict, wrong
 __all__ = ["Finding", "assess", "examine"]
 
 LIMIT, LONG_LIMIT = 30.0, 600.0
-PATIENCE = 180.0
+PATIENCE = 900.0
 
 
 @dataclass(frozen=True)
@@ -87,9 +87,10 @@ def examine(each: Extreme, engine: Candidate, *, limit: float | None = None, pat
     engine
         The engine.
     limit
-        For how long it may run before it counts as a hang [s].
+        For how long it may run before it counts as a hang, of the processor's time [s].
     patience
-        How much longer to wait for an engine that does not even call its watch; it may be compiling [s].
+        How much longer to wait for an engine that does not even call its watch; it may be compiling, or the
+        processor may have other work [s].
 
     Returns
     -------

@@ -82,6 +82,7 @@ def measure(
         raise SettingError("scene", scene, "declares nothing to compare", "give its module a ladder of Series")
     if not (math.isfinite(budget) and 1.0 <= budget <= 1e6):
         raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", "give --budget 60s")
+    module.Settings.from_user(settings or {})
     ways = tuple(ladder) if ladder is not None else rungs(row, settings or {})
     tell = progress or (lambda share, word: None)
     trials: list[list[Trial]] = [[] for _ in ways]

@@ -1,0 +1,180 @@
+"""Speed against accuracy: the rungs, the measurement, its files and its figure."""
+
+import csv
+import json
+import math
+import sys
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from atmosbox import scenarios
+from atmosbox.cli import tradeoff as command
+from atmosbox.cli.command import app
+from atmosbox.errors import SettingError, UnknownSettingError
+from atmosbox.output import read, write
+from atmosbox.plot import save
+from atmosbox.scene import Series
+from atmosbox.tradeoff import Rung, measure, rungs
+from atmosbox.tradeoff.measure import _summary
+
+QUICK = (
+    Series("exact", "ascent", (20, 40), {"molecules": 100}, {"temperature_at_700_hpa": -1.0}),
+    Series("stepped", "delta", (0.4,), {"molecules": 100, "ascent": 20}),
+)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return measure("lifting-dry", ladder=rungs(QUICK, {}), budget=4.0)
+
+
+def test_a_series_becomes_rungs_of_options_and_settings():
+    steps, settings = Series("stepped:motion=euler", "delta", (0.2,)), Series("exact", "ascent", (100,), {"seed": 3})
+    made = rungs([steps, settings], {"molecules": 50})
+    assert [rung.engine for rung in made] == ["stepped:motion=euler,delta=0.2", "exact"]
+    assert made[0].settings == {"molecules": 50}
+    assert made[1].settings == {"molecules": 50, "seed": 3, "ascent": 100}
+    assert made[1].label == "exact, molecules=50, seed=3, ascent=100"
+
+
+def test_a_series_of_what_no_engine_knows_is_refused():
+    with pytest.raises(UnknownSettingError, match="delt"):
+        rungs([Series("stepped:delt=0.1", "ascent", (1,))], {})
+    with pytest.raises(SettingError, match="ladder"):
+        rungs([], {})
+
+
+@pytest.mark.parametrize("scene", scenarios.names())
+def test_the_ladder_of_a_scene_can_be_climbed(scene):
+    """Every rung names an engine and settings that the scene accepts."""
+    module = scenarios.load(scene)
+    if not hasattr(module, "ladder"):
+        pytest.skip("this scene declares nothing to compare")
+    for rung in rungs(module.ladder, {}):
+        module.Settings.from_user(rung.settings)
+
+
+def test_bias_and_noise_are_told_apart():
+    # A hundred members with an error of 0.5 and a scatter of 2: four standard errors, a false alarm in 16 000 seeds.
+    rng = np.random.default_rng(1)
+    error = 0.5 + 2.0 * rng.normal(size=(100, 1))
+    bias, se, noise = _summary(error, np.full((100, 1), 9.0))
+    assert abs(bias - 0.5) < 4.0 * se
+    assert se == pytest.approx(noise / 10.0)
+    assert abs(noise - 2.0) < 4.0 * 2.0 / math.sqrt(200.0)
+
+
+def test_few_members_are_judged_by_their_own_error_bars():
+    bias, se, noise = _summary(np.array([[1.0], [3.0]]), np.array([[3.0], [4.0]]))
+    assert (bias, noise) == (2.0, pytest.approx(math.sqrt(12.5)))
+    assert se == pytest.approx(noise / math.sqrt(2.0))
+
+
+def test_the_noise_of_a_curve_is_no_bias():
+    # 25 points without bias: what chance adds to the mean square is taken off, to within its own scatter.
+    rng = np.random.default_rng(2)
+    bias, _, noise = _summary(rng.normal(size=(16, 25)), np.ones((16, 25)))
+    assert noise == pytest.approx(1.0, abs=4.0 / math.sqrt(2 * 15 * 25))
+    assert bias**2 < 4.0 * math.sqrt(2.0 / 25.0) / 16.0
+    assert np.isnan(_summary(np.full((2, 3), np.nan), np.ones((2, 3)))).all()
+
+
+def test_a_measurement_has_errors_beside_costs(found):
+    assert found.sizes["rung"] == 3
+    assert (found.members.values >= 1).all()
+    assert (found.engine_seconds.values > 0.0).all()
+    assert found.cost.values[1] == 1.0, "the reference is the dearest of the first exact series"
+    assert (found.escaped.values == 0).all()
+    assert (found.ledger.values < 1e-10).all()
+    assert (found.energy_drift.values == 0.0).all()
+    one = found.sel(quantity="temperature_at_700_hpa")
+    assert one.unit.item() == "K"
+    assert (one.noise.values > 0.0).all()
+    assert np.allclose(one.bias_se.values, one.noise.values / np.sqrt(found.members.values))
+
+
+def test_the_same_seeds_give_the_same_errors(monkeypatch):
+    monkeypatch.setattr(sys.modules["atmosbox.tradeoff.measure"], "MOST_MEMBERS", 1)
+    first, second = (measure("lifting-dry", ladder=rungs(QUICK, {})[:1], budget=10.0) for _ in range(2))
+    assert first.members.values.tolist() == [1]
+    assert np.array_equal(first.bias.values, second.bias.values, equal_nan=True)
+    assert np.array_equal(first.noise.values, second.noise.values, equal_nan=True)
+
+
+def test_a_run_that_is_too_dear_is_left_out():
+    ladder = (*rungs(QUICK, {})[:1], Rung("exact", {"ascent": 1e6, "molecules": 100}, 1, 1e6))
+    found = measure("lifting-dry", ladder=ladder, budget=8.0)
+    assert found.members.values.tolist()[1] == 0
+    assert "too much of the budget" in found.left_out.values[1]
+
+
+def test_what_an_engine_cannot_do_is_said_and_not_measured():
+    ladder = (*rungs(QUICK, {})[:1], Rung("classic", {"molecules": 100}, 1, 0.1))
+    found = measure("lifting-dry", ladder=ladder, budget=8.0)
+    assert found.members.values[1] == 0
+    assert "classic" in found.left_out.values[1]
+
+
+@pytest.mark.parametrize("budget", [0.0, -1.0, math.nan, math.inf, 1e9])
+def test_an_impossible_budget_is_refused(budget):
+    with pytest.raises(SettingError, match="--budget 60s"):
+        measure("lifting-dry", budget=budget)
+
+
+def test_ctrl_c_keeps_what_was_measured():
+    def stop(share, word):
+        if "ascent=40" in word:
+            raise KeyboardInterrupt
+
+    found = measure("lifting-dry", ladder=rungs(QUICK, {}), budget=30.0, progress=stop)
+    assert found.attrs["atmosbox_status"] == "interrupted"
+    assert found.members.values.tolist() == [1, 0, 0]
+
+
+@pytest.mark.parametrize("theme", ["notes", "slides"])
+def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_path, theme):
+    saved = write(found, tmp_path / "trade.nc")
+    first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
+    assert save(read(saved), tmp_path / "second.svg", theme=theme).read_bytes() == first
+
+
+def test_the_table_has_a_line_for_every_run(found):
+    lines = command.lines(found, 200)
+    assert sum(line.startswith(("exact, molecules=100", "stepped:delta=0.4")) for line in lines) == 3
+    records = list(csv.DictReader(command.as_csv(found).splitlines()))
+    assert [record["run"] for record in records] == [str(name) for name in found.rung.values]
+    assert float(records[0]["temperature_at_700_hpa_noise_K"]) > 0.0
+
+
+def test_the_command_writes_table_file_and_figure(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(scenarios.load("lifting-dry"), "ladder", QUICK, raising=False)
+    done = CliRunner().invoke(app, ["tradeoff", "lifting-dry", "--budget", "5s", "--json"])
+    assert done.exit_code == 0, done.output
+    said = json.loads(done.stdout)
+    assert said["files"] == ["lifting-dry-tradeoff.nc", "lifting-dry-tradeoff.csv", "lifting-dry-tradeoff.png"]
+    assert all((tmp_path / name).stat().st_size > 100 for name in said["files"])
+    again = CliRunner().invoke(app, ["tradeoff", "lifting-dry", "--budget", "2s"])
+    assert again.exit_code == 2
+    assert "--force" in again.output
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        (["lifting-dry", "--budget", "5 km"], "--budget 60s"),
+        (["lifting-dry", "--budget", "0.1s"], "--budget"),
+        (["lifting-dry", "--seed", "-1"], "--seed"),
+        (["lifting-dri"], "lifting-dry"),
+        (["lifting-dry", "--set", "molecules=none"], "molecules"),
+        (["lifting-dry", "--out", "no/such/folder.nc"], "does not exist"),
+    ],
+)
+def test_the_command_refuses_with_a_sentence(tmp_path, monkeypatch, words, wanted):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["tradeoff", *words])
+    assert done.exit_code == 2, done.output
+    assert wanted in done.output
+    assert not list(tmp_path.iterdir())
