@@ -61,6 +61,10 @@ LAYERS = {
 }
 
 
+DOORS = ("_jit", "window")
+"""The files that may speak to the compiler: its one door, and what is written in single instructions."""
+
+
 class Imports(ast.NodeVisitor):
     """Every import of a file, as (line, absolute name, whether it waits for a function call)."""
 
@@ -137,7 +141,7 @@ def refusal(importer, name, late):
         return None
     else:
         thing, allowed = target[0], layer.libraries.split()
-        if home == "engine" and thing in ("numba", "llvmlite") and importer[-1] != "_jit":
+        if home == "engine" and thing in ("numba", "llvmlite") and importer[-1] not in DOORS:
             return "engine/_jit.py is the one door to numba"
     if thing in layer.lazily.split():
         return None if late else "only inside a function"

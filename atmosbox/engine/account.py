@@ -108,14 +108,15 @@ class Account(ABC):
         return kinetic, rotational, potential
 
     def ledger(self) -> float:
-        """Return by how much the energy ledger fails to close, relative to the energy that there is.
+        """Return by how much the energy ledger fails to close, relative to the energy that there is or has passed.
 
         Kinetic + rotational + potential = what there was at the start + heat from the walls + work of the
         piston + what an approximate scheme has made by itself.
         """
         total = sum(self.energy())
         given = float(self._tallies.heat.sum()) + self.work + self.numerical_heat
-        scale = max(abs(total), abs(self._start_energy))
+        passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work)
+        scale = max(abs(total), abs(self._start_energy), passed)
         return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
 
     @property

@@ -206,7 +206,9 @@ class DsmcParcel(MarchingParcel):
         fastest = self._fastest()
         self._grid.fastest[:] = _FASTEST * fastest
         path = min(self._path(math.prod(sides)), *sides)
-        self._time_step = self._share * (path / (math.sqrt(8.0 / math.pi) * fastest) if fastest > 0.0 else self._spread)
+        step = self._share * (path / (math.sqrt(8.0 / math.pi) * fastest) if fastest > 0.0 else self._spread)
+        # however rarely molecules meet, a step is shorter than their hops on the floor
+        self._time_step = min(step, 0.5 * fastest / self._gravity) if self._gravity > 0.0 and fastest > 0.0 else step
 
     def _lay_out(self, sides: Sequence[float]) -> None:
         """Choose cells that are as good as cubes."""
@@ -217,9 +219,12 @@ class DsmcParcel(MarchingParcel):
             edge = math.cbrt(volume * self._occupancy / n) if self._cell is None else self._cell * self._path(volume)
             numbers = [max(1.0, float(np.rint(side / edge))) for side in sides]
         if math.prod(numbers) > max(n, 1000) * 10.0:
+            asked = (
+                f"occupancy = {self._occupancy:g}" if self._cell is None else f"cell = {self._cell:g} mean free paths"
+            )
             raise RefusedError(
-                f"cell = {self._cell} mean free paths would leave {n / math.prod(numbers):.2g} molecules to a cell: "
-                "make the cells larger, or give more molecules"
+                f"{asked} leaves {n / math.prod(numbers):.2g} molecules to a cell in so thin or so long a box: "
+                "make the cells larger, give more molecules, or a box of more equal sides"
             )
         self._grid = new_grid((int(numbers[0]), int(numbers[1]), int(numbers[2])), self._workers)
         self._desk = new_desk(n, self._workers)
@@ -244,7 +249,7 @@ class DsmcParcel(MarchingParcel):
                 self._step = first + max(many, 0)
                 self._now = self._step * self._time_step
                 raise StalledError(
-                    f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, a thousandth of the box: "
+                    f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g} and leaves no box: "
                     "stop it earlier, or let it move more slowly"
                 )
             first += many

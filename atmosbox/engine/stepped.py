@@ -27,9 +27,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import prange
 
-from atmosbox.engine._jit import kernel
+from atmosbox.engine._jit import kernel, prange
 from atmosbox.engine.bounce import MIRROR, bounce
 from atmosbox.engine.contact import resolve_contact, share_energy
 from atmosbox.engine.flight import PARABOLA, SEMI_IMPLICIT, drift

@@ -3,10 +3,10 @@
 import math
 from typing import Any, ClassVar, Unpack
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
+from atmosbox.engine._jit import use_threads
 from atmosbox.engine.bounce import CLAMP, FLIP, FOLD, MIRROR, REWIND
 from atmosbox.engine.flight import EULER, PARABOLA, SEMI_IMPLICIT
 from atmosbox.engine.gridding import choose_cells
@@ -120,13 +120,6 @@ class SteppedParcel(MarchingParcel):
         The exact motion between walls that mirror, flip or rewind makes none, and no collision ever does.
         """
         return float(self._made[0])
-
-    def ledger(self) -> float:
-        """Return by how much the energy ledger fails to close: see `Parcel.ledger`; `numerical_heat` is part of it."""
-        total = sum(self.energy())
-        given = float(self._tallies.heat.sum()) + self.work + self.numerical_heat
-        scale = max(abs(total), abs(self._start_energy))
-        return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
 
     def memory(self) -> int:
         """Return the bytes that molecules and all that finds their collisions take."""
@@ -249,26 +242,21 @@ class SteppedParcel(MarchingParcel):
 
     def _advance(self, first: int, steps: int, phase: int) -> None:
         """Call the kernel, again and again with more room for pairs if it runs out of it."""
-        before = numba.get_num_threads() if self._threads > 1 else 0
-        if before:
-            numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
-        try:
-            while True:
-                done = self._kernel(
-                    self._state, self._records, self._records.radius, self._kinds, self._grid, self._box, self._walls,
-                    self._tallies, self._pairs, self._numbers, self._seen, self._made, self._total_mass,
-                    self._time_step, self._motion, self._rule, self._approaching, first, steps, phase,
-                )  # fmt: skip
-                if done == steps:
-                    return
-                first += done
-                steps -= done
-                phase = max(phase, _GO_ON)
-                room = int(1.5 * self._numbers[:, 0].max()) + 256
-                self._pairs = np.zeros((self._threads, room, 2), np.uint32)
-        finally:
-            if before:
-                numba.set_num_threads(before)
+        if self._threads > 1:
+            use_threads(self._threads)
+        while True:
+            done = self._kernel(
+                self._state, self._records, self._records.radius, self._kinds, self._grid, self._box, self._walls,
+                self._tallies, self._pairs, self._numbers, self._seen, self._made, self._total_mass,
+                self._time_step, self._motion, self._rule, self._approaching, first, steps, phase,
+            )  # fmt: skip
+            if done == steps:
+                return
+            first += done
+            steps -= done
+            phase = max(phase, _GO_ON)
+            room = int(1.5 * self._numbers[:, 0].max()) + 256
+            self._pairs = np.zeros((self._threads, room, 2), np.uint32)
 
     def _reorder(self) -> None:
         """Move neighbours next to each other in memory: the order of the records becomes that of the molecules."""
