@@ -218,7 +218,7 @@ def choose(text: str | EngineChoice) -> EngineChoice:
     >>> choose("exakt")
     Traceback (most recent call last):
         ...
-    atmosbox.errors.SettingError: engine = exakt is not one of exact...: give --engine exact.
+    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc, classic: give --engine exact.
     """
     if isinstance(text, EngineChoice):
         return text

@@ -24,6 +24,7 @@ Read it in this order:
 `start`      how they move at the start
 `account`    what a box has counted, and whether its energy adds up
 `parcel`     the box: what it is given, holds and tells
+`stall`      when time can go no further
 `parcelset`  the box, advanced exactly
 `marching`   the box, advanced step by step
 `classic_tally`      what the three classic schemes share

@@ -15,11 +15,11 @@ from atmosbox.engine.calendar import new_calendar
 from atmosbox.engine.cells import ROW, choose_grid, size_classes
 from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, specialise
 from atmosbox.engine.inputs import number
-from atmosbox.engine.packing import packing_fraction
 from atmosbox.engine.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.engine.stall import crushing_height, why_crushed, why_stalled
 from atmosbox.engine.state import EVENT, KIND, MOLECULE, SLOT_OFFSET, Box, Cells, Kinds, Modes, aligned_records
-from atmosbox.engine.walls import HEAT_BATH, PISTON, WALL_NAMES
+from atmosbox.engine.walls import HEAT_BATH, PISTON
 
 __all__ = ["ParcelSet"]
 
@@ -141,7 +141,7 @@ class ParcelSet(Parcel):
         if self.piston_velocity < 0.0:
             crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
             if crushed <= self._now:
-                raise StalledError(self._why_crushed())
+                raise StalledError(why_crushed(self))
         stop = min(local, crushed)
         with np.errstate(over="ignore"):
             while True:
@@ -154,10 +154,10 @@ class ParcelSet(Parcel):
                     self._grow_rows()
                 elif status == STALLED:
                     self._now = min(float(self._calendar.time[1]), stop)
-                    raise StalledError(self._why_stalled())
+                    raise StalledError(why_stalled(self))
                 elif self.piston_velocity < 0.0 and self._is_jammed():
                     self._now = min(float(self._calendar.time[1]), stop)
-                    raise StalledError(self._why_crushed())
+                    raise StalledError(why_crushed(self))
                 elif status == BUSY:
                     if watch is not None:
                         watch(float(self._walls.epoch[0]) + float(self._calendar.time[1]))
@@ -165,7 +165,7 @@ class ParcelSet(Parcel):
                     break
         self._now = stop
         if crushed < local:
-            raise StalledError(self._why_crushed())
+            raise StalledError(why_crushed(self))
 
     def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
         """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
@@ -207,7 +207,7 @@ class ParcelSet(Parcel):
         n = self.number
         moving = self._walls.law[5] == PISTON
         self._filled = self.ceiling
-        self._lowest_ceiling = self._crushing_height()
+        self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
         self._cells_top = 1.75 * self._filled if moving else self._filled
         kT = self._mean_kT()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
@@ -269,15 +269,6 @@ class ParcelSet(Parcel):
                 return
             stride *= 2
 
-    def _crushing_height(self) -> float:
-        """Return how low the ceiling may come: molecules filling 0.6 of the box, or a thousandth of the start."""
-        sigma = self._diameter
-        lowest = 1e-3 * float(self._sides[2])
-        if sigma.size:
-            filled = packing_fraction([float(self._sides[0]), float(self._sides[1]), 1.0], sigma, planar=self._planar)
-            lowest = max(lowest, filled / 0.6, 1.02 * float(sigma.max()))
-        return lowest
-
     def _classify(self, spin: Array) -> tuple[Kinds, NDArray[np.int64]]:
         """Gather equal molecules into kinds."""
         table, kind = np.unique(
@@ -329,28 +320,3 @@ class ParcelSet(Parcel):
         baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
         usual = self._start_energy + 2.0 * float(self._mass.sum()) * self.piston_velocity**2
         return kinetic > 1e6 * (usual + 2.0 * self.number * max(baths, default=0.0))
-
-    def _why_crushed(self) -> str:
-        return (
-            f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, where it would crush the "
-            "molecules: stop it earlier, or let it move more slowly"
-        )
-
-    def _why_stalled(self) -> str:
-        """Return a sentence on why events pile up, naming what to change."""
-        baths = [w for w in range(6) if self._walls.law[w] == HEAT_BATH]
-        kT = self.wall_kT()
-        coldest = min(baths, key=lambda w: kT[w], default=None)
-        mean = 2.0 * self.energy()[0] / (3.0 * self.number)
-        if self._walls.law[5] == PISTON and self.piston_velocity < 0.0:
-            return self._why_crushed()
-        if coldest is not None and (kT[coldest] <= 1e-6 * mean or kT[coldest] < 1e-100 or self.gravity > 0.0):
-            cause = (
-                f"wall {WALL_NAMES[coldest]} at kT = {kT[coldest]:.3g} is too cold: "
-                f"warm it{', or reduce the gravity of ' + format(self.gravity, '.3g') if self.gravity else ''}"
-            )
-        elif self.gravity > 0.0:
-            cause = f"molecules come to rest: reduce the gravity of {self.gravity:.3g}, or give them more energy"
-        else:
-            cause = "molecules are jammed: lower the packing fraction"
-        return f"events pile up without end at t = {self.time:.6g}: {cause}"

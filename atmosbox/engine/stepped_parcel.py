@@ -13,9 +13,9 @@ from atmosbox.engine.gridding import choose_cells
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.neighbourhood import new_records
-from atmosbox.engine.packing import packing_fraction
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.engine.stall import crushing_height, why_crushed
 from atmosbox.engine.state import KIND, Box, Kinds, Modes, aligned_records
 from atmosbox.engine.stepped import State, specialise
 from atmosbox.engine.stepped_start import judge_overlap, judge_step
@@ -186,7 +186,7 @@ class SteppedParcel(MarchingParcel):
         self._seen = np.zeros(1, np.int64)
         self._made = np.zeros(1)
         self._total_mass = float(self._mass.sum())
-        self._lowest_ceiling = self._crushing_height()
+        self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
         self._kernel = specialise(self._modes, self._threads > 1)
         if n:
             self._advance(0, 1, _LOOK)
@@ -235,10 +235,7 @@ class SteppedParcel(MarchingParcel):
         if allowed < steps:
             self._step += allowed
             self._now = self._step * self._time_step
-            raise StalledError(
-                f"the piston has come down to {self.ceiling:.6g} at t = {self.time:.6g}, where it would crush the "
-                "molecules: stop it earlier, or let it move more slowly"
-            )
+            raise StalledError(why_crushed(self))
 
     def _advance(self, first: int, steps: int, phase: int) -> None:
         """Call the kernel, again and again with more room for pairs if it runs out of it."""
@@ -267,15 +264,6 @@ class SteppedParcel(MarchingParcel):
             name=self._state.name[order],
             size=self._state.size[order],
         )
-
-    def _crushing_height(self) -> float:
-        """Return how low the ceiling may come: molecules filling 0.6 of the box, or a thousandth of the start."""
-        lowest = 1e-3 * float(self._sides[2])
-        if self._number:
-            room = [float(self._sides[0]), float(self._sides[1]), 1.0]
-            filled = packing_fraction(room, self._diameter, planar=self._planar)
-            lowest = max(lowest, filled / 0.6, 1.02 * float(self._diameter.max()))
-        return lowest
 
 
 def _choice(value: Any, choices: dict[str, int], name: str) -> int:

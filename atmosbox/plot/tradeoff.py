@@ -15,7 +15,6 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
-from atmosbox.plot.caption import footer
 from atmosbox.plot.theme import DARK, DATA_COLOURS, FAINT, Theme, find, style
 
 if TYPE_CHECKING:
@@ -56,7 +55,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     look = find(theme)
     chosen = foremost(dataset)
     with style(look):
-        drawing = Figure(figsize=look.wide if len(chosen) > 1 else look.narrow, layout="constrained")
+        width, height = look.wide if len(chosen) > 1 else look.narrow
+        drawing = Figure(figsize=(width, height * (1.0 if look.heading else 1.45)), layout="constrained")
         FigureCanvasAgg(drawing)
         columns = min(2, len(chosen))
         axes = drawing.subplots(math.ceil(len(chosen) / columns), columns, sharex=True, squeeze=False).ravel()
@@ -70,14 +70,13 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         drawing.legend(
             handles=_legend(dataset, look),
             loc="outside lower center",
-            ncols=3 if look.heading else 2,
-            fontsize=look.small,
-            handlelength=1.6,
+            ncols=3,
+            fontsize=look.small if look.heading else 0.85 * look.small,
+            handlelength=1.4,
+            columnspacing=1.2,
+            labelspacing=0.3,
         )
-        if look.heading:
-            drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold")
-        else:
-            drawing.supxlabel(footer(dataset), fontsize=0.8 * look.small, color=FAINT)
+        drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold")
     return drawing
 
 
@@ -128,7 +127,8 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
     axes.set_title(_sentence(str(one.label.values)), loc="left", fontsize=look.text)
     axes.set_ylabel(f"error ({unit})")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(numticks=8))
+        low, high = axis.get_view_interval()
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 60.0 * low else (1.0,), numticks=12))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(visible=True)

@@ -240,7 +240,7 @@ def test_a_molecule_takes_few_bytes():
         ({"occupancy": 0.5}, r"occupancy = 0\.5 is impossible: give a finite number from 1 up"),
         ({"occupancy": math.nan}, "occupancy = nan is impossible"),
         ({"cell": 0.0}, r"cell = 0\.0 is impossible"),
-        ({"cell": 0.001}, r"would leave .* molecules to a cell"),
+        ({"cell": 0.001}, r"leaves .* molecules to a cell"),
         ({"threads": 0}, "threads = 0 is impossible"),
         ({"threads": 1.5}, r"threads = 1\.5 is not a whole number"),
         ({"gravity": 1.0}, "periodic along z cannot have gravity"),

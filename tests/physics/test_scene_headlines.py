@@ -57,7 +57,7 @@ def test_the_error_that_a_rising_parcel_states_is_the_scatter_from_run_to_run():
 @pytest.mark.parametrize("settings", [{}, {"rotation": False}, {"top_pressure": "100 hPa"}])
 def test_a_fast_parcel_is_as_much_too_warm_as_the_viscosity_of_its_gas_demands(settings):
     length = 200
-    misfits, _, found = ascents(range(8), molecules=1000, ascent=length, **settings)
+    misfits, _, found = ascents(range(16), molecules=1000, ascent=length, **settings)
     scene = scenarios.load("lifting-dry")
     prepared = runner.prepare("lifting-dry", {"ascent": length, **settings}).settings
     pressure = float(found.parcel_pressure[-1])
