@@ -25,6 +25,8 @@ __all__ = ["MOST_PANELS", "figure", "foremost"]
 MOST_PANELS = 4
 SEEN = 2.0
 """A bias of fewer standard errors than this is not told from zero: its place is an upper limit."""
+CLEAR = 6.0
+"""From so many standard errors on, a law may be drawn through a bias."""
 
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
 _SYMBOLS = {"delta": "δ", "dt": "dt", "molecules": "N", "ascent": "n", "duration": "t"}
@@ -121,7 +123,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
             color=colour, ms=look.marker, elinewidth=0.6 * look.line, capsize=0.6 * look.marker, zorder=3,
         )  # fmt: skip
         if row < len(rows):
-            _law(axes, dataset, rows[row], name, here, seconds, np.where(seen, bias, np.nan), look)
+            _law(axes, dataset, rows[row], name, here, seconds, np.where(seen, bias, np.nan), se, look)
             _name_ends(axes, dataset, rows[row], here, seconds, np.where(seen, bias, SEEN * se), look, colour)
     _statistics(axes, dataset, seconds, noise, look)
     axes.set_title(_sentence(str(one.label.values)), loc="left", fontsize=look.text)
@@ -154,15 +156,17 @@ def _law(
     here: NDArray[np.bool_],
     seconds: NDArray[np.float64],
     bias: NDArray[np.float64],
+    se: NDArray[np.float64],
     look: Theme,
 ) -> None:
-    """Draw a known law through the coarsest run whose bias was seen."""
+    """Draw a known law through the finest run whose bias was clearly seen: laws hold where errors are small."""
     order = row["order"].get(name)
     known = here & np.isfinite(bias)
     if order is None or known.sum() < 1 or here.sum() < 2:
         return
     value = dataset.value.values
-    first = np.flatnonzero(known)[np.argmax(bias[known])]
+    clear = known & (bias > CLEAR * se)
+    first = np.flatnonzero(clear)[np.argmin(bias[clear])] if clear.any() else np.flatnonzero(known)[0]
     along = np.argsort(seconds[here])
     y = bias[first] * (value[here] / value[first]) ** order
     axes.plot(seconds[here][along], y[along], color=DARK, lw=0.6 * look.line, zorder=1.5)

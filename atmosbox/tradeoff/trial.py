@@ -100,7 +100,7 @@ def _trial(outcome: Outcome, settings: Any) -> Trial:
         # a curve that falls to nothing is compared with its mean: far out there is nothing to be wrong about
         mean = float(np.mean(np.abs(theory)))
         size = 1.0 if absolute else mean
-        label = f"profile of {dataset[name].attrs['long_name']}"
+        label = f"profile of {name.replace('_', ' ')}"
         quantities[name] = Quantity(name, label, "K" if absolute else "1", mean)
         error[name] = (dataset[name].values - theory) / size
         noise[name] = dataset[f"{name}_se"].values / size
