@@ -168,7 +168,7 @@ def _dataset(
     for k, done in enumerate(trials):
         for q, name in enumerate(names):
             members = [one for one in done if name in one.error]
-            if members:
+            if members and len(members) == len(done):  # what some runs do not reach has no fair mean
                 bias[k, q], bias_se[k, q], noise[k, q] = _summary(
                     np.array([one.error[name] for one in members]), np.array([one.noise[name] for one in members])
                 )

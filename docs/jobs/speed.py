@@ -61,3 +61,19 @@ def speed(found: Findings) -> None:
 def ratio(each: dict[str, float]) -> str:
     """Return a ratio with its standard error."""
     return f"{each['ratio']:.3f} ± {each['error']:.3f}"
+
+
+@job("pace-in-steps", quick=True)
+def pace_in_steps(found: Findings) -> None:
+    """Make the table of how fast the engines that go in steps are."""
+    rows = [
+        ["`stepped`", f"φ = {r['packing_fraction']:g}, δ = {r['delta']:g}", f"{r['molecules']:,}", r["threads"],
+         f"{r['molecule_steps_per_second'] / 1e6:.0f}", f"{r['bytes_per_molecule']:.0f}"]
+        for r in results("stepped")
+    ] + [
+        ["`dsmc`", "10 in a cell, 0.09 collisions a step", f"{r['molecules']:,}", r["threads"],
+         f"{r['moves_per_second'] / 1e6:.0f}", f"{r['bytes_per_molecule']:.0f}"]
+        for r in results("dsmc")
+    ]  # fmt: skip
+    head = ["engine", "gas in gravity between heat baths", "molecules", "threads", "million molecules moved per second"]
+    found.table([*head, "bytes per molecule"], rows)
