@@ -48,8 +48,8 @@ def trade(found: Findings) -> None:
                 row.append(f"{rounded(bias)} ± {rounded(se, 1)} ({rounded(noise, 1)})" if math.isfinite(bias) else "–")
             rows.append(row)
         found.table(head, rows, key=scene)
-        drift = float(np.nanmax(np.abs(data.energy_drift.values)))
-        found.number(f"{scene}-drift", rounded(drift))
+        if scene == "atmosphere":
+            found.number("drift", rounded(float(np.nanmax(np.abs(data.energy_drift.values)))))
         found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
 
 
