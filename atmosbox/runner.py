@@ -219,7 +219,7 @@ def build(prepared: Prepared) -> Setup:
             raise
         if prepared.engine.name != EXACT.name:
             raise SettingError(
-                "engine", str(prepared.engine), f"cannot do {prepared.scene}: {error}", f"or give --engine {EXACT}"
+                "engine", str(prepared.engine), f"cannot do {prepared.scene} ({error})", f"give --engine {EXACT}"
             ) from error
         raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
     if prepared.save_molecules:

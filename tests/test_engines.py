@@ -1,0 +1,101 @@
+"""The register of engines: what may be asked for, and what is refused."""
+
+import inspect
+
+import pytest
+from typer.testing import CliRunner
+
+from atmosbox import runner
+from atmosbox.cli.command import app
+from atmosbox.engine import Parcel
+from atmosbox.engines import ENGINES, EXACT, choose, used
+from atmosbox.errors import SettingError, UnknownSettingError
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_an_engine_is_what_it_says_and_knows_its_options(name):
+    engine = ENGINES[name]
+    parcel = engine.parcel()
+    assert issubclass(parcel, Parcel)
+    assert parcel.engine == name
+    known = inspect.signature(parcel.__init__).parameters
+    for option in engine.parameters:
+        assert option.name in known
+        if option.name not in ("scheme", "cell"):  # what suits the box, and what stands in place of another
+            assert known[option.name].default == option.default
+
+
+@pytest.mark.parametrize(
+    "text", ["exact", "stepped:delta=0.02,motion=euler", "dsmc:dt=0.5,threads=2", "classic:closing_only=off"]
+)
+def test_a_choice_is_spelled_as_it_is_read(text):
+    assert str(choose(text)) == text
+    assert choose(choose(text)) == choose(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "fix"),
+    [
+        ("exakt", "give --engine exact"),
+        ("", "give --engine exact"),
+        ("stepped:", "give --engine stepped"),
+        ("exact:delta=1", "which has no options"),
+        ("stepped:delt=1", "give --engine stepped:delta=0.05"),
+        ("stepped:delta", "give --engine stepped:delta=0.05"),
+        ("stepped:delta=soon", "give --engine stepped:delta="),
+        ("stepped:delta=-1", "give --engine stepped:delta="),
+        ("stepped:delta=0.1,delta=0.2", "give --engine stepped:delta=0.05"),
+        ("stepped:motion=eule", "give --engine stepped:motion=euler"),
+        ("dsmc:threads=0", "give --engine dsmc:threads=1"),
+    ],
+)
+def test_what_is_no_engine_or_option_is_refused_with_what_to_type(text, fix):
+    with pytest.raises(SettingError) as refusal:
+        choose(text)
+    assert fix in str(refusal.value)
+
+
+def test_an_unknown_option_is_an_unknown_setting():
+    with pytest.raises(UnknownSettingError, match="epsilon"):
+        choose("stepped:epsilon=3")
+
+
+def test_a_file_knows_its_engine():
+    made = runner.run("elastic-collisions", duration="1 s", engine="classic:delta=0.2")
+    assert str(used(made)) == "classic:delta=0.2"
+    assert used(made).ideal is False
+    assert choose("dsmc").ideal is True
+
+
+def test_a_scene_without_engines_runs_on_the_exact_one_alone(tmp_path):
+    scene = tmp_path / "plain.py"
+    scene.write_text(
+        '"""A scene."""\n'
+        "from atmosbox.settings import SceneSettings\n"
+        "class Settings(SceneSettings):\n    pass\n"
+        "def build(settings): ...\n"
+        "def theory(dataset, settings): ...\n"
+        "def headlines(dataset, settings): ...\n"
+        "panels = ()\n",
+        encoding="utf-8",
+    )
+    assert runner.prepare(scene, {}).engine is EXACT
+    with pytest.raises(SettingError, match="takes no engine"):
+        runner.prepare(scene, {}, engine="stepped")
+
+
+def test_an_engine_that_cannot_do_a_scene_says_why(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["run", "lifting-dry", "--engine", "classic"])
+    assert done.exit_code == 2
+    assert "piston" in done.output
+    assert "give --engine exact" in done.output
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["run", "elastic-collisions", "--set", "duration=1s", "--engine", "classic:delta=0.2", "--out", "a.nc"]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    again = CliRunner().invoke(app, ["run", "--from", "a.nc", "--out", "b.nc", "--dry-run"])
+    assert "classic:delta=0.2" in again.output
