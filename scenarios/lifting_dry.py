@@ -56,7 +56,7 @@ _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parc
 ladder = (
     Series("exact", "ascent", (50, 100, 200, 400, 800, 1600), order=_SLOW),
     Series("exact", "molecules", (250, 1000, 4000), {"ascent": 400}),
-    Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2, 0.1), {"ascent": 400}),
+    Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2, 0.1), {"ascent": 400}, {"temperature_at_700_hpa": 1.0}),
     Series("dsmc", "ascent", (100, 200, 400, 800, 1600), order=_SLOW),
     Series("dsmc", "molecules", (4000, 16000, 64000), {"ascent": 400}),
     Series("dsmc", "dt", (2, 1, 0.5), {"ascent": 400}),

@@ -16,6 +16,10 @@ wrong the rest: it says nothing about accuracy.
 The virial takes r as it is, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls aside, between
 collisions the sum of r . p changes by twice the kinetic energy alone, and at each by what the virial counts.
 
+Rotation shares the energy of a contact as in the exact engine, but for one thing. Fast pairs are seen too seldom; so an
+outcome is taken with the chance that its reverse would be seen, which keeps detailed balance, and rotation and
+translation at one temperature, for any step.
+
 Notes
 -----
 The rare things, hits on walls and collisions, are done one after the other in the order of the molecules in
@@ -71,9 +75,17 @@ class Step(NamedTuple):
     rule: int
 
 
+_MOST_TRIES = 1000
+"""How often an outcome is drawn anew at most; only grazing pairs come near it."""
+
+
 @kernel
-def _meet(p, q, state, kinds, box, tallies, seen, approaching, modes):
-    """Let two molecules collide that overlap and approach; count those that overlap and part."""
+def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, modes):
+    """Let two molecules collide that overlap and approach; count those that overlap and part.
+
+    A pair is seen if a step ends on the first half of its way through the overlap: with the chance of that half over
+    its way in a step, if that is longer. With that chance for its reverse, an outcome with another speed is taken.
+    """
     x = state.position
     v = state.velocity
     rx = x[0, p] - x[0, q]
@@ -102,10 +114,17 @@ def _meet(p, q, state, kinds, box, tallies, seen, approaching, modes):
     dx, dy, dz = resolve_contact(rx, ry, rz, ux, uy, uz, kind.mass, other.mass)
     if modes.rotation and (box.exchange >= 1.0 or uniform(tallies.random) < box.exchange):
         spin = kinds.rotational_energy
-        relative = 0.5 * kind.mass * other.mass / (kind.mass + other.mass) * (ux * ux + uy * uy + uz * uz)
-        shared, spin[i], spin[j] = share_energy(
-            relative + spin[i] + spin[j], 2.0 if box.planar else 3.0, kind.rotation, other.rotation, tallies.random
-        )
+        square = ux * ux + uy * uy + uz * uz
+        relative = 0.5 * kind.mass * other.mass / (kind.mass + other.mass) * square
+        energy = relative + spin[i] + spin[j]
+        half = math.sqrt(max(contact * contact - rx * rx - ry * ry - rz * rz + closing * closing / square, 0.0))
+        shared = relative
+        for _ in range(_MOST_TRIES):
+            shared, spin[i], spin[j] = share_energy(
+                energy, 2.0 if box.planar else 3.0, kind.rotation, other.rotation, tallies.random
+            )
+            if uniform(tallies.random) * step_length * math.sqrt(shared / relative * square) < half:
+                break
         # the elastic contact turns the relative velocity u into u + d (1 + m_i / m_j); now its length is scaled
         share = 1.0 + kind.mass / other.mass
         scale = math.sqrt(shared / relative)
@@ -205,7 +224,7 @@ def specialise(modes: Modes, parallel: bool) -> Any:
                         for k in range(numbers[part, 0]):
                             p = np.int64(pairs[part, k, 0])
                             q = np.int64(pairs[part, k, 1])
-                            _meet(p, q, state, kinds, box, tallies, seen, approaching, modes)
+                            _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, modes)
             if phase == 1:
                 phase = 0
         return steps
