@@ -224,8 +224,7 @@ def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
     for row in sorted({int(k) for k in dataset.series.values[made]}):
         vary = rows[row]["vary"] if row < len(rows) else "settings"
         own = rows[row]["settings"] if row < len(rows) else {}
-        fixed = "".join(f", {name} {value:g}" if isinstance(value, int | float) else f", {name} {value}"
-                        for name, value in own.items())  # fmt: skip
+        fixed = "".join(f", {name} {_plain(value)}" for name, value in own.items())
         entries.append(
             Line2D([], [], ls="", marker=_MARKERS[row % len(_MARKERS)], color=_colour(dataset, row),
                    label=f"{_engine(dataset, row)}: {vary} varies{fixed}")
@@ -240,6 +239,13 @@ def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
         Line2D([], [], color=DARK, ls=(0, (2, 2)), lw=0.6 * look.line, label="law of chance, 1/√time"),
     ]
     return entries
+
+
+def _plain(value: object) -> str:
+    """Return a setting as a legend says it."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 
 def _sentence(text: str) -> str:
