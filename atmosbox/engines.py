@@ -42,6 +42,8 @@ class Engine:
         Its options.
     ideal
         Whether its molecules take no room from each other: the pressure is n kT, without Z.
+    reference
+        What its method is described in, if anywhere but here.
     """
 
     name: str
@@ -49,6 +51,7 @@ class Engine:
     parcel: Callable[[], type[Parcel]]
     parameters: tuple[Parameter, ...] = ()
     ideal: bool = False
+    reference: str = ""
 
 
 def _exact() -> type[Parcel]:
@@ -97,7 +100,12 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
     {
         engine.name: engine
         for engine in (
-            Engine("exact", "every contact and every wall hit at its exact time, in order", _exact),
+            Engine(
+                "exact",
+                "every contact and every wall hit at its exact time, in order",
+                _exact,
+                reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+            ),
             Engine(
                 "stepped",
                 "equal steps: all molecules move, then those that overlap and approach collide",
@@ -125,6 +133,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                     _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
                 ),
                 ideal=True,
+                reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
             ),
             Engine(
                 "classic",

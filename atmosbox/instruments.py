@@ -108,6 +108,7 @@ class Air:
             "heat_from_wall": parcel.wall_heat,
             "work_by_piston": parcel.work,
             "ledger_residual": parcel.ledger(),
+            "numerical_heat": parcel.numerical_heat,
             "collision_count": parcel.contacts,
             "wall_hit_count": int(parcel.wall_hits.sum()),
             "wall_temperature": parcel.wall_kT(),
@@ -128,13 +129,15 @@ class Air:
             "potential_energy": scale.total_energy,
             "heat_from_wall": scale.total_energy,
             "work_by_piston": scale.total_energy,
+            "numerical_heat": scale.total_energy,
             "wall_temperature": scale.temperature,
         }
-        return Readings(
-            {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
-            if self._rows
-            else {}
-        )
+        if not self._rows:
+            return Readings()
+        columns = {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
+        if not columns["numerical_heat"].any():  # most schemes make none
+            del columns["numerical_heat"]
+        return Readings(columns)
 
 
 class Layers:

@@ -51,7 +51,7 @@ __all__ = [
 ]
 
 LEDGER_LIMIT = 1e-10
-"""By how much, relative to the energy there is, the ledger of a sound run may fail to close."""
+"""By how much, relative to the energy there is or has passed, the ledger of a sound run may fail to close."""
 
 _BREATH = 0.1
 _MEMORY = 8e9
@@ -344,7 +344,7 @@ def execute(
         title=getattr(prepared.module, "title", prepared.scene),
         command=command or f"atmosbox run {prepared.scene}",
         comment=" ".join((prepared.module.__doc__ or "").split()),
-        references="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+        references=prepared.engine.engine.reference,
         panels=to_json(panels(prepared.settings) if callable(panels) else panels),
         status="partial",
     )
@@ -540,12 +540,14 @@ def verify(dataset: xr.Dataset) -> list[Check]:
 def _balance(dataset: xr.Dataset) -> Check:
     """Sum the ledger anew from its entries."""
     total = sum(dataset[name].values for name in ("kinetic_energy", "rotational_energy", "potential_energy"))
-    given = dataset["heat_from_wall"].values.sum(axis=1) + dataset["work_by_piston"].values
-    start = total - given
-    scale = np.maximum(np.abs(total), np.abs(start))
+    heat, work = dataset["heat_from_wall"].values, dataset["work_by_piston"].values
+    made = dataset["numerical_heat"].values if "numerical_heat" in dataset else 0.0
+    start = total - (heat.sum(axis=1) + work + made)
+    scale = np.maximum.reduce([np.abs(total), np.abs(start), np.abs(heat).sum(axis=1) + np.abs(work)])
     worst = float(np.max(np.abs(start - start[0]) / np.where(scale > 0.0, scale, 1.0))) if len(start) else math.nan
     return Check(
         "balance",
         worst <= LEDGER_LIMIT,
-        f"energy less heat and work is the same in all frames to {worst:.1e}",
+        f"energy less heat{', what the scheme made' if np.any(made) else ''} and work is the same in all frames to "
+        f"{worst:.1e}",
     )

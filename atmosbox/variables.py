@@ -48,7 +48,8 @@ VARIABLES: dict[str, Variable] = {
         ("kinetic_energy", "J", "kinetic energy of the molecules"),
         ("rotational_energy", "J", "rotational energy of the molecules"),
         ("potential_energy", "J", "potential energy of the molecules in gravity"),
-        ("ledger_residual", "1", "energy missing from the ledger, as a share of the energy"),
+        ("numerical_heat", "J", "energy that the scheme of an approximate engine has made by itself"),
+        ("ledger_residual", "1", "energy missing from the ledger, as a share of what there is or has passed"),
         cell_methods=_POINT, ledger=True,
     ),
     **_declared(

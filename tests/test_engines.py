@@ -1,6 +1,7 @@
 """The register of engines: what may be asked for, and what is refused."""
 
 import inspect
+import warnings
 
 import pytest
 from typer.testing import CliRunner
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 from atmosbox import runner
 from atmosbox.cli.command import app
 from atmosbox.engine import Parcel
+from atmosbox.engine.refusal import CoarseStepWarning
 from atmosbox.engines import ENGINES, EXACT, choose, used
 from atmosbox.errors import SettingError, UnknownSettingError
 
@@ -99,3 +101,30 @@ def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
     assert CliRunner().invoke(app, words).exit_code == 0
     again = CliRunner().invoke(app, ["run", "--from", "a.nc", "--out", "b.nc", "--dry-run"])
     assert "classic:delta=0.2" in again.output
+
+
+@pytest.mark.parametrize(
+    ("scene", "engine", "settings"),
+    [
+        ("atmosphere", "exact", {"plane": True}),
+        ("atmosphere", "stepped:delta=0.8", {}),
+        ("atmosphere", "stepped:delta=0.8,motion=euler", {}),
+        ("atmosphere", "dsmc", {}),
+        ("atmosphere", "classic:delta=8", {"plane": True, "knudsen": 0.05}),
+        ("lifting-dry", "stepped:delta=0.8", {"ascent": 50}),
+        ("lifting-dry", "dsmc", {"ascent": 50}),
+        ("temperature", "classic:delta=0.8", {"duration": 1}),
+    ],
+)
+def test_the_books_of_every_engine_can_be_checked_in_its_file(scene, engine, settings):
+    """Energy less heat, work and what the scheme has made is the same in all frames, whatever lets time pass."""
+    few = {"molecules": 300} | ({"duration": 5} if scene == "atmosphere" else {})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CoarseStepWarning)
+        made = runner.run(scene, engine=engine, **(few | settings))
+    checks = {check.name: check for check in runner.verify(made)}
+    for name in ("complete", "finite", "ledger", "balance"):
+        assert checks[name].passed, checks[name].sentence
+    euler = "euler" in engine or (engine.startswith("classic") and scene == "atmosphere")
+    assert ("numerical_heat" in made) == euler
+    assert ("10.1063/1.869674" in made.attrs.get("references", "")) == (engine == "dsmc")

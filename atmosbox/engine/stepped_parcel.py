@@ -206,7 +206,9 @@ class SteppedParcel(MarchingParcel):
         elif not sized.size:
             raise RefusedError("molecules without size have no delta: give the length of a step as dt")
         else:
-            self._time_step = self._delta * (self._smallest / self._speed if self._speed > 0.0 else self._spread)
+            step = self._delta * (self._smallest / self._speed if self._speed > 0.0 else self._spread)
+            # however large the molecules, a step is shorter than their hops on the floor
+            self._time_step = min(step, 0.5 * self._speed / self._gravity) if self._gravity > 0.0 else step
         if not self._number:
             return
         speed = np.maximum(np.abs(velocity).max(axis=0), float(thermal.max()))

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from atmosbox.engine.lattice import lattice_positions
-from atmosbox.engine.parcel import Parcel
 from atmosbox.engine.walls import HeatBath, Specular
 from atmosbox.extremes.extreme import ANY, extreme
 from atmosbox.extremes.law import by_chance, euler_heat, heat_made, step_of
@@ -13,8 +12,6 @@ from atmosbox.extremes.trial import Trial
 from atmosbox.extremes.verdict import Verdict, degraded, judged, wrong
 
 _S = Specular()
-_MOST_BOUNCES = {"stepped": 200, "dsmc": 1000}
-"""How many hits of walls an engine follows for a molecule in one step."""
 
 
 @extreme("nothing-moves", "g = 0, T = 0")
@@ -52,28 +49,7 @@ def _weighed(trial: Trial, gravity: float) -> Verdict:
             if abs(carried - 1.0) <= rounding
             else wrong(f"the floor carries {carried:.6g} of the weight")
         )
-    most = _MOST_BOUNCES.get(trial.engine)
-    if most and abs(carried - 1.0) > rounding:
-        return degraded(
-            f"share of the weight that bounces beyond the {most}th in a step would carry; they are not followed",
-            1.0 - carried,
-            0.0,
-            2.0 * _short_bounces(gas, most),
-        )
     return judged("impulse of the floor over weight times time", carried, 1.0, rounding)
-
-
-def _short_bounces(gas: Parcel, most: int) -> float:
-    r"""Return an upper bound of the share of molecules that bounce more often than so many times in a step.
-
-    They leave the floor with less than :math:`w = g \Delta t / 2 n`. The energy of vertical motion above a floor,
-    :math:`m v^2/2 + m g z`, is distributed as :math:`\sqrt{E} \exp(-E / kT)`, of which the share below
-    :math:`m w^2/2 = a kT` is less than :math:`a^{3/2} / \Gamma(5/2)`.
-    """
-    slow = gas.gravity * step_of(gas) / (2.0 * most)
-    lying = gas.gravity * float(np.sum(0.5 * gas.mass * gas.diameter))
-    kT = (sum(gas.energy()) - lying) / (2.5 * gas.number)
-    return float((0.5 * slow**2 / kT) ** 1.5 / math.gamma(2.5))
 
 
 @extreme("strong-gravity", "mgσ/kT = 10³")

@@ -114,7 +114,7 @@ def console(words: str, folder: Path | None = None, status: int = 0) -> str:
 @job("help")
 def help_texts(found: Findings) -> None:
     """Keep what `--help` says of each command."""
-    for command in ("list", "info", "run", "plot", "check"):
+    for command in ("list", "info", "run", "plot", "check", "tradeoff"):
         found.text("\n".join(["```text", typed(command, "--help"), "```"]), key=command)
 
 
