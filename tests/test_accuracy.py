@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import atmosbox
 from atmosbox import accuracy, engines, output, provenance, runner, scenarios
-from atmosbox.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
+from atmosbox.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choice, choose, expect, parse
 from atmosbox.cli import app
 from atmosbox.cli.expectation import expectation_lines
 from atmosbox.cli.report import headline_lines
@@ -60,7 +60,7 @@ TABLES = {
 @pytest.fixture
 def hand_made(monkeypatch):
     """Let the hand-made table be the one that comes with atmosbox."""
-    monkeypatch.setattr(accuracy, "load", lambda: TABLES)
+    monkeypatch.setattr(choice, "load", lambda: TABLES)
 
 
 def command(*words):
@@ -378,7 +378,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     errors["mean_pressure"] = ExpectedError("1", 0.01, 0.002, 0.05, 1e5)
     known = Measured("classic:delta=8", settings, 0.1, 8, errors)
     tables = {"temperature": Table(("duration", "molecules"), LABELS, (known,))}
-    monkeypatch.setattr(accuracy, "load", lambda: tables)
+    monkeypatch.setattr(choice, "load", lambda: tables)
     outcome = runner.execute(runner.prepare("temperature", settings, engine="classic:delta=8"))
     found = {one.name: one for one in outcome.headlines}
     assert (found["mean_temperature"].bias, found["mean_temperature"].bias_se) == (-3.0, 0.5)

@@ -107,7 +107,11 @@ def lifting():
 
 def column():
     coords = times(4, 0.5) | bins("height", 20, 500.0)
-    names = [*ALWAYS, *(name for name in VARIABLES if name.startswith(("number_density", "air_density", "layer")))]
+    names = [
+        *ALWAYS,
+        "numerical_heat",
+        *(name for name in VARIABLES if name.startswith(("number_density", "air_density", "layer"))),
+    ]
     frames = filled(names, coords)
     frames["layer_temperature"][-1] = np.nan
     return dataset(frames, coords, attributes(), time_unit="s")
