@@ -126,7 +126,7 @@ def dataset(
         Arrays by the name of their variable, in SI, with the dimensions that `variable` declares.
     coords
         Arrays by the name of their coordinate: ``elapsed_time`` in `time_unit`, the others in SI, and the
-        bounds of their cells as ``elapsed_time_bnds``, ``height_bnds``, ``speed_bnds`` with the shape (n, 2).
+        bounds of their cells as ``elapsed_time_bnds``, ``height_bnds``, ``speed_bnds``, ``energy_bnds``, shape (n, 2).
         The labels of six walls and three axes need not be given.
     attrs
         The global attributes.

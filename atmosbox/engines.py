@@ -44,6 +44,8 @@ class Engine:
         Whether its molecules take no room from each other: the pressure is n kT, without Z.
     reference
         What its method is described in, if anywhere but here.
+    moist
+        What returns the class of its parcels with liquid water in them, if it has one.
     """
 
     name: str
@@ -52,12 +54,19 @@ class Engine:
     parameters: tuple[Parameter, ...] = ()
     ideal: bool = False
     reference: str = ""
+    moist: Callable[[], type[Parcel]] | None = None
 
 
 def _exact() -> type[Parcel]:
     from atmosbox.engine.parcelset import ParcelSet
 
     return ParcelSet
+
+
+def _moist_exact() -> type[Parcel]:
+    from atmosbox.engine.moist_parcelset import MoistParcelSet
+
+    return MoistParcelSet
 
 
 def _stepped() -> type[Parcel]:
@@ -105,6 +114,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 "every contact and every wall hit at its exact time, in order",
                 _exact,
                 reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+                moist=_moist_exact,
             ),
             Engine(
                 "stepped",
@@ -193,8 +203,15 @@ class EngineChoice:
         ------
         RefusedError
             If the engine cannot do what the box asks for.
+        SettingError
+            If there is a ``liquid`` in the box, and the engine knows none.
         """
         parcel: Callable[..., Parcel] = self.engine.parcel()
+        if "liquid" in box:
+            if self.engine.moist is None:
+                able = " or ".join(f"--engine {engine.name}" for engine in ENGINES.values() if engine.moist is not None)
+                raise SettingError("engine", str(self), "knows no liquid water", f"give {able}")
+            parcel = self.engine.moist()
         return parcel(position, velocity, **self.options, **box)
 
 

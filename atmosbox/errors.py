@@ -11,6 +11,7 @@ Python programmer would catch, and knows the status with which the command line 
     |   `-- PackingError                 2   the molecules do not fit into their box
     |-- UnknownSceneError (LookupError)  2   there is no scene of that name
     |-- ConfigError (ValueError)         2   a settings file says something it cannot say
+    |-- SoundingError (ValueError)       2   a sounding cannot be understood, or not be true
     |-- FileError (OSError)              2   a file is unreadable, foreign, in the way or unwritable
     |   `-- DiskFullError                1   the disk filled up while a run was saved
     |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer lawful
@@ -30,6 +31,7 @@ __all__ = [
     "PackingError",
     "PhysicsError",
     "SettingError",
+    "SoundingError",
     "UnitError",
     "UnknownSceneError",
     "UnknownSettingError",
@@ -158,6 +160,12 @@ class UnknownSceneError(AtmosboxError, LookupError):
 
 class ConfigError(AtmosboxError, ValueError):
     """A settings file is not TOML, or holds something else than one scene and its settings."""
+
+    exit_code = 2
+
+
+class SoundingError(AtmosboxError, ValueError):
+    """A sounding is in no known format, lacks what it must hold, or says what no atmosphere can be."""
 
     exit_code = 2
 

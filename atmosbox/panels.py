@@ -101,6 +101,9 @@ class Panel:
         The scales of the axes.
     x_invert, y_invert : bool
         Whether an axis decreases to the right or upward, as pressure does.
+    averages : int
+        Into how many equal parts of the x axis measured curves of a ``line`` panel are averaged, so that noise does
+        not crowd the far end of a logarithmic axis; 0 draws every value.
     note : str
         A sentence under the title.
     headlines : tuple of str
@@ -129,6 +132,7 @@ class Panel:
     y_scale: str = "linear"
     x_invert: bool = False
     y_invert: bool = False
+    averages: int = 0
     note: str = ""
     headlines: tuple[str, ...] = ()
 
@@ -143,6 +147,8 @@ class Panel:
         for name in ("x_invert", "y_invert"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"{name} of the panel {self.title!r} is neither true nor false.")
+        if type(self.averages) is not int or self.averages < 0 or (self.averages and self.kind != "line"):
+            raise ValueError(f"averages of the panel {self.title!r} is {self.averages!r}: only a line panel has parts.")
         for name, kind in (("lines", Line), ("headlines", str)):
             values = getattr(self, name)
             if not isinstance(values, tuple) or not all(isinstance(value, kind) for value in values):

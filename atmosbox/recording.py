@@ -69,7 +69,7 @@ class Recording:
         settle = min(setup.settle, max(self.frames - 2, 0))
         for instrument in self.instruments:
             readings.update(instrument.readings(setup.scale, settle))
-        names = ("height", "height_bnds", "speed", "speed_bnds")
+        names = ("height", "height_bnds", "speed", "speed_bnds", "energy", "energy_bnds")
         coords = {name: readings.pop(name) for name in names if name in readings}
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)

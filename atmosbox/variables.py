@@ -33,6 +33,8 @@ VARIABLES: dict[str, Variable] = {
     **_declared(("height",), ("height", "m", "height of the middle of the layer", "height"),
                 axis="Z", positive="up", ledger=True),
     **_declared(("speed",), ("speed", "m s-1", "speed of a molecule, middle of the bin"), ledger=True),
+    **_declared(("energy",), ("energy", "J", "energy of a molecule of water above that of one at rest in the liquid, "
+                 "middle of the bin"), ledger=True),
     **_declared(("wall",), ("wall", "", "wall of the box"), dtype="U"),
     **_declared(("axis",), ("axis", "", "direction in space, z upwards"), dtype="U"),
     **_declared(_MOLECULE, ("molecule", "1", "number of the molecule"), dtype="i8"),
@@ -92,6 +94,47 @@ VARIABLES: dict[str, Variable] = {
         ("piston_height", "m", "distance of the piston from the floor of the box"),
         ("piston_velocity", "m s-1", "velocity of the piston, positive outwards"),
         cell_methods=_POINT, ledger=True,
+    ),
+    # Water
+    **_declared(
+        _TIME,
+        ("water_vapor_partial_pressure", "Pa", "vapour pressure", "water_vapor_partial_pressure_in_air"),
+        ("saturation_vapor_pressure", "Pa", "saturation vapour pressure at the temperature of the air, over water"),
+        ("relative_humidity", "1", "relative humidity", "relative_humidity"),
+        ("humidity_mixing_ratio", "kg kg-1", "mass of vapour per mass of dry air", "humidity_mixing_ratio"),
+        ("cloud_liquid_water_mixing_ratio", "kg kg-1", "mass of liquid water per mass of dry air",
+         "cloud_liquid_water_mixing_ratio"),
+        ("rain_mixing_ratio", "kg kg-1", "mass of water that has rained out so far per mass of dry air"),
+        ("liquid_temperature", "K", "temperature of the liquid water"),
+        ("condensation_rate", "s-1", "number of molecules that condense per time"),
+        ("evaporation_rate", "s-1", "number of molecules that evaporate per time"),
+        cell_methods=_MEAN,
+    ),
+    **_declared(
+        _TIME,
+        ("vapor_molecule_count", "1", "number of molecules of vapour"),
+        ("liquid_molecule_count", "1", "number of molecules in the liquid"),
+        ("rained_molecule_count", "1", "number of molecules that have left as rain"),
+        cell_methods=_POINT, dtype="i8",
+    ),
+    **_declared(
+        _TIME,
+        ("condensed_energy", "J", "energy of liquid and rain, and of what the vapour is above the liquid"),
+        cell_methods=_POINT, ledger=True,
+    ),
+    **_declared(
+        _TIME,
+        ("gas_temperature", "K", "temperature of air and vapour by all their energy, rotation included",
+         "air_temperature"),
+        ("liquid_saturation_vapor_pressure", "Pa", "saturation vapour pressure at the temperature of the liquid"),
+        cell_methods=_MEAN,
+    ),
+    # Molecules that leave the liquid and those that stay, by energy
+    **_declared(
+        ("energy",),
+        ("leaving_energy_probability_density", "J-1", "share of the molecules that evaporate per unit of energy"),
+        ("staying_energy_probability_density", "J-1", "share of the molecules in the liquid per unit of energy"),
+        cell_methods="energy: mean",
     ),
     # A column of air, layer by layer
     **_declared(

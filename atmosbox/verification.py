@@ -126,7 +126,8 @@ def verify(dataset: xr.Dataset) -> list[Check]:
 
 def _balance(dataset: xr.Dataset) -> Check:
     """Sum the ledger anew from its entries."""
-    total = sum(dataset[name].values for name in ("kinetic_energy", "rotational_energy", "potential_energy"))
+    stores = ("kinetic_energy", "rotational_energy", "potential_energy", "condensed_energy")
+    total = sum(dataset[name].values for name in stores if name in dataset)
     heat, work = dataset["heat_from_wall"].values, dataset["work_by_piston"].values
     made = dataset["numerical_heat"].values if "numerical_heat" in dataset else 0.0
     start = total - (heat.sum(axis=1) + work + made)

@@ -27,6 +27,7 @@ from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Environment, Lift
 from atmosbox.panels import Line, Panel
+from atmosbox.rising import CLOSING, size_of_parcel
 from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
@@ -36,22 +37,6 @@ if TYPE_CHECKING:
 
 title = "Lifting dry air"
 FRAMES = 40
-FLATNESS = 0.4
-DISSIPATION = 2.0
-"""Four thirds of the viscosity and the bulk viscosity, over n k T and the mean free time.
-
-Measured: 1.99 +- 0.06, by 184 ascents of 50 to 1600 mean free times to 300 hPa, which end too warm by 151 +- 4 K
-over their length. The viscosity of a thin gas, of Chapman and Enskog, makes 5/3 of it; rotation, which follows with
-delay, adds a bulk viscosity. Spheres that do not rotate showed less, 1.5 +- 0.1 by 24 ascents of 200.
-"""
-FINITE_SPEED = 0.74
-"""Warmth that an ascent from 1000 to 300 hPa leaves at its end, as a share of the temperature, times its length.
-
-The length is in mean free times at the start, and long; see `_finite_speed`, whose first order this is.
-"""
-CLOSING = 20.0
-"""Within how many mean free times the piston closes a gap of pressure."""
-
 _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parcel_temperature"), -1.0)
 ladder = (
     Series("exact", "ascent", (50, 100, 200, 400, 800, 1600), order=_SLOW),
@@ -90,75 +75,16 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
-    """Return the scale, the density, the sides that centres can reach, and (Z - 1) / n [diameters], at the start.
-
-    The box is flat: it ends nearly as high as it is wide, and a slow piston does its work with less noise. Molecules
-    of an ideal gas take no room, and Z is 1.
-    """
+    """Return the scale, the density, the sides that centres can reach, and (Z - 1) / n [diameters], at the start."""
     si = settings.si
     scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
-    wanted = si.pressure / scale.pressure
-    density = wanted
-    for _ in range(60):
-        side = (settings.molecules / density / FLATNESS) ** (1.0 / 3.0)
-        sides = side * np.array([1.0, 1.0, FLATNESS])
-        excess = float(law.gas_pressure(density, 1.0, 1.0)) - density
-        excess *= 0.0 if ideal else law.contact_share(sides, 1.0, settings.molecules)
-        density *= wanted / (density + excess)
-    return scale, density, sides, excess / density**2
+    return scale, *size_of_parcel(scale, settings.molecules, si.pressure, ideal=ideal)
 
 
-def _finite_speed(settings: Settings, pressure: float) -> float:
-    r"""Return how much too warm a parcel arrives at a pressure [Pa], as a share of its temperature.
-
-    A gas that expands at the rate :math:`e = -d \ln V/dt` gains the entropy :math:`D e^2 \tau` per molecule,
-    over k, with D as in `DISSIPATION`; at a given pressure that is a share 1/(f/2 + 1) of it in temperature. Here
-    e is :math:`L / \gamma t_{top}`, for :math:`L = \ln p_0/p_{top}`, and along an adiabat :math:`\tau` grows as
-    :math:`p^{-a}`, a = (f + 1)/(f + 2). So in an ascent of n mean free times
-
-    .. math:: \frac{\Delta T}{T} = \frac{D}{\gamma^2 (f/2 + 1)} \frac{L}{n} \frac{(p_0/p)^a - 1}{a}
-              \left[ 1 + 4.4 \frac{L}{n} (p_0/p)^a \right] .
-
-    The bracket is the next order, measured: 4.4 mean free times of the thin gas at p must be short, too. Down to
-    n = 50, and to 50 hPa with n = 400, ascents agree with this at their end; at 700 hPa they are less warm, by a
-    third, because the rate is not quite constant: it grows with height.
-    """
+def _ascent(settings: Settings) -> law.Ascent:
+    """Return the ascent, which knows what its haste costs."""
     si = settings.si
-    freedom = 5 if settings.rotation else 3
-    fall = math.log(si.pressure / si.top_pressure) / settings.ascent
-    power = (freedom + 1.0) / (freedom + 2.0)
-    longer: float = (si.pressure / pressure) ** power
-    share = DISSIPATION / (float(law.adiabatic_index(freedom)) ** 2 * (0.5 * freedom + 1.0))
-    return share * fall * (longer - 1.0) / power * (1.0 + 4.4 * fall * longer)
-
-
-def _lateness(settings: Settings, pressure: float) -> float:
-    """Return how much too warm a parcel is where the air outside has a pressure [Pa], as a share of its temperature.
-
-    The piston knows the pressure of a parcel that grows too warm, and follows; but only within `CLOSING`. So
-    the parcel is still where the air has a little more pressure, which counts 2/f times what it warms meanwhile.
-    """
-    si = settings.si
-    meanwhile = math.log(si.pressure / si.top_pressure) / settings.ascent * CLOSING
-    later = max(pressure * math.exp(-meanwhile), min(pressure, si.top_pressure))
-    gained = _finite_speed(settings, later) - _finite_speed(settings, pressure)
-    return _finite_speed(settings, pressure) + 2.0 / (5 if settings.rotation else 3) * gained
-
-
-def _room(settings: Settings, pressure: float) -> float:
-    """Return how much colder spheres arrive at a pressure [Pa] than points, as a share of the temperature.
-
-    Both are lifted without end slowly. What room they take cools them by a little, of second order in the packing.
-    """
-    si = settings.si
-    freedom = 5 if settings.rotation else 3
-    density = _start(settings)[1] * np.geomspace(min(pressure, si.top_pressure) / si.pressure, 1.0, 200)
-    filled = law.packing_fraction(density, 1.0)
-    temperature = law.hard_sphere_isentrope(filled, filled[-1], freedom)
-    falling = law.gas_pressure(density, temperature, 1.0)
-    falling *= si.pressure / falling[-1]
-    spheres = float(np.interp(pressure, falling, temperature))
-    return 1.0 - spheres / float(law.dry_adiabat_temperature(pressure, 1.0, si.pressure, freedom))
+    return law.Ascent(si.pressure, si.top_pressure, settings.ascent, 5 if settings.rotation else 3, CLOSING)
 
 
 def _environment(settings: Settings, duration: float) -> Environment:
@@ -209,7 +135,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         driver=driver,
     )
     gamma = "7/5" if settings.rotation else "5/3"
-    warmth = environment.adiabat(settings.si.top_pressure) * _finite_speed(settings, settings.si.top_pressure)
+    warmth = environment.adiabat(settings.si.top_pressure) * _ascent(settings).finite_speed(settings.si.top_pressure)
     return Setup(
         parcel,
         scale,
@@ -245,6 +171,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     error = dataset.parcel_temperature_se.values
     order = np.argsort(pressure)
     spheres = 0.0 if used(dataset).ideal else 1.0
+    ascent, density = _ascent(settings), _start(settings)[1]
     reason = "the ascent is not infinitely slow, and spheres take up room"
     found = []
     for level in (100.0 * shown for shown in _levels(settings)):
@@ -257,7 +184,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 expected + float(np.interp(level, pressure[order], misfit[order])),
                 float(np.interp(level, pressure[order], error[order])),
                 expected,
-                expected * (_finite_speed(settings, level) + spheres * _room(settings, level)),
+                expected * (ascent.finite_speed(level) + spheres * ascent.room(level, density)),
                 reason,
                 "K",
                 "degC",
@@ -275,7 +202,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 (si.temperature - first) / 1000.0,
                 float(np.interp(1000.0, height, error)) / 1000.0,
                 (si.temperature - ideal) / 1000.0,
-                ideal * (_lateness(settings, outside) + spheres * _room(settings, outside)) / 1000.0,
+                ideal * (ascent.lateness(outside) + spheres * ascent.room(outside, density)) / 1000.0,
                 reason,
                 "K m-1",
                 "K km-1",

@@ -40,10 +40,16 @@ LAYERS = {
     "output": Layer("version engine units errors panels diagnostics provenance", "numpy xarray netCDF4"),
     "checkpoint": Layer("version engine units errors panels diagnostics output", "numpy xarray netCDF4"),
     "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
-    "instruments": Layer("engine units statistics", "numpy"),
+    "instruments": Layer("engine units statistics theory", "numpy"),
+    "moisture": Layer("engine units theory", "numpy"),
+    "rising": Layer(
+        "engine engines headline instruments moisture panels scene statistics units theory", "numpy", lazily="xarray"
+    ),
+    "sounding": Layer("errors conversion units", "numpy", lazily="xarray metpy"),
     "scene": Layer("units", lazily="engine instruments"),
     "a scenario": Layer(
-        "engine engines errors units theory statistics settings headline panels instruments scene",
+        "engine engines errors units theory statistics settings headline panels instruments moisture rising scene"
+        " sounding",
         "numpy",
         lazily="xarray",
     ),

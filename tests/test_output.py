@@ -139,7 +139,15 @@ def molecules():
     return dataset(frames, coords, attributes())
 
 
-SCENES = [lifting, column, speeds, discs, molecules]
+def moist():
+    coords = times(50) | bins("energy", 60, 1e-21)
+    names = [name for name in VARIABLES if name.endswith(("humidity", "vapor_pressure", "_rate", "mixing_ratio"))]
+    names += ["water_vapor_partial_pressure", "gas_temperature", "liquid_temperature", "condensed_energy"]
+    names += [name for name in VARIABLES if name.endswith(("_molecule_count", "energy_probability_density"))]
+    return dataset(filled([*ALWAYS, *names], coords), coords, attributes())
+
+
+SCENES = [lifting, column, speeds, discs, molecules, moist]
 
 
 def child(code, *arguments, **options):

@@ -16,6 +16,7 @@ FIGURE = (
     Panel("profile", "Misfit − in K", (MISFIT,), y_unit="hPa", y_scale="log", y_invert=True, note="A note."),
     Panel("histogram", "Speeds", (Line("speed", "speed_probability_density", "measured"),), x_invert=True),
     Panel("discs", "The box", x_unit="nm"),
+    Panel("line", "Long noise", (WALL,), x_scale="log", averages=30),
 )
 
 
@@ -117,3 +118,9 @@ def test_every_field_that_is_left_out_has_its_default():
     record = {"kind": "line", "title": "A", "lines": [{"x": "a", "y": "b", "label": "c"}]}
     text = json.dumps({"format": 1, "panels": [record]})
     assert from_json(text) == (Panel("line", "A", (Line("a", "b", "c"),)),)
+
+
+@pytest.mark.parametrize(("kind", "averages"), [("line", -1), ("line", 2.5), ("line", True), ("profile", 10)])
+def test_only_a_line_panel_is_averaged_over_a_whole_number_of_parts(kind, averages):
+    with pytest.raises(ValueError, match="averages of the panel 'Noise'"):
+        Panel(kind, "Noise", (AIR,), averages=averages)

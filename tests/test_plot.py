@@ -23,6 +23,7 @@ from atmosbox import plot, scenarios
 from atmosbox.errors import DiskFullError, FileError, SettingError
 from atmosbox.panels import Line, Panel, to_json
 from atmosbox.plot import caption, tick, unit
+from atmosbox.plot.curve import curve
 
 K_B = 1.380649e-23  # J/K
 AIR = 28.9647e-3 / 6.02214076e23  # kg
@@ -1023,3 +1024,27 @@ def test_a_file_that_cannot_be_drawn_is_refused_in_a_sentence(run, words):
 def test_drawing_needs_no_window_and_no_pyplot():
     code = "import sys; import atmosbox.plot; assert 'matplotlib.pyplot' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).resolve().parents[1])
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_measured_curves_are_averaged_over_equal_parts_of_the_axis_and_theory_is_not(scale):
+    time = np.array([1.0, 2.0, 3.0, 4.0, 6.0, 7.0, 8.0, 9.0])
+    noise = np.where(time == 4.0, np.nan, time)
+    held = {"noise": variable("elapsed_time", noise, "K"), "truth": variable("elapsed_time", time, "K")}
+    dataset = xr.Dataset(held, coords={"elapsed_time": variable("elapsed_time", time, "ns")})
+    lines = (Line("elapsed_time", "noise", "noise"), Line("elapsed_time", "truth", "truth", "theory"))
+    panel = Panel("line", "Noise", lines, x_scale=scale, averages=2)
+    measured, theory = (curve(dataset, panel, line) for line in lines)
+    middle = 5.0 if scale == "linear" else 3.0 - 1e-9
+    seen = time[time != 4.0]
+    assert measured.y == pytest.approx([seen[seen < middle].mean(), seen[seen > middle].mean()])
+    assert measured.x == pytest.approx(measured.y)
+    assert theory.y.tolist() == time.tolist()
+
+
+def test_one_moment_alone_is_its_own_mean():
+    dataset = xr.Dataset(
+        {"noise": variable("elapsed_time", [5.0], "K")}, coords={"elapsed_time": variable("elapsed_time", [1.0], "ns")}
+    )
+    line = Line("elapsed_time", "noise", "noise")
+    assert curve(dataset, Panel("line", "Noise", (line,), averages=9), line).y.tolist() == [5.0]

@@ -15,7 +15,7 @@ def test_every_declared_variable_has_words_and_a_unit(name):
 
 @pytest.mark.parametrize("name", VARIABLES)
 def test_the_dimensions_of_every_variable_are_declared(name):
-    assert set(VARIABLES[name].dims) <= {"elapsed_time", "height", "speed", "wall", "molecule", "axis"}
+    assert set(VARIABLES[name].dims) <= {"elapsed_time", "height", "speed", "energy", "wall", "molecule", "axis"}
 
 
 def test_every_standard_name_is_in_the_table_of_cf():

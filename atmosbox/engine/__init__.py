@@ -26,6 +26,10 @@ Read it in this order:
 `parcel`     the box: what it is given, holds and tells
 `stall`      when time can go no further
 `parcelset`  the box, advanced exactly
+`liquid`     water that has condensed: a ledger, and its laws
+`phase`      a molecule leaves the box, or comes into it
+`moist`      from event to event, with liquid in the box
+`moist_parcelset`  the box of moist air, advanced exactly
 `marching`   the box, advanced step by step
 `classic_tally`      what the three classic schemes share
 `classic_strips`     equal discs, sorted into strips
@@ -42,6 +46,7 @@ Read it in this order:
 `stepped_parcel`  the box, advanced in such steps
 `swarm`      many molecules in columns, sorted into cells
 `streaming`  a step of free flight for all of them, with walls on the way
+`pairing`    who of a cell collide, drawn by chance
 `dsmc`       collisions with whom chance chooses nearby
 `dsmc_parcel`  the box, advanced by direct simulation Monte Carlo
 `measure`    what is read off it

@@ -33,8 +33,6 @@ class Account(ABC):
 
     _tallies: Tallies
     _walls: Walls
-    _mass: Array
-    _diameter: Array
     _gravity: float
     _planar: bool
     _rotates: bool
@@ -50,6 +48,16 @@ class Account(ABC):
     @abstractmethod
     def length(self) -> Array:
         """The three sides of the box now [length]."""
+
+    @property
+    @abstractmethod
+    def mass(self) -> Array:
+        """Mass of each molecule [mass]."""
+
+    @property
+    @abstractmethod
+    def diameter(self) -> Array:
+        """Diameter of each molecule [length]."""
 
     @abstractmethod
     def snapshot(self) -> Snapshot:
@@ -102,18 +110,18 @@ class Account(ABC):
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
         position, velocity, spin = self.snapshot()[1:]
-        kinetic = 0.5 * float(np.sum(self._mass * np.sum(velocity * velocity, axis=1)))
+        kinetic = 0.5 * float(np.sum(self.mass * np.sum(velocity * velocity, axis=1)))
         rotational = float(np.sum(spin)) if self._rotates else 0.0
-        potential = self._gravity * float(np.sum(self._mass * position[:, 2])) if self._gravity else 0.0
+        potential = self._gravity * float(np.sum(self.mass * position[:, 2])) if self._gravity else 0.0
         return kinetic, rotational, potential
 
     def ledger(self) -> float:
         """Return by how much the energy ledger fails to close, relative to the energy that there is or has passed.
 
-        Kinetic + rotational + potential = what there was at the start + heat from the walls + work of the
-        piston + what an approximate scheme has made by itself.
+        Kinetic + rotational + potential energy and that of a liquid = what there was at the start + heat from the
+        walls + work of the piston + what an approximate scheme has made by itself.
         """
-        total = sum(self.energy())
+        total = sum(self.energy()) + self.condensed_energy
         given = float(self._tallies.heat.sum()) + self.work + self.numerical_heat
         passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work)
         scale = max(abs(total), abs(self._start_energy), passed)
@@ -124,12 +132,17 @@ class Account(ABC):
         """Energy that the engine's scheme itself has made, beside heat and work [energy]; an exact one makes none."""
         return 0.0
 
+    @property
+    def condensed_energy(self) -> float:
+        """Energy of the liquid, of its vapour's binding and of the rain [energy]; dry air has none."""
+        return 0.0
+
     def escaped(self) -> int:
         """Return how many molecules are outside the box or nowhere: none, or the engine is wrong."""
         position, velocity = self.snapshot()[1:3]
         lawful = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
         for axis in (0, 2) if self._planar else (0, 1, 2):
-            reach = 0.0 if self._periodic[axis] else 0.5 * self._diameter
+            reach = 0.0 if self._periodic[axis] else 0.5 * self.diameter
             slack = 1e-9 * self.length[axis]
             lawful &= position[:, axis] >= reach - slack
             lawful &= position[:, axis] <= self.length[axis] - reach + slack
@@ -140,4 +153,5 @@ class Account(ABC):
 
         Meant for boxes without gravity, where it costs nothing however many molecules there are.
         """
-        return self._start_energy + float(self._tallies.heat.sum()) + self.work + self.numerical_heat
+        given = float(self._tallies.heat.sum()) + self.work + self.numerical_heat
+        return self._start_energy + given - self.condensed_energy

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from atmosbox.engine._jit import POSITIVE, kernel
 from atmosbox.engine.refusal import RefusedError
 
-__all__ = ["ROW", "Grid", "append", "choose_grid", "overlapped", "remove", "size_classes"]
+__all__ = ["ROW", "Grid", "append", "choose_grid", "overlapped", "remove", "size_classes", "slot_at"]
 
 _MARGIN = 1.0 + 1e-7
 ROW = 32
@@ -232,6 +232,24 @@ def overlapped(slot, size, axis, cells, modes):
     if modes.spanning:
         return np.int64(cells.first[size, axis, slot]), np.int64(cells.span[size, axis, slot])
     return slot >> 1, 1 + (slot & 1)
+
+
+@kernel
+def slot_at(u, size, axis, last, cells, modes):
+    """Return the slot along an axis in which a centre at the coordinate u [length] lies."""
+    if modes.mixed:
+        last = cells.boundary.shape[2] - 2
+        while last > 0 and cells.boundary[size, axis, last] == math.inf:
+            last -= 1
+    lower = 0
+    upper = last + 1
+    while upper - lower > 1:
+        middle = (lower + upper) >> 1
+        if u >= cells.boundary[size, axis, middle]:
+            lower = middle
+        else:
+            upper = middle
+    return lower
 
 
 @kernel

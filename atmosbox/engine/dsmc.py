@@ -26,115 +26,38 @@ References
 """
 
 import functools
-import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine._jit import kernel, prange, prefetch
-from atmosbox.engine.contact import share_energy
-from atmosbox.engine.random import uniform
-from atmosbox.engine.streaming import bounce, fall, glide, turn_round, wait_at_ends, wait_at_walls
-from atmosbox.engine.swarm import BLOCK, index_by_cell, reserve_places, share_of
+from atmosbox.engine._jit import kernel, prange
+from atmosbox.engine.pairing import collide, scramble
+from atmosbox.engine.streaming import WAITS, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
+from atmosbox.engine.swarm import BLOCK, index_by_cell, reserve_places, share_cells, share_of
+from atmosbox.engine.walls import SPECULAR
 
-__all__ = ["scramble", "specialise"]
+__all__ = ["Resolution", "specialise"]
 
-_STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
-_HALF = np.uint64(32)
-_LOW = np.uint64(0xFFFFFFFF)
-_FRACTION = 1.0 / 4294967296.0
-_HIGH, _MIDDLE, _PART, _ONE = np.uint64(43), np.uint64(22), np.uint64(21), np.uint64(1)
-_MASK, _LAST = np.uint64(0x1FFFFF), np.uint64(0x3FFFFF)
-_DECIDE = 1.0 / 4194304.0
-_TOGETHER = 64
-_MANY = 200_000
+_SHARED = 8  # steps later cells are shared anew among threads: how never matters for what happens
 
 
-@kernel
-def scramble(word):
-    """Return a random word that depends on another and on nothing else (see `random`).
+class Resolution(NamedTuple):
+    """How fine cells and steps are: both should stay below 1.
 
-    Examples
-    --------
-    >>> scramble(np.uint64(1)) == scramble(np.uint64(2))
-    False
+    ``cell`` longest side of a cell, in mean free paths; ``step`` length of a step, in mean free times: both
+    of the densest layer of cells, whichever way the gas is layered.
     """
-    z = word + _STEP
-    z = (z ^ (z >> np.uint64(30))) * _MIX_1
-    z = (z ^ (z >> np.uint64(27))) * _MIX_2
-    return z ^ (z >> np.uint64(31))
 
-
-@kernel
-def _collide_in_cell(c, first, number, sweep, word, state, swarm, fastest, gas, exchange, rotates):
-    """Let pairs of one cell collide; return how many did.
-
-    ``sweep`` is half the cross section times the step over the volume of the cell [time/length], ``word`` a random
-    word of this cell and step.
-    """
-    most = fastest[c]
-    tries = np.int64(sweep * (number * (number - 1)) * most + np.int64(word >> _HALF) * _FRACTION)
-    collisions = 0
-    seen = most
-    order = swarm.order
-    many = np.uint64(number)
-    begin = np.uint64(first)
-    for _ in range(tries):
-        word += _STEP
-        draw = scramble(word)
-        # one word makes three numbers: 21 bits choose a molecule, 21 another, 22 decide
-        i = ((draw >> _HIGH) * many) >> _PART
-        j = (((draw >> _MIDDLE) & _MASK) * (many - _ONE)) >> _PART
-        j += np.uint64(j >= i)
-        i = np.uint32(order[begin + i])
-        j = np.uint32(order[begin + j])
-        ux = swarm.vx[i] - swarm.vx[j]
-        uy = swarm.vy[i] - swarm.vy[j]
-        uz = swarm.vz[i] - swarm.vz[j]
-        square = ux * ux + uy * uy + uz * uz
-        enough = np.int64(draw & _LAST) * _DECIDE * most
-        if enough * enough >= square:
-            continue
-        speed = math.sqrt(square)
-        seen = max(seen, speed)
-        collisions += 1
-        after = speed
-        if rotates:
-            state[0] = draw
-            if exchange >= 1.0 or uniform(state) < exchange:
-                energy = 0.25 * gas.mass * speed * speed + swarm.spin[i] + swarm.spin[j]
-                shared, swarm.spin[i], swarm.spin[j] = share_energy(energy, 3.0, gas.rotation, gas.rotation, state)
-                after = math.sqrt(4.0 * shared / gas.mass)
-        # a point on the unit sphere, from one in the unit circle (Marsaglia 1972, doi:10.1214/aoms/1177692644)
-        a = b = 0.0
-        square = 2.0
-        while square >= 1.0:
-            word += _STEP
-            draw = scramble(word)
-            a = (np.int64(draw >> _HALF) + 0.5) * (2.0 * _FRACTION) - 1.0
-            b = (np.int64(draw & _LOW) + 0.5) * (2.0 * _FRACTION) - 1.0
-            square = a * a + b * b
-        around = 2.0 * after * math.sqrt(1.0 - square)
-        dx = 0.5 * (a * around - ux)
-        dy = 0.5 * (b * around - uy)
-        dz = 0.5 * ((1.0 - 2.0 * square) * after - uz)
-        swarm.vx[i] += dx
-        swarm.vy[i] += dy
-        swarm.vz[i] += dz
-        swarm.vx[j] -= dx
-        swarm.vy[j] -= dy
-        swarm.vz[j] -= dz
-    fastest[c] = seen
-    return collisions
+    cell: float
+    step: float
 
 
 @kernel
 def _move(first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, box, walls, thread, desk, rotates):
     """Move a share of the molecules, block by block, and count them by cell."""
     count[:] = 0
-    flight, queue, state = desk.flight[thread], desk.queue[thread], desk.random[thread]
+    queue, state = desk.queue[thread], desk.random[thread]
     r = gas.radius
     nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
     high_x, high_y, high_z = box.length_x - r, box.length_y - r, top - r
@@ -144,77 +67,58 @@ def _move(first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, bo
     low_x = 0.0 if box.inverse_x > 0.0 else r
     low_y = 0.0 if box.inverse_y > 0.0 else r
     low_z = 0.0 if box.inverse_z > 0.0 else r
+    smooth_x = walls.law[0] == SPECULAR and walls.law[1] == SPECULAR
+    smooth_y = walls.law[2] == SPECULAR and walls.law[3] == SPECULAR
     for b in range(first, last, BLOCK):
         e = min(b + BLOCK, last)
         x, y, z, cell = swarm.x[b:e], swarm.y[b:e], swarm.z[b:e], swarm.cell[b:e]
         vx, vy, vz = swarm.vx[b:e], swarm.vy[b:e], swarm.vz[b:e]
-        free = flight[: e - b]
-        free[:] = dt
+        mark = desk.mark[thread, : e - b]
+        mark[:] = 0
         cell[:] = 0
-        if box.inverse_x == 0.0:
-            wait_at_walls(x, vx, r, high_x, dt, free)
-        if box.inverse_y == 0.0:
-            wait_at_walls(y, vy, r, high_y, dt, free)
+        # who waits must be known before anybody moves: floor and ceiling come last of what makes wait
+        if box.inverse_x == 0.0 and not smooth_x:
+            wait_at_walls(x, vx, r, high_x, dt, mark)
+        if box.inverse_y == 0.0 and not smooth_y:
+            wait_at_walls(y, vy, r, high_y, dt, mark)
         if box.inverse_z == 0.0:
-            wait_at_ends(z, vz, r, high_z, box.gravity, dt, free)
-        if box.inverse_x == 0.0:
-            glide(x, vx, free, r, high_x, per_x, nx - 1, 1, cell)
+            fall(z, vz, dt, mark, r, high_z, box.gravity, per_z, nz - 1, nx * ny, cell)
         else:
-            turn_round(x, vx, free, box.length_x, per_x, nx - 1, 1, cell)
-        if box.inverse_y == 0.0:
-            glide(y, vy, free, r, high_y, per_y, ny - 1, nx, cell)
+            turn_round(z, vz, dt, mark, box.length_z, per_z, nz - 1, nx * ny, cell)
+        if smooth_x:
+            fold(x, vx, dt, mark, 1, r, high_x, per_x, nx - 1, 1, cell)
+        elif box.inverse_x == 0.0:
+            glide(x, vx, dt, mark, r, high_x, per_x, nx - 1, 1, cell)
         else:
-            turn_round(y, vy, free, box.length_y, per_y, ny - 1, nx, cell)
-        if box.inverse_z == 0.0:
-            fall(z, vz, free, r, max(ceiling, top) - r, box.gravity, per_z, nz - 1, nx * ny, cell)
+            turn_round(x, vx, dt, mark, box.length_x, per_x, nx - 1, 1, cell)
+        if smooth_y:
+            fold(y, vy, dt, mark, 2, r, high_y, per_y, ny - 1, nx, cell)
+        elif box.inverse_y == 0.0:
+            glide(y, vy, dt, mark, r, high_y, per_y, ny - 1, nx, cell)
         else:
-            turn_round(z, vz, free, box.length_z, per_z, nz - 1, nx * ny, cell)
-        waiting = 0
+            turn_round(y, vy, dt, mark, box.length_y, per_y, ny - 1, nx, cell)
+        marked = np.uint32(0)
         for q in range(e - b):  # a list, without a branch
-            queue[waiting] = q
-            waiting += np.int64(free[q] == 0.0)
+            queue[marked] = q
+            marked += np.uint32(mark[q] != 0)
         books = desk.books[b // BLOCK]
         books[:] = 0.0
-        for k in range(waiting):
-            p = b + np.int64(queue[k])
-            state[0] = scramble(key ^ (np.uint64(p) * _MIX_1))
-            bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
+        for k in range(marked):
+            q = np.int64(queue[k])
+            p = b + q
+            if mark[q] >= WAITS:
+                state[0] = scramble(key ^ (np.uint64(p) * _MIX_1))
+                bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
+            if mark[q] & 1:
+                mirror(p, swarm.x, swarm.vx, 0, r, high_x, gas.mass, books)
+            if mark[q] & 2:
+                mirror(p, swarm.y, swarm.vy, 2, r, high_y, gas.mass, books)
             ix = min(np.int64((swarm.x[p] - low_x) * per_x), nx - 1)
             iy = min(np.int64((swarm.y[p] - low_y) * per_y), ny - 1)
             iz = min(np.int64((swarm.z[p] - low_z) * per_z), nz - 1)
             swarm.cell[p] = (iz * ny + iy) * nx + ix
         for q in range(e - b):
-            count[np.uint32(cell[q])] += np.int32(1)
-
-
-@kernel
-def _fetch(first, last, swarm):
-    """Fetch what the next cell will need: at many molecules memory is what takes the time."""
-    for q in range(first, last):
-        i = np.int64(swarm.order[np.uint32(q)])
-        prefetch(swarm.vx, i)
-        prefetch(swarm.vy, i)
-        prefetch(swarm.vz, i)
-
-
-@kernel
-def _collide(thread, threads, cells, sweep, key, swarm, grid, gas, exchange, desk, rotates):
-    """Let a share of the cells collide: every so-many-th group of cells, so that dense regions are shared, too."""
-    collisions = 0
-    state = desk.random[thread]
-    many = swarm.x.size >= _MANY
-    for c0 in range(thread * _TOGETHER, cells, threads * _TOGETHER):
-        for c in range(c0, min(c0 + _TOGETHER, cells)):
-            first = np.int64(grid.first[c])
-            number = np.int64(grid.first[c + 1]) - first
-            if many:
-                _fetch(first + number, np.int64(grid.first[min(c + 2, cells)]), swarm)
-            if number > 1:
-                word = scramble(key + np.uint64(c) * _MIX_2)
-                collisions += _collide_in_cell(
-                    c, first, number, sweep, word, state, swarm, grid.fastest, gas, exchange, rotates
-                )
-    desk.met[thread, 0] = collisions
+            count[np.uint32(cell[q])] += np.uint32(1)
 
 
 @kernel
@@ -242,7 +146,7 @@ def specialise(rotates: bool, parallel: bool) -> Any:
     """Return the kernel that marches: with or without rotation, on one thread or on several."""
 
     @kernel(entry=True, allocates=parallel, parallel=parallel)
-    def march(first_step, steps, dt, ceilings, swarm, grid, gas, cross_section, box, walls, tallies, desk):
+    def march(first_step, steps, dt, ceilings, swarm, grid, gas, cross_section, box, walls, tallies, desk, tries):
         """Advance by so many steps; ``ceilings : (step + 1,)`` is how high the ceiling is before and after each."""
         threads = grid.place.shape[0] if parallel else 1
         number = swarm.x.size
@@ -263,13 +167,15 @@ def specialise(rotates: bool, parallel: bool) -> Any:
                     t, desk, rotates,
                 )  # fmt: skip
             reserve_places(grid, cells)
+            if parallel and k % _SHARED == 0:
+                share_cells(grid.first, cells, desk.cut)
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
                 index_by_cell(swarm.cell, swarm.order, grid.place[t], first, last)
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
             sweep = 0.5 * cross_section * dt / volume
             for t in prange(threads):
-                _collide(t, threads, cells, sweep, cell_key, swarm, grid, gas, box.exchange, desk, rotates)
+                collide(t, sweep, cell_key, swarm, grid, gas, box.exchange, desk, tries, rotates)
             _settle(desk, tallies, threads, walls.law[5] == 3)
 
     return march

@@ -2,38 +2,28 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar, NamedTuple, Unpack
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
-from atmosbox.engine.dsmc import specialise
+from atmosbox.engine.dsmc import Resolution, specialise
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
+from atmosbox.engine.pairing import new_tries
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.state import Box
-from atmosbox.engine.swarm import Gas, Swarm, new_desk, new_gather, new_grid
+from atmosbox.engine.swarm import Gas, Swarm, new_columns, new_desk, new_gather, new_grid
 
-__all__ = ["DsmcParcel", "Resolution"]
+__all__ = ["DsmcParcel"]
 
 _REGROUP, _REGROUP_MANY, _MANY = 48, 16, 200_000
 _THREADED = 10_000
 _FASTEST = 6.5
 _FORGET = 1.0 - 1.0 / 512.0
 _COLUMNS = ("x", "y", "z", "vx", "vy", "vz", "spin")
-
-
-class Resolution(NamedTuple):
-    """How fine cells and steps are: both should stay below 1.
-
-    ``cell`` longest side of a cell, in mean free paths; ``step`` length of a step, in mean free times: both
-    of the densest layer of cells, whichever way the gas is layered.
-    """
-
-    cell: float
-    step: float
 
 
 class DsmcParcel(MarchingParcel):
@@ -155,7 +145,7 @@ class DsmcParcel(MarchingParcel):
 
     def memory(self) -> int:
         """Return the bytes that molecules, cells and the sorting of the ones into the others take."""
-        arrays = (*self._swarm, self._spare, *self._grid[3:], *self._desk)
+        arrays = (*self._swarm, self._spare, *self._grid[3:], *self._desk, *self._tries)
         return sum(int(a.nbytes) for a in arrays)
 
     # ------------------------------------------------------------------ how
@@ -191,13 +181,14 @@ class DsmcParcel(MarchingParcel):
         for axis in range(3):
             if self._periodic[axis]:
                 np.mod(position[:, axis], self._sides[axis], out=position[:, axis])
-        # their columns are in one piece, and ours
-        x, y, z, vx, vy, vz = (np.ascontiguousarray(a[:, axis]) for a in (position, velocity) for axis in range(3))
+        x, y, z, vx, vy, vz, self._spare = new_columns(n, 7)
+        for axis, (place, speed) in enumerate(((x, vx), (y, vy), (z, vz))):
+            place[:] = position[:, axis]
+            speed[:] = velocity[:, axis]
         spin = rotational_energy.copy() if self._rotates else np.zeros(1)
         self._swarm = Swarm(
             x, y, z, vx, vy, vz, spin, np.arange(n, dtype=np.uint32), np.zeros(n, np.uint32), np.zeros(n, np.uint32)
         )
-        self._spare = np.zeros(n)
         self._round = _REGROUP_MANY if n >= _MANY else _REGROUP
         self._workers = self._threads if n >= _THREADED else 1
         self._lay_out(sides)
@@ -227,7 +218,8 @@ class DsmcParcel(MarchingParcel):
                 "make the cells larger, give more molecules, or a box of more equal sides"
             )
         self._grid = new_grid((int(numbers[0]), int(numbers[1]), int(numbers[2])), self._workers)
-        self._desk = new_desk(n, self._workers)
+        self._desk = new_desk(n, int(math.prod(numbers)), self._workers)
+        self._tries = new_tries(self._workers)
 
     def _march(self, steps: int) -> None:
         first, last = self._step, self._step + steps
@@ -261,7 +253,7 @@ class DsmcParcel(MarchingParcel):
             use_threads(self._workers)
         self._march_kernel(
             first, many, self._time_step, ceilings, self._swarm, self._grid, self._gas, self._cross_section,
-            self._box, self._walls, self._tallies, self._desk,
+            self._box, self._walls, self._tallies, self._desk, self._tries,
         )  # fmt: skip
 
     def _regroup(self) -> None:

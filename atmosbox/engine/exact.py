@@ -19,16 +19,20 @@ import numpy as np
 
 from atmosbox.engine._jit import kernel, prefetch
 from atmosbox.engine.calendar import next_event, schedule
-from atmosbox.engine.cells import append, overlapped
+from atmosbox.engine.cells import append, overlapped, slot_at
 from atmosbox.engine.crossing import ENTERED, FULL, LEFT, WALL, cross
 from atmosbox.engine.encounter import hit, meet, position_at
 from atmosbox.engine.plan import CEILING, CONTACT, next_move, plan, size_and_radius
 from atmosbox.engine.state import Modes
 
-__all__ = ["BUSY", "DONE", "ROW_FULL", "STALLED", "specialise"]
+__all__ = ["BUSY", "CROWDED", "DONE", "MET", "ROW_FULL", "STALLED", "proceed", "specialise"]
 
-DONE, BUSY, ROW_FULL, STALLED = 0, 1, 2, 3
+DONE, BUSY, ROW_FULL, STALLED, MET, CROWDED = range(6)
+"""Status: up to the time asked for; not yet; a row must grow; a pile-up; the next event is a molecule that falls into
+a pool; one that evaporates finds no place."""
+
 _MANY = 4_000
+FLOOR = 4
 
 
 @kernel
@@ -66,6 +70,83 @@ def _warm_up(calendar, cells, molecules, events, modes):
             prefetch(cells.row, cell * cells.stride)
 
 
+@kernel
+def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most, modes):
+    """Resolve events up to time ``until``, at most ``most`` of them; return a status and how many.
+
+    The status ``MET`` says that the next event is a molecule that falls into a pool: it is left to the caller.
+    """
+    done = 0
+    status = BUSY
+    progress = tallies.progress
+    many = molecules.size >= _MANY
+    contacts = entered = left = stale = wall_hits = 0
+    while done < most:
+        i, t = next_event(calendar)
+        if not t <= until:
+            status = DONE
+            break
+        if done & 1023 == 1023:
+            if t - progress[0] > box.stall:
+                progress[0] = t
+                progress[1] = 0.0
+            progress[1] += 1024.0
+            if progress[1] > 100_000 + 64 * molecules.size:
+                status = STALLED
+                break
+        if many:
+            _warm_up(calendar, cells, molecules, events, modes)
+        event = events[i]
+        what = np.int64(event.what)
+        x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
+        if what < CONTACT:
+            crossed = cross(
+                i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes
+            )
+            if crossed == FULL:
+                status = ROW_FULL
+                break
+            if crossed != WALL:
+                entered += 1 if crossed == ENTERED else 0
+                left += 1 if crossed == LEFT else 0
+                done += 1
+                continue
+            if modes.pool and what == FLOOR:
+                status = MET
+                break
+        j = -1
+        px, py, pz, wx, wy, wz = x, y, z, vx, vy, vz
+        if what == CONTACT:
+            j = np.int64(event.partner)
+            if molecules[j].count == event.partner_count:
+                vx, vy, vz, px, py, pz, wx, wy, wz = meet(
+                    i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes
+                )
+                contacts += 1
+            else:
+                stale += 1
+                j = -1
+        else:
+            wall = 5 if what == CEILING else what
+            x, y, z, vx, vy, vz = hit(i, wall, t, x, y, z, vx, vy, vz, molecules, kinds, box, walls, tallies, modes)
+            wall_hits += 1
+        done += 1
+        m = i
+        while True:
+            plan(m, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
+            if j < 0:
+                break
+            m = j
+            j = -1
+            x, y, z, vx, vy, vz = px, py, pz, wx, wy, wz
+    tallies.count[0] += contacts
+    tallies.count[1] += entered
+    tallies.count[2] += left
+    tallies.count[3] += stale
+    tallies.count[4] += wall_hits
+    return status, done
+
+
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling`` and ``overlap``.
@@ -79,6 +160,8 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         cells.row[:] = 0
         row = cells.row
         for i in range(molecules.size):
+            if modes.phases and math.isinf(molecules[i].clock):
+                continue
             x, y, z, vx, vy, vz = position_at(molecules[i], now, box, modes)
             size, _ = size_and_radius(i, molecules, kinds, modes)
             for axis in range(3):
@@ -88,10 +171,6 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                     u, length, last = y, box.length_y, cells.last_slot_y
                 else:
                     u, length, last = z, box.length_z, cells.last_slot_z
-                if modes.mixed:
-                    last = cells.boundary.shape[2] - 2
-                    while last > 0 and cells.boundary[size, axis, last] == math.inf:
-                        last -= 1
                 inverse = box.inverse_x if axis == 0 else (box.inverse_y if axis == 1 else box.inverse_z)
                 if inverse != 0.0:
                     lowest = cells.boundary[size, axis, 0]
@@ -104,15 +183,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                             molecules[i].y -= turns * length
                         else:
                             molecules[i].z -= turns * length
-                lower = 0
-                upper = last + 1
-                while upper - lower > 1:
-                    middle = (lower + upper) >> 1
-                    if u >= cells.boundary[size, axis, middle]:
-                        lower = middle
-                    else:
-                        upper = middle
-                cells.slot[i, axis] = lower
+                cells.slot[i, axis] = slot_at(u, size, axis, last, cells, modes)
             first_x, span_x = overlapped(np.int64(cells.slot[i, 0]), size, 0, cells, modes)
             first_y, span_y = overlapped(np.int64(cells.slot[i, 1]), size, 1, cells, modes)
             first_z, span_z = overlapped(np.int64(cells.slot[i, 2]), size, 2, cells, modes)
@@ -125,6 +196,8 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                             return ROW_FULL
                         append(row, start, i)
         for i in range(molecules.size):
+            if modes.phases and math.isinf(molecules[i].clock):
+                continue
             x, y, z, vx, vy, vz = position_at(molecules[i], now, box, modes)
             plan(i, now, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
         return DONE
@@ -136,6 +209,8 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         Below ``lowest``, the lowest place of the ceiling before it is asked again, a molecule leaves its slot first.
         """
         for i in range(molecules.size):
+            if modes.phases and math.isinf(molecules[i].clock):
+                continue
             event = events[i]
             slot_z = np.int64(event.slot_z)
             size, radius = size_and_radius(i, molecules, kinds, modes)
@@ -157,72 +232,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel(entry=True)
     def advance(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most):
         """Resolve events up to time ``until``, at most ``most`` of them; return a status and how many."""
-        done = 0
-        status = BUSY
-        progress = tallies.progress
-        many = molecules.size >= _MANY
-        contacts = entered = left = stale = wall_hits = 0
-        while done < most:
-            i, t = next_event(calendar)
-            if not t <= until:
-                status = DONE
-                break
-            if done & 1023 == 1023:
-                if t - progress[0] > box.stall:
-                    progress[0] = t
-                    progress[1] = 0.0
-                progress[1] += 1024.0
-                if progress[1] > 100_000 + 64 * molecules.size:
-                    status = STALLED
-                    break
-            if many:
-                _warm_up(calendar, cells, molecules, events, modes)
-            event = events[i]
-            what = np.int64(event.what)
-            x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
-            if what < CONTACT:
-                crossed = cross(
-                    i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes
-                )
-                if crossed == FULL:
-                    status = ROW_FULL
-                    break
-                if crossed != WALL:
-                    entered += 1 if crossed == ENTERED else 0
-                    left += 1 if crossed == LEFT else 0
-                    done += 1
-                    continue
-            j = -1
-            px, py, pz, wx, wy, wz = x, y, z, vx, vy, vz
-            if what == CONTACT:
-                j = np.int64(event.partner)
-                if molecules[j].count == event.partner_count:
-                    vx, vy, vz, px, py, pz, wx, wy, wz = meet(
-                        i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes
-                    )
-                    contacts += 1
-                else:
-                    stale += 1
-                    j = -1
-            else:
-                wall = 5 if what == CEILING else what
-                x, y, z, vx, vy, vz = hit(i, wall, t, x, y, z, vx, vy, vz, molecules, kinds, box, walls, tallies, modes)
-                wall_hits += 1
-            done += 1
-            m = i
-            while True:
-                plan(m, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
-                if j < 0:
-                    break
-                m = j
-                j = -1
-                x, y, z, vx, vy, vz = px, py, pz, wx, wy, wz
-        tallies.count[0] += contacts
-        tallies.count[1] += entered
-        tallies.count[2] += left
-        tallies.count[3] += stale
-        tallies.count[4] += wall_hits
-        return status, done
+        return proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most, modes)
 
     @kernel(entry=True)
     def overlap(molecules, kinds, cells, box):

@@ -141,6 +141,7 @@ class Parcel(Account):
         self._freedom = (2.0 if planar else 3.0) + (float(self._rotation.mean()) if n else 0.0)
         self._rotates = bool((self._rotation > 0.0).any())
         self._alike = bool(n) and all(np.ptp(a) == 0.0 for a in (self._mass, self._diameter, self._rotation))
+        self._same_size = bool(n) and np.ptp(self._diameter) == 0.0
         self._spread = natural_time(v, self._sides, n, self._walls, self._mass, self._gravity)
         self._tallies = Tallies(
             count=np.zeros(5, np.int64),
@@ -157,7 +158,7 @@ class Parcel(Account):
         self._asked: float | None = None
         self._turn = 0
         self._begin(x, v, spin)
-        self._start_energy = sum(self.energy())
+        self._start_energy = sum(self.energy()) + self.condensed_energy
         self._drive()
 
     def __repr__(self) -> str:
@@ -241,8 +242,8 @@ class Parcel(Account):
         if not self.number:
             return 0.0
         sides = self.length
-        alike = self._alike
-        diameter = float(self._diameter[0]) if alike else self._diameter
+        alike = self._same_size
+        diameter = float(self._diameter[0]) if alike else self.diameter
         share = 1.0 if alike else np.ones(self.number)
         for axis in (0, 2) if self._planar else (0, 1, 2):
             share = share * (sides[axis] - (0.0 if self._periodic[axis] else diameter))

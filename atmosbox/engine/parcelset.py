@@ -13,18 +13,20 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.calendar import new_calendar
 from atmosbox.engine.cells import ROW, choose_grid, size_classes
-from atmosbox.engine.exact import BUSY, ROW_FULL, STALLED, specialise
+from atmosbox.engine.exact import BUSY, CROWDED, ROW_FULL, STALLED, specialise
 from atmosbox.engine.inputs import number
 from atmosbox.engine.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.stall import crushing_height, why_crushed, why_stalled
 from atmosbox.engine.state import EVENT, KIND, MOLECULE, SLOT_OFFSET, Box, Cells, Kinds, Modes, aligned_records
-from atmosbox.engine.walls import HEAT_BATH, PISTON
+from atmosbox.engine.walls import HEAT_BATH, PISTON, POOL
 
 __all__ = ["ParcelSet"]
 
 _CHUNK = 200_000
 _OVERLAP = 1e-9
+_ENDS = (STALLED, CROWDED)
+_WHY_CROWDED = "a molecule that evaporates finds no place among the others: lower the packing fraction"
 
 
 class ParcelSet(Parcel):
@@ -44,15 +46,12 @@ class ParcelSet(Parcel):
 
     engine: ClassVar[str] = "exact"
 
+    _present: slice | NDArray[np.bool_] = slice(None)
+    """Which molecules are in the box: all of them."""
+
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
-        self._kinds, kind = self._classify(rotational_energy)
-        self._molecules = aligned_records(n, MOLECULE)
-        for axis, name in enumerate("xyz"):
-            self._molecules[name] = position[:, axis]
-            self._molecules["v" + name] = velocity[:, axis]
-        self._molecules["kind"] = kind
-        self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads a field of it ten times faster
+        self._fill(position, velocity, rotational_energy)
         self._box = self._new_box()
         self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
         self._cells: Cells
@@ -64,6 +63,16 @@ class ParcelSet(Parcel):
                 "move them apart or make them smaller"
             )
 
+    def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        """Write down the molecules."""
+        self._kinds, kind = self._classify(rotational_energy)
+        self._molecules = aligned_records(len(position), MOLECULE)
+        for axis, name in enumerate("xyz"):
+            self._molecules[name] = position[:, axis]
+            self._molecules["v" + name] = velocity[:, axis]
+        self._molecules["kind"] = kind
+        self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads a field of it ten times faster
+
     def memory(self) -> int:
         """Return the bytes that molecules, events, cells and calendar take."""
         arrays = (self._molecules, self._events, self._cells.row, self._calendar.time, self._calendar.winner)
@@ -71,23 +80,18 @@ class ParcelSet(Parcel):
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are now; nothing in the box changes by being looked at."""
-        m = self._fields
+        m = self._fields[self._present]
         dt = self._now - m["clock"]
         position = np.stack([m["x"] + dt * m["vx"], m["y"] + dt * m["vy"], m["z"] + dt * m["vz"]], axis=1)
-        velocity = self._velocity()
+        velocity = np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
         if self.gravity > 0.0:
             position[:, 2] -= 0.5 * self.gravity * dt * dt
             velocity[:, 2] -= self.gravity * dt
         for axis in range(3):
             if self._periodic[axis]:
                 position[:, axis] = np.mod(position[:, axis], self._sides[axis])
-        spin = np.array(self._kinds.rotational_energy) if self._rotates else np.zeros(self.number)
+        spin = np.array(self._kinds.rotational_energy[self._present]) if self._rotates else np.zeros(len(m))
         return Snapshot(self.time, position, velocity, spin)
-
-    def _velocity(self) -> Array:
-        """Return the velocity of each molecule at the time of its clock [length/time]."""
-        m = self._fields
-        return np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
 
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
         """Let time pass until ``until`` [time since the start]: see `Parcel.advance`."""
@@ -145,27 +149,32 @@ class ParcelSet(Parcel):
         stop = min(local, crushed)
         with np.errstate(over="ignore"):
             while True:
-                status, _ = self._advance(
-                    self._molecules, self._events, self._kinds, self._cells, self._calendar,
-                    self._box, self._walls, self._tallies, stop, _CHUNK,
-                )  # fmt: skip
-                self._now = max(self._now, min(stop, float(self._calendar.time[1])))
+                status = self._proceed(stop)
+                self._now = max(self._now, min(stop, self._next_time()))
                 if status == ROW_FULL:
                     self._grow_rows()
-                elif status == STALLED:
-                    self._now = min(float(self._calendar.time[1]), stop)
-                    raise StalledError(why_stalled(self))
+                elif status in _ENDS:
+                    self._now = min(self._next_time(), stop)
+                    raise StalledError(why_stalled(self) if status == STALLED else _WHY_CROWDED)
                 elif self.piston_velocity < 0.0 and self._is_jammed():
-                    self._now = min(float(self._calendar.time[1]), stop)
+                    self._now = min(self._next_time(), stop)
                     raise StalledError(why_crushed(self))
                 elif status == BUSY:
                     if watch is not None:
-                        watch(float(self._walls.epoch[0]) + float(self._calendar.time[1]))
+                        watch(float(self._walls.epoch[0]) + self._next_time())
                 else:
                     break
         self._now = stop
         if crushed < local:
             raise StalledError(why_crushed(self))
+
+    def _proceed(self, until: float) -> int:
+        """Resolve a number of events up to a local time; return a status."""
+        status, _ = self._advance(
+            self._molecules, self._events, self._kinds, self._cells, self._calendar,
+            self._box, self._walls, self._tallies, until, _CHUNK,
+        )  # fmt: skip
+        return int(status)
 
     def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
         """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
@@ -174,13 +183,17 @@ class ParcelSet(Parcel):
         """
         if self._now < self._epoch_length:
             self._resolve(self._epoch_length, watch)
-        ahead = float(self._calendar.time[1])
+        ahead = self._next_time()
         if self._driver is not None:
             ahead = min(ahead, (self._turn + 1) * self._driver.interval - float(self._walls.epoch[0]))
         if math.isinf(ahead):
             return False
         self._rebase(max(1.0, math.floor(ahead / self._epoch_length)) * self._epoch_length)
         return True
+
+    def _next_time(self) -> float:
+        """Return the local time of the next event."""
+        return float(self._calendar.time[1])
 
     def _rebase(self, step: float) -> None:
         """Let all clocks read small numbers again, so that time keeps its digits for ever."""
@@ -204,7 +217,7 @@ class ParcelSet(Parcel):
 
     def _lay_out(self) -> None:
         """Choose cells for the box as it is now and plan every molecule's event anew."""
-        n = self.number
+        n = len(self._fields)
         moving = self._walls.law[5] == PISTON
         self._filled = self.ceiling
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
@@ -231,6 +244,8 @@ class ParcelSet(Parcel):
             spanning=grid.spanning,
             periodic=any(self._periodic),
             piston=bool(moving),
+            phases=not isinstance(self._present, slice),
+            pool=bool(self._walls.law[4] == POOL),
         )
         place, self._advance, self._replan, self._overlap = specialise(self._modes)
         self._events = aligned_records(n, EVENT)
@@ -316,7 +331,8 @@ class ParcelSet(Parcel):
 
         Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
         """
-        kinetic = 0.5 * float(np.sum(self._mass * np.sum(self._velocity() ** 2, axis=1)))
+        m = self._fields
+        kinetic = 0.5 * float(np.sum(self._mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
         baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
         usual = self._start_energy + 2.0 * float(self._mass.sum()) * self.piston_velocity**2
         return kinetic > 1e6 * (usual + 2.0 * self.number * max(baths, default=0.0))

@@ -3,6 +3,7 @@
 References
 ----------
 Steele, G. L., Lea, D., Flood, C. H. (2014), doi:10.1145/2660193.2660195.
+Marsaglia, G., Tsang, W. W. (2000), doi:10.1145/358407.358414 (gamma variates of any shape).
 """
 
 import math
@@ -11,7 +12,7 @@ import numpy as np
 
 from atmosbox.engine._jit import kernel
 
-__all__ = ["gamma", "gaussian_pair", "uniform"]
+__all__ = ["gamma", "gamma_of_shape", "gaussian_pair", "uniform"]
 
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -79,3 +80,37 @@ def gamma(degrees, state):
         normal, _ = gaussian_pair(state)
         energy += 0.5 * normal * normal
     return energy
+
+
+@kernel
+def gamma_of_shape(shape, state):
+    """Return a gamma variate of any shape: the energy, in kT, of twice as many quadratic degrees of freedom.
+
+    Parameters
+    ----------
+    shape
+        Not negative; of shape 0 it is 0.
+    state : (1,)
+        The state, moved on.
+
+    Examples
+    --------
+    >>> gamma_of_shape(0.0, np.array([7], np.uint64))
+    0.0
+    """
+    if not shape > 0.0:
+        return 0.0
+    boost = 1.0
+    if shape < 1.0:
+        boost = uniform(state) ** (1.0 / shape)
+        shape += 1.0
+    d = shape - 1.0 / 3.0
+    c = 1.0 / math.sqrt(9.0 * d)
+    while True:
+        normal, _ = gaussian_pair(state)
+        v = 1.0 + c * normal
+        if v <= 0.0:
+            continue
+        v = v * v * v
+        if math.log(uniform(state)) < 0.5 * normal * normal + d - d * v + d * math.log(v):
+            return boost * d * v

@@ -70,7 +70,7 @@ class Modes(NamedTuple):
     """What a scene requires.
 
     Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
-    cells, periodic axes, a piston.
+    cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid.
     """
 
     contacts: bool
@@ -80,6 +80,8 @@ class Modes(NamedTuple):
     spanning: bool
     periodic: bool
     piston: bool
+    phases: bool = False
+    pool: bool = False
 
 
 class Box(NamedTuple):

@@ -1,10 +1,11 @@
 r"""A step of free flight for many molecules at once, with all that walls do to them on the way.
 
-Hardly any molecule reaches a wall within one step. So those that will are found first, and told to wait:
-their time of flight is 0. The others then fly, without a branch, eight at a time. Last, those that
-waited fly one by one, from wall to wall: each hit happens at its exact time and place, and what a heat bath
-emits flies for *the rest of the step*. Were it emitted at the end of the step instead, slow molecules
-would be too few near the wall, and the gas too hot.
+Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark
+those for which a wall makes a difference. There are two kinds. Smooth walls at rest that face each other only
+mirror: flight along their axis goes on beyond the wall and is *folded* back, and what is left to do is to write the
+impulse down. Before any other wall a molecule is told to *wait*: it flies last, alone, from wall to wall. Each
+hit happens at its exact time and place, and what a heat bath emits flies for *the rest of the step*. Were it
+emitted at the end of the step instead, slow molecules would be too few near the wall, and the gas too hot.
 """
 
 import math
@@ -15,14 +16,17 @@ from atmosbox.engine._jit import kernel
 from atmosbox.engine.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.walls import PISTON, resolve_wall_hit
 
-__all__ = ["bounce", "fall", "glide", "turn_round", "wait_at_ends", "wait_at_walls"]
+__all__ = ["WAITS", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
+
+WAITS = 4
+"""The mark of a molecule that waits. Smaller marks, 1 and 2, tell along which axis one is folded, x, y or both."""
 
 _MOST_HITS = 1000
 
 
 @kernel
-def wait_at_walls(x, v, low, high, dt, flight):
-    """Let those wait (flight 0) that would leave the interval [length] within a step of dt [time].
+def wait_at_walls(x, v, low, high, dt, mark):
+    """Let those wait that would leave the interval [length] within a step of dt [time].
 
     Parameters
     ----------
@@ -32,70 +36,120 @@ def wait_at_walls(x, v, low, high, dt, flight):
         The interval [length].
     dt
         Length of the step [time].
-    flight : (molecule,)
-        For how long each will fly unhindered [time], changed.
+    mark : (molecule,)
+        `WAITS` for those that wait, changed.
 
     Examples
     --------
-    >>> flight = np.ones(2)
-    >>> wait_at_walls(np.array([1.0, 1.0]), np.array([0.5, 1.5]), 0.0, 2.0, 1.0, flight)
-    >>> flight
-    array([1., 0.])
+    >>> mark = np.zeros(2, np.int32)
+    >>> wait_at_walls(np.array([1.0, 1.0]), np.array([0.5, 1.5]), 0.0, 2.0, 1.0, mark)
+    >>> mark
+    array([0, 4], dtype=int32)
     """
     for p in range(x.size):
         ahead = x[p] + v[p] * dt
-        flight[p] = flight[p] if (ahead >= low) & (ahead <= high) else 0.0
+        mark[p] = mark[p] if (ahead >= low) & (ahead <= high) else np.int32(WAITS)
 
 
 @kernel
-def wait_at_ends(z, v, low, high, gravity, dt, flight):
-    """Let those wait that would reach floor or ceiling, under gravity: see `wait_at_walls`.
+def fall(z, v, dt, mark, low, high, gravity, per_length, last, stride, cell):
+    """Move molecules up and down their exact parabola, but let those wait that would reach floor or ceiling.
 
     A parabola is highest above its chord, so it meets the ceiling, if at all, where the straight line without
-    gravity does, too; and it is lowest at its ends. ``high`` is where the ceiling is at the end of the step.
+    gravity does, too; and it is lowest at its ends. ``high`` is where the ceiling is at the end of the step. To each
+    ``cell`` is added its index along this axis, times the ``stride``; for one that waits it means nothing.
     """
-    drop = 0.5 * gravity * dt * dt
+    gain = gravity * dt
+    drop = 0.5 * gain * dt
+    most = np.int32(last)
+    step = np.int32(stride)
     for p in range(z.size):
         ahead = z[p] + v[p] * dt
-        flight[p] = flight[p] if (ahead - drop >= low) & (ahead <= high) else 0.0
+        there = ahead - drop
+        waits = (mark[p] != 0) | (there < low) | (ahead > high)
+        z[p] = z[p] if waits else there
+        v[p] = v[p] if waits else v[p] - gain
+        mark[p] = np.int32(WAITS) if waits else np.int32(0)
+        cell[p] += min(np.int32((there - low) * per_length), most) * step
 
 
 @kernel
-def glide(x, v, flight, low, high, per_length, last, stride, cell):
-    """Move molecules evenly between walls, and add their cell's index along this axis, times its stride."""
+def fold(x, v, dt, mark, sign, low, high, per_length, last, stride, cell):
+    """Move those that do not wait evenly between two smooth walls; one that hits a wall gets the mark ``sign``.
+
+    Whoever comes so fast that folding once leaves it beyond the other wall is left there, for `mirror`.
+
+    Examples
+    --------
+    The second molecule flies 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
+
+    >>> x, v, mark, cell = np.array([0.5, 1.5]), np.ones(2), np.zeros(2, np.int32), np.zeros(2, np.uint32)
+    >>> fold(x, v, 1.0, mark, 1, 0.0, 2.0, 2.0, 3, 1, cell)
+    >>> x, v, mark, cell
+    (array([1.5, 1.5]), array([ 1., -1.]), array([0, 1], dtype=int32), array([3, 3], dtype=uint32))
+    """
     most = np.int32(last)
     step = np.int32(stride)
     for p in range(x.size):
-        there = min(max(x[p] + v[p] * flight[p], low), high)
+        there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
+        below = there < low
+        above = there > high
+        there = 2.0 * low - there if below else (2.0 * high - there if above else there)
+        x[p] = there
+        v[p] = -v[p] if below | above else v[p]
+        mark[p] |= np.int32(sign) if below | above else np.int32(0)
+        cell[p] += min(np.int32((there - low) * per_length), most) * step
+
+
+@kernel
+def mirror(p, x, v, wall, low, high, mass, books):
+    """Write down the hit of a molecule that has been folded, and fold it again until it is inside.
+
+    ``wall`` is the lower of the two walls; see `bounce` for the ``books``.
+
+    Examples
+    --------
+    One that flew four widths of its box ahead, and was folded once, hit walls four times:
+
+    >>> x, v, books = np.array([-2.5]), np.array([-4.0]), np.zeros((3, 6))
+    >>> mirror(0, x, v, 0, 0.0, 1.0, 1.0, books)
+    >>> float(x[0]), float(v[0]), books[2, :2]
+    (0.5, 4.0, array([2., 2.]))
+    """
+    there, speed = x[p], v[p]
+    for _ in range(_MOST_HITS):
+        hit = wall if speed > 0.0 else wall + 1
+        books[0, hit] += 2.0 * mass * abs(speed)
+        books[2, hit] += 1.0
+        if low <= there <= high:
+            break
+        there = 2.0 * (low if there < low else high) - there
+        speed = -speed
+    x[p], v[p] = min(max(there, low), high), speed
+
+
+@kernel
+def glide(x, v, dt, mark, low, high, per_length, last, stride, cell):
+    """Move those that do not wait evenly between walls: see `fold`."""
+    most = np.int32(last)
+    step = np.int32(stride)
+    for p in range(x.size):
+        there = min(max(x[p] + (v[p] * dt if mark[p] < WAITS else 0.0), low), high)
         x[p] = there
         cell[p] += min(np.int32((there - low) * per_length), most) * step
 
 
 @kernel
-def turn_round(x, v, flight, length, per_length, last, stride, cell):
-    """Move molecules evenly along a periodic axis: see `glide`."""
+def turn_round(x, v, dt, mark, length, per_length, last, stride, cell):
+    """Move those that do not wait evenly along a periodic axis: see `fold`."""
     most = np.int32(last)
     step = np.int32(stride)
     inverse = 1.0 / length
     for p in range(x.size):
-        there = x[p] + v[p] * flight[p]
+        there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
         there = min(max(there - length * math.floor(there * inverse), 0.0), length)
         x[p] = there
         cell[p] += min(np.int32(there * per_length), most) * step
-
-
-@kernel
-def fall(z, v, flight, low, high, gravity, per_length, last, stride, cell):
-    """Move molecules up and down their exact parabola: see `glide`."""
-    most = np.int32(last)
-    step = np.int32(stride)
-    for p in range(z.size):
-        t = flight[p]
-        after = v[p] - gravity * t
-        there = min(max(z[p] + 0.5 * (v[p] + after) * t, low), high)
-        z[p] = there
-        v[p] = after
-        cell[p] += min(np.int32((there - low) * per_length), most) * step
 
 
 @kernel

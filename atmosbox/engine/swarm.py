@@ -24,15 +24,20 @@ __all__ = [
     "Grid",
     "Swarm",
     "index_by_cell",
+    "new_columns",
     "new_desk",
     "new_gather",
     "new_grid",
     "reserve_places",
+    "share_cells",
     "share_of",
 ]
 
 BLOCK = 1024
 """How many molecules are moved at a time: few enough to stay in the nearest cache."""
+
+_EVEN_EMPTY = 8  # pairs' worth of work is a cell
+_LINE, _PAGE = 8, 512  # of the cache, of memory, in numbers
 
 
 class Swarm(NamedTuple):
@@ -81,26 +86,46 @@ class Gas(NamedTuple):
 class Desk(NamedTuple):
     """What a step writes on and forgets.
 
-    ``flight : (thread, BLOCK)`` for how long each of a block flies unhindered [time], ``queue : (thread,
-    BLOCK)`` those that do not, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
-    what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts.
+    ``mark : (thread, BLOCK)`` for which of a block walls make a difference, ``queue : (thread, BLOCK)`` a list
+    of them, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
+    what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts; ``cut :
+    (thread + 1,)`` the first cell of each thread's share of them.
     """
 
-    flight: Any
+    mark: Any
     queue: Any
     random: Any
     books: Any
     met: Any
+    cut: Any
 
 
-def new_desk(number: int, threads: int) -> Desk:
-    """Return an empty desk for so many molecules and threads."""
+def new_columns(number: int, many: int) -> list[Any]:
+    """Return so many empty columns for a number of molecules.
+
+    Each begins at a line of the cache, so that eight numbers that are read together are one line, and at another place
+    within a page than the last, for what stands at the same place of different pages competes for the same few lines.
+
+    Examples
+    --------
+    >>> [column.ctypes.data % 64 for column in new_columns(1000, 2)]
+    [0, 0]
+    """
+    stride = -(-number // _PAGE) * _PAGE + _PAGE // 8 + _LINE
+    room = np.empty(many * stride + _LINE)
+    start = -(room.ctypes.data // room.itemsize) % _LINE
+    return [room[start + k * stride : start + k * stride + number] for k in range(many)]
+
+
+def new_desk(number: int, cells: int, threads: int) -> Desk:
+    """Return an empty desk for so many molecules, cells and threads."""
     return Desk(
-        flight=np.zeros((threads, BLOCK)),
+        mark=np.zeros((threads, BLOCK), np.int32),
         queue=np.zeros((threads, BLOCK), np.int32),
         random=np.zeros((threads, 8), np.uint64),
         books=np.zeros((-(-number // BLOCK), 3, 6)),
         met=np.zeros((threads, 8), np.int64),
+        cut=np.linspace(0, cells, threads + 1).astype(np.int64),
     )
 
 
@@ -140,6 +165,37 @@ def reserve_places(grid, cells):
             grid.place[t, c] = place
             place += count
     grid.first[cells] = place
+
+
+@kernel
+def share_cells(first, cells, cut):
+    """Cut the cells into stretches, one for each thread, in which about as many pairs can meet.
+
+    Molecules that stand together in memory are so in the same hands when they move and when they collide.
+
+    Examples
+    --------
+    Ten molecules in one cell are more work than ten in ten:
+
+    >>> cut = np.zeros(3, np.int64)
+    >>> share_cells(np.array([0, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]), 11, cut)
+    >>> cut
+    array([ 0,  1, 11])
+    """
+    total = 0
+    for c in range(cells):
+        number = np.int64(first[c + 1]) - np.int64(first[c])
+        total += number * (number - 1) + _EVEN_EMPTY
+    threads = cut.size - 1
+    done = 0
+    t = 1
+    for c in range(cells):
+        number = np.int64(first[c + 1]) - np.int64(first[c])
+        done += number * (number - 1) + _EVEN_EMPTY
+        while t < threads and done * threads >= total * t:
+            cut[t] = c + 1
+            t += 1
+    cut[threads] = cells
 
 
 @kernel

@@ -31,7 +31,8 @@ __all__ = [
     "wall_kT",
 ]
 
-SPECULAR, PERIODIC, HEAT_BATH, PISTON = 0, 1, 2, 3
+SPECULAR, PERIODIC, HEAT_BATH, PISTON, POOL = 0, 1, 2, 3, 4
+"""The laws by number; the floor of a box with a `liquid.Pool` is one, whoever it was given as."""
 WALL_NAMES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 

@@ -9,8 +9,24 @@ from atmosbox.instruments.air import Air
 from atmosbox.instruments.disc import Discs
 from atmosbox.instruments.instrument import Instrument, Readings
 from atmosbox.instruments.layer import Layers
+from atmosbox.instruments.leaving import Leaving
 from atmosbox.instruments.lift import Environment, Lift
+from atmosbox.instruments.moist_lift import MoistLift
 from atmosbox.instruments.molecule import Molecules
 from atmosbox.instruments.speed import Speeds
+from atmosbox.instruments.water import Water
 
-__all__ = ["Air", "Discs", "Environment", "Instrument", "Layers", "Lift", "Molecules", "Readings", "Speeds"]
+__all__ = [
+    "Air",
+    "Discs",
+    "Environment",
+    "Instrument",
+    "Layers",
+    "Leaving",
+    "Lift",
+    "MoistLift",
+    "Molecules",
+    "Readings",
+    "Speeds",
+    "Water",
+]

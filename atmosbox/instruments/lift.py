@@ -14,11 +14,12 @@ from atmosbox.engine.parcel import Parcel, Snapshot
 from atmosbox.instruments.instrument import Readings
 from atmosbox.units import Scale
 
-__all__ = ["Environment", "Lift"]
+__all__ = ["REFERENCE_PRESSURE", "Environment", "Lift"]
 
 Array = NDArray[np.float64]
 _BLOCKS = 20
-_REFERENCE_PRESSURE = 1e5
+REFERENCE_PRESSURE = 1e5
+"""Pressure at which air has its potential temperature [Pa]."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Environment:
     height: Callable[[float], float]
     pressure: Callable[[float], float]
     temperature: Callable[[float], float]
-    adiabat: Callable[[float], float]
+    adiabat: Callable[[float], float] = lambda _: math.nan
 
 
 class Lift:
@@ -119,7 +120,7 @@ class Lift:
             parcel_temperature_se=parcel_temperature * spread,
             parcel_pressure=parcel_pressure,
             parcel_potential_temperature=parcel_temperature
-            * (_REFERENCE_PRESSURE / parcel_pressure) ** (1.0 / heat_capacity),
+            * (REFERENCE_PRESSURE / parcel_pressure) ** (1.0 / heat_capacity),
             parcel_volume=volume * scale.length**3 * scale.weight,
             parcel_height=np.array([surroundings.height(t) for t in seconds]),
             environment_temperature=np.array([surroundings.temperature(t) for t in seconds]),

@@ -21,9 +21,13 @@ _SHOWN: dict[str, tuple[str, float, float]] = {
     "g kg-1": ("kg kg-1", 1e-3, 0.0),
     "K km-1": ("K m-1", 1e-3, 0.0),
     "%": ("1", 1e-2, 0.0),
+    "percent": ("1", 1e-2, 0.0),
+    "ns-1": ("s-1", 1e9, 0.0),
+    "zJ": ("J", 1e-21, 0.0),
+    "zJ-1": ("J-1", 1e21, 0.0),
 }
 _SIGNS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_SPELLINGS = {"degC": "°C", "um": "µm", "us": "µs"}
+_SPELLINGS = {"degC": "°C", "um": "µm", "us": "µs", "percent": "%"}
 
 
 def convert(

@@ -71,7 +71,7 @@ def finite_speed(found: Findings) -> None:
     room = adiabat_of_spheres(30_000.0) - expected
     slow = ascents >= SLOW
     c, c_error, chi_squared = fitted(1.0 / ascents[slow, None], (mean - room)[slow], error[slow])
-    allowed = scenarios.load("lifting-dry").FINITE_SPEED * expected
+    allowed = theory.FINITE_SPEED * expected
     rows = [
         [f"{n:.0f}", seeds, f"{m:.3f} ± {e:.3f}", f"{n * (m - room):.0f} ± {n * e:.0f}", f"{s:.3f}", f"{t:.3f}"]
         for n, seeds, m, e, s, t in zip(ascents, SEEDS.values(), mean, error, scatter, stated, strict=True)

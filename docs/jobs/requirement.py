@@ -235,7 +235,7 @@ def spheres_arrive(diameter: float, start: float, bottom: float, top: float, fre
 @job("requirement-lifting", quick=True)
 def rising_parcel(found: Findings) -> None:
     """Weigh what the rising parcel leaves out."""
-    module, settings, setup = set_up("lifting-dry")
+    _, settings, setup = set_up("lifting-dry")
     si = settings.si
     start, bottom, top, sigma = si.temperature, si.pressure, si.top_pressure, si.diameter
     end = float(theory.dry_adiabat_temperature(top, start, bottom, 5))
@@ -246,8 +246,8 @@ def rising_parcel(found: Findings) -> None:
     seconds = setup.duration * scale.time
     climbed = float(theory.height_of_pressure(top, start, bottom, si.lapse_rate))
     free = {width: mean_free(start, bottom, width) for width in (sigma, DRY_AIR.diameter)}
-    hurry = module.FINITE_SPEED * end / settings.ascent
-    hour = module.FINITE_SPEED * end / (3600.0 / free[DRY_AIR.diameter][1])
+    hurry = theory.FINITE_SPEED * end / settings.ascent
+    hour = theory.FINITE_SPEED * end / (3600.0 / free[DRY_AIR.diameter][1])
     sound = math.sqrt(float(theory.adiabatic_index(5)) * BOLTZMANN * end / mass)
     piston = (high - low) / seconds
     room = {width: spheres_arrive(width, start, bottom, top, 5) for width in (sigma, DRY_AIR.diameter)}
@@ -261,7 +261,7 @@ def rising_parcel(found: Findings) -> None:
     vibrating = arrival(start, bottom, top, lambda t, p: 1.0 / (3.5 + trembling(t))) - end
     quantum = constants.Planck * constants.c * ROTATION["N2"] / BOLTZMANN
     slow = sum(SHARES[name][0] * each for name, each in RELAXATION.items()) / sum(SHARES[n][0] for n in RELAXATION)
-    delayed = hurry * (1.0 - 5.0 / 3.0 / module.DISSIPATION) * (slow - 1.0)
+    delayed = hurry * (1.0 - 5.0 / 3.0 / theory.DISSIPATION) * (slow - 1.0)
     stiff = float(theory.dry_adiabat_temperature(top, start, bottom, 3)) - end
     found.number("gravity", f"{rounded(mass * STANDARD_GRAVITY * high / (5.0 * BOLTZMANN))} K")
     found.number("hurry", f"{rounded(hurry)} K")

@@ -36,7 +36,7 @@ def test_the_error_that_a_rising_parcel_states_is_that_of_the_fluctuation_dissip
     for frame in (20, 30, 39):
         # N times the variance of the entropy per molecule is twice its mean gain, (f/2 + 1) times the warmth
         pressure = float(found.parcel_pressure[frame])
-        gained = (0.5 * freedom + 1.0) * scene._finite_speed(settings, pressure)
+        gained = (0.5 * freedom + 1.0) * scene._ascent(settings).finite_speed(pressure)
         expected = math.sqrt(2.0 * gained / molecules) / (0.5 * freedom + 1.0)
         stated = math.sqrt(np.mean(errors[:, frame] ** 2)) / float(found.parcel_temperature[frame])
         # a run knows its error by a sixth, 12 of them by 5 %; up to a third of the warmth is missing halfway up
@@ -62,7 +62,8 @@ def test_a_fast_parcel_is_as_much_too_warm_as_the_viscosity_of_its_gas_demands(s
     prepared = runner.prepare("lifting-dry", {"ascent": length, **settings}).settings
     pressure = float(found.parcel_pressure[-1])
     temperature = float(found.adiabat_temperature[-1])
-    expected = (scene._finite_speed(prepared, pressure) - scene._room(prepared, pressure)) * temperature
+    ascent = scene._ascent(prepared)
+    expected = (ascent.finite_speed(pressure) - ascent.room(pressure, scene._start(prepared)[1])) * temperature
     mean = misfits[:, -1].mean()
     error = misfits[:, -1].std(ddof=1) / math.sqrt(len(misfits))
     # 2 for D is that of rotating molecules; those that do not have 5/3 at most

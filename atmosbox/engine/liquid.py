@@ -1,0 +1,370 @@
+r"""Liquid water: a ledger of molecules and energy, and the laws by which vapour and air exchange with it.
+
+No molecule of the liquid is followed. What is known of it is how many they are, n, and their thermal energy
+U; their heat capacity is :math:`C = c_l n + C_n` (in units of k), that of the nuclei on which the droplets sit
+included. A molecule that comes in brings the binding energy :math:`\varphi` with it,
+
+.. math:: U \to U + e + \varphi, \qquad n \to n + 1,
+
+and one that leaves takes it along. Nothing in this knows of a relative humidity: where the two counted rates
+meet is found, not put in.
+
+The rate of leaving is that of the *microcanonical* ensemble. With :math:`U' = U - \varphi`, :math:`C' = C -
+c_l` and :math:`g = 2 + \zeta/2` for a vapour of :math:`\zeta` rotational degrees of freedom,
+
+.. math:: R = Q \frac{U'^{\,C' + g - 1}}{\Gamma(C' + g)} \frac{\Gamma(C)}{U^{\,C - 1}},
+
+and none leaves where :math:`U' \le 0`. It is the flux of phase space that a molecule which comes in takes the
+other way, so the balance is detailed for any number of molecules, one even. A rate at the temperature U/C
+would not be: the vapour pressure is convex, and in so small a drop U/C is never at rest. For a large drop both
+agree, and that fixes :math:`Q T^{g - c_l} e^{-\varphi/T} = \alpha A e_s(T) / \sqrt{2 \pi m T}` with T = U/C.
+
+References
+----------
+The law of Hertz and Knudsen, and the flux in balance with it: Persad, A. H., Ward, C. A. (2016),
+doi:10.1021/acs.chemrev.5b00511. The microcanonical rate of leaving is that of Weisskopf, V. (1937),
+doi:10.1103/PhysRev.52.295, who let a hot nucleus evaporate neutrons.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine._jit import kernel
+from atmosbox.engine.inputs import number, whole
+from atmosbox.engine.random import gamma, gamma_of_shape, uniform
+from atmosbox.engine.refusal import RefusedError
+
+__all__ = [
+    "AIR_MET",
+    "CONDENSED",
+    "EVAPORATED",
+    "LIQUID",
+    "RAINED",
+    "Ledger",
+    "Liquid",
+    "Mist",
+    "Pool",
+    "Substance",
+    "condense",
+    "evaporate",
+    "evaporation_rate",
+    "exchange",
+    "heat_capacity",
+    "leave",
+    "new_ledger",
+    "rain_out",
+    "wait",
+]
+
+LIQUID, CONDENSED, EVAPORATED, RAINED, AIR_MET = range(5)
+"""What a ledger counts: molecules in the liquid now; since the start, those that came, left and rained; other hits."""
+
+THERMAL, RAINED_ENERGY = range(2)
+"""The energies of a ledger [energy]: of the liquid now, and what the rain took away."""
+
+_BINS = 60
+_WIDEST = 12.0
+
+
+def _above_zero(value: float, name: str) -> None:
+    if not number(value, name) > 0.0:
+        raise RefusedError(f"{name} = {value} must be above 0")
+
+
+@dataclass(frozen=True)
+class Substance:
+    """What condenses, as a vapour of hard molecules with a constant binding energy in the liquid.
+
+    Parameters
+    ----------
+    mass, diameter
+        Of a molecule of the vapour [mass, length].
+    binding_energy
+        What it takes to pull a molecule out of the liquid at zero temperature [energy].
+    heat_capacity
+        Of the liquid, per molecule, in units of k.
+    volatility
+        K in the vapour pressure K T^(c_p - c_l) exp(-binding_energy / T), T being kT [energy].
+    rotation
+        Rotational degrees of freedom of the vapour.
+
+    Raises
+    ------
+    RefusedError
+        If a number is impossible.
+
+    Examples
+    --------
+    >>> round(Substance(0.62, 1.0, 20.0, 9.0, 1e6).saturation_pressure(1.0), 6)
+    0.002061
+    """
+
+    mass: float
+    diameter: float
+    binding_energy: float
+    heat_capacity: float
+    volatility: float
+    rotation: float = 3.0
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "binding_energy", "heat_capacity", "volatility"):
+            _above_zero(getattr(self, name), f"{name} of the substance")
+        number(self.diameter, "diameter of the substance", least=0.0)
+        if self.rotation not in (0.0, 2.0, 3.0):
+            raise RefusedError(f"rotation of the substance = {self.rotation}: give 0, 2 or 3 degrees of freedom")
+
+    @property
+    def vapour_heat_capacity(self) -> float:
+        """Heat capacity of the vapour at constant pressure, per molecule, in units of k."""
+        return 2.5 + 0.5 * self.rotation
+
+    def saturation_pressure(self, kT: float) -> float:
+        """Return the pressure of the vapour that a large body of the liquid at kT is in balance with."""
+        power = self.vapour_heat_capacity - self.heat_capacity
+        pressure: float = self.volatility * math.exp(power * math.log(kT) - self.binding_energy / kT)
+        return pressure
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """Liquid in a box: what it is, how much, and how warm.
+
+    Parameters
+    ----------
+    substance
+        What it is.
+    number
+        How many molecules there are in it at the start.
+    kT
+        Its temperature at the start [energy].
+    nuclei
+        Heat capacity of what the droplets sit on, in units of k.
+    sticking
+        Which part of the vapour that meets it stays, above 0 up to 1.
+    rain
+        Rate at which each molecule that is too many falls out of the box [1/time].
+    keeps
+        How many molecules the liquid holds before it rains.
+
+    Raises
+    ------
+    RefusedError
+        If a number is impossible.
+    """
+
+    substance: Substance
+    number: int = 0
+    kT: float = 1.0
+    nuclei: float = 0.0
+    sticking: float = 1.0
+    rain: float = 0.0
+    keeps: int = 0
+
+    def __post_init__(self) -> None:
+        whole(self.number, "number of molecules in the liquid", least=0)
+        number(self.kT, "kT of the liquid", least=0.0)
+        number(self.nuclei, "heat capacity of the nuclei", least=0.0)
+        number(self.rain, "rain", least=0.0)
+        whole(self.keeps, "number of molecules that the liquid keeps", least=0)
+        if not 0.0 < number(self.sticking, "sticking") <= 1.0:
+            raise RefusedError(f"sticking = {self.sticking} is no part above 0 and up to 1: give 1 for all that meet")
+
+
+@dataclass(frozen=True)
+class Mist(Liquid):
+    r"""Droplets too fine to draw, spread evenly and carried along by the air.
+
+    A molecule of speed w relative to the air meets one at the rate :math:`A w Z / 4 V`: as in the pool, what is in
+    balance with the liquid is the partial pressure, the share of the vapour in n k T Z.
+
+    Parameters
+    ----------
+    area
+        Area of all droplets together [length^2].
+    """
+
+    area: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _above_zero(self.area, "area of the mist")
+
+
+@dataclass(frozen=True)
+class Pool(Liquid):
+    """The floor of the box is the surface of the liquid, which itself takes no room."""
+
+
+class Ledger(NamedTuple):
+    """The liquid, as the kernels know it.
+
+    ``energy : (2,)`` [energy] and ``count : (5,)``: see `THERMAL` and `LIQUID`; ``clock : (3,)`` when a molecule
+    may meet the mist next, leave, rain [time]; ``bound : (2,)`` the speed [length/time] and the volume [length^3]
+    for which the first was drawn; ``absent : (molecule,)`` the numbers of molecules that are not in the box, of
+    which the last to go is ``absent[top[0] - 1]``; ``spectrum : (bin,)`` how many left with which energy beyond
+    the binding energy; ``log_rate`` the logarithm of Q; then what `Substance` and `Liquid` say.
+    """
+
+    energy: Any
+    count: Any
+    clock: Any
+    bound: Any
+    absent: Any
+    top: Any
+    spectrum: Any
+    bin_width: float
+    log_rate: float
+    area: float
+    binding_energy: float
+    molecule_capacity: float
+    nuclei: float
+    sticking: float
+    rain: float
+    keeps: int
+    rotation: float
+    diameter: float
+    mean_cube: float
+    kind: int
+
+
+def new_ledger(liquid: Liquid, area: float, capacity: int, present: int, kind: int, mean_cube: float = 0.0) -> Ledger:
+    """Return the ledger of a liquid.
+
+    Parameters
+    ----------
+    liquid
+        What is in the box at the start.
+    area
+        Of its surface [length^2].
+    capacity, present
+        How many molecules there are in vapour and liquid, and how many of them, the first ones, are in the box.
+    kind
+        Which kind of molecule the vapour is.
+    mean_cube
+        Mean cube of the diameters of all molecules [length^3].
+
+    Examples
+    --------
+    >>> water = Substance(0.62, 1.0, 20.0, 9.0, 1e6)
+    >>> ledger = new_ledger(Pool(water, number=5, kT=2.0), 1.0, 8, 3, 0)
+    >>> float(ledger.energy[0]), ledger.absent.tolist(), int(ledger.top[0])
+    (90.0, [7, 6, 5, 4, 3, 0, 0, 0], 5)
+    """
+    substance = liquid.substance
+    absent = np.zeros(max(capacity, 1), np.int64)
+    missing = capacity - present
+    absent[:missing] = np.arange(capacity - 1, present - 1, -1)
+    count = np.zeros(5, np.int64)
+    count[LIQUID] = liquid.number
+    heat = (substance.heat_capacity * liquid.number + liquid.nuclei) * liquid.kT
+    flux = liquid.sticking * area * substance.volatility / math.sqrt(2.0 * math.pi * substance.mass)
+    return Ledger(
+        energy=np.array([heat, 0.0]),
+        count=count,
+        clock=np.full(3, math.inf),
+        bound=np.array([0.0, 1.0]),
+        absent=absent,
+        top=np.array([missing], np.int64),
+        spectrum=np.zeros(_BINS, np.int64),
+        bin_width=_WIDEST / _BINS * max(liquid.kT, 1e-300),
+        log_rate=math.log(flux),
+        area=float(area),
+        binding_energy=float(substance.binding_energy),
+        molecule_capacity=float(substance.heat_capacity),
+        nuclei=float(liquid.nuclei),
+        sticking=float(liquid.sticking),
+        rain=float(liquid.rain),
+        keeps=int(liquid.keeps),
+        rotation=float(substance.rotation),
+        diameter=float(substance.diameter),
+        mean_cube=float(mean_cube),
+        kind=kind,
+    )
+
+
+@kernel
+def heat_capacity(ledger):
+    """Return the heat capacity of the liquid with its nuclei, in units of k."""
+    return ledger.molecule_capacity * ledger.count[LIQUID] + ledger.nuclei
+
+
+@kernel
+def evaporation_rate(ledger):
+    """Return how many molecules leave the liquid per time [1/time]; see the head of this file."""
+    if ledger.count[LIQUID] < 1:
+        return 0.0
+    energy = ledger.energy[THERMAL]
+    left = energy - ledger.binding_energy
+    if not left > 0.0:
+        return 0.0
+    shape = 2.0 + 0.5 * ledger.rotation
+    capacity = heat_capacity(ledger)
+    rest = max(capacity - ledger.molecule_capacity, 0.0)
+    logarithm = ledger.log_rate + (rest + shape - 1.0) * math.log(left) - math.lgamma(rest + shape)
+    logarithm += math.lgamma(capacity) - (capacity - 1.0) * math.log(energy)
+    return math.exp(min(logarithm, 600.0))
+
+
+@kernel
+def wait(rate, state):
+    """Return how long an event of this rate [1/time] lets itself be waited for [time]."""
+    return -math.log(uniform(state)) / rate if rate > 0.0 else math.inf
+
+
+@kernel
+def condense(ledger, energy):
+    """Let a molecule of this kinetic and rotational energy join the liquid."""
+    ledger.energy[THERMAL] += energy + ledger.binding_energy
+    ledger.count[LIQUID] += 1
+    ledger.count[CONDENSED] += 1
+
+
+@kernel
+def evaporate(ledger, state):
+    r"""Return with which energies of flight and of rotation the next molecule leaves; `leave` takes them out.
+
+    Together they are to what stays behind as :math:`\Gamma(g) : \Gamma(C')`, to each other as :math:`\Gamma(2) :
+    \Gamma(\zeta/2)`: those that fly fast arrive at a surface more often, and leave it so.
+    """
+    left = ledger.energy[THERMAL] - ledger.binding_energy
+    rest = max(heat_capacity(ledger) - ledger.molecule_capacity, 0.0)
+    flight = gamma(4.0, state)
+    spin = gamma(ledger.rotation, state)
+    scale = left / (flight + spin + gamma_of_shape(rest, state))
+    last = ledger.spectrum.size - 1
+    ledger.spectrum[int(min(scale * (flight + spin) / ledger.bin_width, float(last)))] += 1
+    return scale * flight, scale * spin
+
+
+@kernel
+def leave(ledger, energy):
+    """Strike a molecule that leaves with this kinetic and rotational energy."""
+    ledger.energy[THERMAL] -= energy + ledger.binding_energy
+    ledger.count[LIQUID] -= 1
+    ledger.count[EVAPORATED] += 1
+
+
+@kernel
+def exchange(ledger, energy, rotation, state):
+    r"""Return with which energies of flight and of rotation a molecule goes that met the liquid and did not stay.
+
+    What it had and the liquid's own energy are shared as :math:`\Gamma(2) : \Gamma(\zeta/2) : \Gamma(C)`.
+    """
+    flight = gamma(4.0, state)
+    spin = gamma(rotation, state)
+    scale = (ledger.energy[THERMAL] + energy) / (flight + spin + gamma_of_shape(heat_capacity(ledger), state))
+    return scale * flight, scale * spin
+
+
+@kernel
+def rain_out(ledger):
+    """Let one molecule of the liquid fall out of the box, with its share of the thermal energy."""
+    capacity = heat_capacity(ledger)
+    taken = ledger.energy[THERMAL] * ledger.molecule_capacity / capacity
+    ledger.energy[THERMAL] -= taken
+    ledger.energy[RAINED_ENERGY] += taken
+    ledger.count[LIQUID] -= 1
+    ledger.count[RAINED] += 1

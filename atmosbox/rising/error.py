@@ -1,0 +1,129 @@
+"""What the model itself costs: how far a parcel may be from its adiabat, and a cloud base from its level.
+
+Three things are not as in a cloud of kilometres. The way takes nanoseconds; molecules take up room; and few of
+them are vapour, so that a cloud is never far from having none.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.rising.ascent import RAIN, MoistAscent
+from atmosbox.rising.size import CLOSING, size_of_parcel
+
+__all__ = ["blur", "haste", "haze", "lag", "rain_scatter", "tolerance", "walk", "warmth_of"]
+
+Array = NDArray[np.float64]
+
+
+def haste(ascent: MoistAscent) -> law.Ascent:
+    """Return what the speed costs; a detour down and up again makes the way faster, and longer."""
+    detour = ascent.travel / math.log(ascent.pressure / ascent.top_pressure)
+    return law.Ascent(ascent.pressure, ascent.top_pressure, ascent.length / detour**2, closing=CLOSING)
+
+
+def walk(ascent: MoistAscent, pressure: Array) -> Array:
+    r"""Return what the chance of the piston's work leaves behind, as a share of the temperature, by pressure [Pa].
+
+    As in dry air it is :math:`\sqrt{2 s / N} / c_p`, for the entropy s that the haste makes per molecule.
+    """
+    speed = haste(ascent)
+    gained = np.array([3.5 * speed.finite_speed(min(float(p), ascent.pressure)) for p in pressure.ravel()])
+    share: Array = np.sqrt(2.0 * gained.reshape(pressure.shape) / ascent.molecules) / 3.5
+    return share
+
+
+def _latent(temperature: float) -> float:
+    """Return the latent heat of a molecule over kT."""
+    return law.BINDING_TEMPERATURE / temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
+
+
+def warmth_of(water: float, temperature: float) -> float:
+    """Return by how much so much water per dry air [kg kg-1] warms the air when it condenses [K]."""
+    return temperature * _latent(temperature) / 3.5 * water / law.WATER_MASS_RATIO
+
+
+def _steepness(ascent: MoistAscent, temperature: float) -> float:
+    """Return by how much more a molecule that condenses lowers the relative humidity than by being gone."""
+    return 1.0 + ascent.vapour / ascent.molecules * _latent(temperature) ** 2 / 3.5
+
+
+def _scatter(ascent: MoistAscent, temperature: float) -> float:
+    r"""Return by how many molecules the liquid of a saturated parcel scatters.
+
+    The chance that n molecules are liquid is a product of relative humidities, one for each that joins, and each
+    lowers the next: it leaves :math:`N_w - 1` of the vapour, and warms the air. So it falls off as
+    :math:`\exp[-(1 + x \ell^2 / c_p) (n - \bar n)^2 / 2 N_w]`.
+    """
+    return math.sqrt(ascent.vapour / _steepness(ascent, temperature))
+
+
+def blur(ascent: MoistAscent) -> float:
+    r"""Return over how much pressure the cloud base is blurred, because few molecules are vapour [Pa].
+
+    The cloud grows out of the clusters of a saturated parcel over a range of humidity of one over their scatter; the
+    humidity goes as :math:`p^{1 - \ell \kappa}` on the way up.
+    """
+    if not ascent.base:
+        return 0.0
+    t = float(ascent.planned_at(ascent.base).temperature[0])
+    return ascent.base / (_scatter(ascent, t) * (_latent(t) / 3.5 - 1.0))
+
+
+def haze(ascent: MoistAscent, humidity: float, temperature: float) -> float:
+    """Return how much the molecules warm the air that are clustered below saturation, RH / (1 - RH) on average [K]."""
+    if not ascent.vapour:
+        return 0.0
+    most = _scatter(ascent, temperature)
+    clustered = min(humidity / (1.0 - humidity), most) if humidity < 1.0 else most
+    return warmth_of(law.WATER_MASS_RATIO * clustered / (ascent.molecules - ascent.vapour), temperature)
+
+
+def _meeting(ascent: MoistAscent, pressure: float) -> float:
+    r"""Return how long a molecule of vapour flies until it meets liquid, :math:`4 V / A \bar v` [mean free times]."""
+    density, sides, _ = size_of_parcel(ascent.scale, ascent.molecules, ascent.pressure, ideal=False)
+    speed = float(law.mean_speed(1.0, law.WATER_MASS_RATIO))
+    lasts = 4.0 * float(sides[2]) * ascent.pressure / pressure / (ascent.area * speed)
+    return lasts / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+
+
+def lag(ascent: MoistAscent, pressure: float) -> float:
+    r"""Return how much too cold the cloud is at a pressure because vapour must find liquid first [K].
+
+    Vapour is left over for the time that it takes to meet liquid, while saturation falls at the rate at which the
+    parcel rises. The heat that it has not yet given up is missing, to air and vapour.
+    """
+    if pressure >= ascent.base:
+        return 0.0
+    step = 0.01
+    start = ascent.pressure, ascent.temperature, ascent.total_water
+    falling = law.parcel_path([pressure, pressure * (1.0 - step)], *start, nuclei_heat=ascent.nuclei_heat)
+    per_log = (falling.vapor[0] - falling.vapor[1]) / step
+    late = float(per_log * ascent.travel / ascent.length * _meeting(ascent, pressure))
+    t = float(falling.temperature[0])
+    heat = 1.0 + float(falling.vapor[0]) / law.WATER_MASS_RATIO * _latent(t) ** 2 / 3.5
+    return warmth_of(late, t) / heat
+
+
+def rain_scatter(ascent: MoistAscent) -> float:
+    r"""Return by how much the rain scatters, per dry air [kg kg-1].
+
+    Rain forgets what the cloud held a time 1/r ago, and the cloud forgets its scatter s within the time
+    :math:`\tau` in which vapour meets liquid, over the steepness; what is left is :math:`s \sqrt{r \tau}`.
+    """
+    t = float(ascent.planned_at(ascent.top_pressure).temperature[0])
+    memory = _meeting(ascent, ascent.top_pressure) / _steepness(ascent, t)
+    lost = max(_scatter(ascent, t) * math.sqrt(RAIN * memory), 1.0)
+    return law.WATER_MASS_RATIO * lost / (ascent.molecules - ascent.vapour)
+
+
+def tolerance(ascent: MoistAscent, pressure: float, humidity: float, *, ideal: bool) -> float:
+    """Return how far from the adiabat the model itself may take the parcel at a pressure and humidity [K]."""
+    density = size_of_parcel(ascent.scale, ascent.molecules, ascent.pressure, ideal=ideal)[0]
+    speed = haste(ascent)
+    room = 0.0 if ideal else speed.room(min(pressure, ascent.pressure), density)
+    t = float(ascent.planned_at(pressure).temperature[0])
+    cluster = haze(ascent, humidity, t) if humidity < 1.0 - 1e-6 else 0.0
+    return ascent.temperature * (speed.finite_speed(pressure) + room) + lag(ascent, pressure) + cluster

@@ -1,0 +1,222 @@
+r"""Whether a parcel rises by itself: its buoyancy, and the energy in a sounding.
+
+Between the levels of a sounding all is taken as linear in the logarithm of pressure, so that crossings and
+integrals are exact. Units are SI.
+
+References
+----------
+Emanuel, K. A. (1994), Atmospheric Convection, chapters 4 and 6.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.theory._array import FloatArray, as_floats
+from atmosbox.theory._water import checked_not_negative, checked_positive
+from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
+from atmosbox.units import STANDARD_GRAVITY
+
+
+def parcel_buoyancy(
+    parcel_virtual_temperature: ArrayLike, virtual_temperature: ArrayLike, gravity: ArrayLike = STANDARD_GRAVITY
+) -> FloatArray:
+    r"""Return the acceleration of a parcel that is lighter than the air around it, :math:`g (T_v' - T_v) / T_v`.
+
+    Parameters
+    ----------
+    parcel_virtual_temperature, virtual_temperature
+        Virtual temperature of the parcel and of the air around it [K].
+    gravity
+        Acceleration of gravity g [m s^-2].
+
+    Returns
+    -------
+    ndarray
+        Buoyancy, upward where positive [m s^-2].
+
+    Raises
+    ------
+    ValueError
+        If a temperature is not positive.
+
+    Examples
+    --------
+    >>> round(float(parcel_buoyancy(303.0, 300.0)), 3)
+    0.098
+    """
+    parcel = checked_positive(as_floats(parcel_virtual_temperature), "parcel_virtual_temperature")
+    around = checked_positive(as_floats(virtual_temperature), "virtual_temperature")
+    acceleration: FloatArray = as_floats(gravity) * (parcel - around) / around
+    return acceleration
+
+
+class Convection(NamedTuple):
+    """What a parcel can do in a sounding."""
+
+    cape: float
+    """Convective available potential energy [J kg^-1]."""
+    cin: float
+    """Convective inhibition, zero or negative [J kg^-1]."""
+    lfc: float | None
+    """Pressure of the level of free convection [Pa]; None if the parcel is nowhere buoyant."""
+    el: float | None
+    """Pressure of the equilibrium level [Pa]; None without an LFC, or if the parcel leaves the sounding rising."""
+
+
+def _sounding(
+    pressure: ArrayLike, around: ArrayLike, parcel: ArrayLike, lcl_pressure: float | None
+) -> tuple[FloatArray, FloatArray, float]:
+    """Return ln p, the difference of the virtual temperatures, and ln p of the cloud base."""
+    p = checked_positive(as_floats(pressure), "pressure")
+    t, t_parcel = as_floats(around), as_floats(parcel)
+    if p.ndim != 1 or p.size < 2 or not np.all(np.diff(p) < 0.0):
+        raise ValueError("pressure must be at least two levels, each lower than the one before.")
+    if t.shape != p.shape or t_parcel.shape != p.shape:
+        raise ValueError("pressure and both virtual temperatures must have the same number of levels.")
+    warmer = checked_positive(t_parcel, "parcel_virtual_temperature") - checked_positive(t, "virtual_temperature")
+    if lcl_pressure is None:
+        return np.log(p), warmer, float(np.log(p[0]))
+    if not 0.0 <= lcl_pressure < np.inf:
+        raise ValueError(f"lcl_pressure = {lcl_pressure} must be finite and at least 0.")
+    return np.log(p), warmer, float(np.log(lcl_pressure)) if lcl_pressure > 0.0 else -np.inf
+
+
+def _free_layer(x: FloatArray, warmer: FloatArray, base: float) -> tuple[FloatArray, FloatArray, int, int] | None:
+    """Return the sounding with all crossings and the cloud base as levels, and the levels of LFC and EL in it."""
+    below, above = warmer[:-1], warmer[1:]
+    crossed = below * above < 0.0
+    zero = x[:-1][crossed] + (np.diff(x) * below)[crossed] / (below - above)[crossed]
+    more = zero if not x[-1] < base < x[0] else np.append(zero, base)
+    values = np.append(np.zeros(zero.size), np.interp(more[zero.size :], x[::-1], warmer[::-1]))
+    levels, first = np.unique(np.append(x, more), return_index=True)
+    levels, difference = levels[::-1], np.append(warmer, values)[first][::-1]
+    rises = (difference[:-1] + difference[1:] > 0.0) & (levels[:-1] <= base)
+    if not np.any(rises):
+        return None
+    where = np.flatnonzero(rises)
+    return levels, difference, int(where[0]), int(where[-1]) + 1
+
+
+def cape_cin(
+    pressure: ArrayLike,
+    virtual_temperature: ArrayLike,
+    parcel_virtual_temperature: ArrayLike,
+    lcl_pressure: float | None = None,
+) -> Convection:
+    r"""Return the energy that buoyancy gives to a rising parcel, and what must be spent before.
+
+    :math:`\mathrm{CAPE} = R_d \int_{EL}^{LFC} (T_v' - T_v)\, d \ln p`, and CIN is the same from the start to the
+    LFC. The LFC is the lowest place, not below the cloud base, from which the parcel is buoyant; the EL is the
+    highest place at which it ceases to be. Stable layers between the two count against CAPE.
+
+    Parameters
+    ----------
+    pressure : (level,)
+        Pressure, falling from the parcel's start upward [Pa].
+    virtual_temperature : (level,)
+        Virtual temperature of the air around the parcel [K].
+    parcel_virtual_temperature : (level,)
+        Virtual temperature of the parcel [K].
+    lcl_pressure
+        Pressure of the parcel's cloud base [Pa]; the parcel may be free from the start if none is given.
+
+    Returns
+    -------
+    Convection
+        CAPE, CIN, LFC and EL. Without an LFC both energies are 0.0; without an EL, CAPE ends with the sounding.
+
+    Raises
+    ------
+    ValueError
+        If the pressures do not fall, the levels are not as many, or a number is not finite and positive.
+
+    Notes
+    -----
+    The choices of MetPy's ``cape_cin``, ``which_lfc="bottom"`` and ``which_el="top"``, but for a parcel that is
+    buoyant at its cloud base, stable farther up and buoyant again: here the LFC is the cloud base, there it is the
+    upper crossing.
+
+    References
+    ----------
+    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, chapter 6.
+
+    Examples
+    --------
+    One kelvin too cold at 900 hPa, three too warm at 500 hPa, one too cold at 300 hPa:
+
+    >>> energy = cape_cin([900e2, 500e2, 300e2], [290.0, 260.0, 240.0], [289.0, 263.0, 239.0])
+    >>> round(energy.cape), round(energy.cin), round(energy.lfc, -2), round(energy.el, -2)
+    (355, -21, 77700.0, 34100.0)
+    """
+    x, warmer, base = _sounding(pressure, virtual_temperature, parcel_virtual_temperature, lcl_pressure)
+    free = _free_layer(x, warmer, base)
+    if free is None:
+        return Convection(0.0, 0.0, None, None)
+    levels, difference, bottom, top = free
+    work = -DRY_AIR_GAS_CONSTANT * np.diff(levels) * 0.5 * (difference[:-1] + difference[1:])
+    end = None if top == levels.size - 1 and difference[top] > 0.0 else float(np.exp(levels[top]))
+    cape, cin = float(np.sum(work[bottom:top])), min(0.0, float(np.sum(work[:bottom])))
+    return Convection(cape, cin, float(np.exp(levels[bottom])), end)
+
+
+def cape_standard_error(
+    pressure: ArrayLike,
+    virtual_temperature: ArrayLike,
+    parcel_virtual_temperature: ArrayLike,
+    standard_error: ArrayLike,
+    correlation: float = 0.0,
+    lcl_pressure: float | None = None,
+) -> float:
+    r"""Return the standard error of CAPE that comes from those of a measured parcel.
+
+    To first order :math:`R_d \sqrt{\sum_{ij} w_i w_j \rho_{ij} \sigma_i \sigma_j}`, where :math:`w_i` is the part
+    of :math:`\ln p` between LFC and EL that level i stands for. Moved crossings add nothing, for there the
+    difference is zero.
+
+    Parameters
+    ----------
+    pressure, virtual_temperature, parcel_virtual_temperature, lcl_pressure
+        As in :func:`cape_cin`.
+    standard_error : (level,)
+        Standard error of the parcel's virtual temperature [K]: that of its temperature times :math:`T_v / T`.
+    correlation
+        Correlation :math:`\rho` between the errors of any two levels [1]: 0 if they are independent, 1 if all are
+        shifted together.
+
+    Returns
+    -------
+    float
+        Standard error of CAPE [J kg^-1]; 0.0 without an LFC.
+
+    Raises
+    ------
+    ValueError
+        If the sounding is not one that :func:`cape_cin` takes, an error is negative, or the correlation lies
+        outside 0 to 1.
+
+    Examples
+    --------
+    A tenth of a kelvin at each of three levels:
+
+    >>> sounding = [900e2, 500e2, 300e2], [290.0, 260.0, 240.0], [289.0, 263.0, 239.0]
+    >>> [round(cape_standard_error(*sounding, [0.1, 0.1, 0.1], rho), 1) for rho in (0.0, 1.0)]
+    [16.1, 23.7]
+    """
+    x, warmer, base = _sounding(pressure, virtual_temperature, parcel_virtual_temperature, lcl_pressure)
+    error = checked_not_negative(as_floats(standard_error), "standard_error")
+    if error.shape != x.shape:
+        raise ValueError("standard_error must have as many levels as pressure.")
+    if not 0.0 <= correlation <= 1.0:
+        raise ValueError(f"correlation = {correlation} must lie between 0 and 1.")
+    free = _free_layer(x, warmer, base)
+    if free is None:
+        return 0.0
+    levels, _, bottom, top = free
+    high, low = np.clip(x[:-1], levels[top], levels[bottom]), np.clip(x[1:], levels[top], levels[bottom])
+    upper = (high - low) * (x[:-1] - 0.5 * (high + low)) / (x[:-1] - x[1:])
+    weight = np.append(high - low - upper, 0.0) + np.append(0.0, upper)
+    shift = weight * error
+    variance = (1.0 - correlation) * np.sum(shift**2) + correlation * np.sum(shift) ** 2
+    return float(DRY_AIR_GAS_CONSTANT * np.sqrt(variance))

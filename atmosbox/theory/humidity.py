@@ -1,0 +1,223 @@
+r"""How much water vapour air does hold: vapour pressure, mixing ratio, relative humidity, virtual temperature.
+
+Names are those of MetPy. Temperatures are in K, pressures in Pa, mixing ratios in kg per kg of dry air, relative
+humidities in parts of one.
+
+References
+----------
+Emanuel, K. A. (1994), Atmospheric Convection, chapter 4.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.theory import saturation
+from atmosbox.theory._array import FloatArray, as_floats
+from atmosbox.theory._water import MASS_RATIO, checked_not_negative, checked_positive
+
+WATER_MASS_RATIO: float = MASS_RATIO
+"""Mass of a molecule of water over that of air: mixing ratio per molecule of water and molecule of air [1]."""
+
+
+def vapor_pressure(pressure: ArrayLike, mixing_ratio: ArrayLike) -> FloatArray:
+    r"""Return the share that water vapour has in the pressure of air, :math:`p r / (\epsilon + r)`.
+
+    Parameters
+    ----------
+    pressure
+        Pressure of the air p [Pa].
+    mixing_ratio
+        Mass of vapour per mass of dry air r [kg kg^-1].
+
+    Returns
+    -------
+    ndarray
+        Vapour pressure [Pa].
+
+    Raises
+    ------
+    ValueError
+        If a pressure is not positive or a mixing ratio is negative.
+
+    Examples
+    --------
+    >>> round(float(vapor_pressure(1000e2, 0.010)))
+    1582
+    """
+    p = checked_positive(as_floats(pressure), "pressure")
+    r = checked_not_negative(as_floats(mixing_ratio), "mixing_ratio")
+    e: FloatArray = p * r / (MASS_RATIO + r)
+    return e
+
+
+def mixing_ratio(vapor_pressure: ArrayLike, pressure: ArrayLike) -> FloatArray:
+    r"""Return the mass of vapour per mass of dry air, :math:`\epsilon e / (p - e)`.
+
+    Parameters
+    ----------
+    vapor_pressure
+        Vapour pressure e [Pa].
+    pressure
+        Pressure of the air, with its vapour, p [Pa].
+
+    Returns
+    -------
+    ndarray
+        Mixing ratio [kg kg^-1].
+
+    Raises
+    ------
+    ValueError
+        If a vapour pressure is negative or as high as the pressure, which leaves no air.
+
+    Examples
+    --------
+    >>> round(float(mixing_ratio(1582.0, 1000e2)), 4)
+    0.0100
+    """
+    e = checked_not_negative(as_floats(vapor_pressure), "vapor_pressure")
+    p = checked_positive(as_floats(pressure), "pressure")
+    if not np.all(e < p):
+        raise ValueError("vapor_pressure must be below pressure: there would be no air, water of that warmth boils.")
+    ratio: FloatArray = MASS_RATIO * e / (p - e)
+    return ratio
+
+
+def saturation_mixing_ratio(pressure: ArrayLike, temperature: ArrayLike) -> FloatArray:
+    r"""Return the mass of vapour per mass of dry air at saturation, :math:`\epsilon e_s / (p - e_s)`.
+
+    Parameters
+    ----------
+    pressure
+        Pressure of the air, with its vapour [Pa].
+    temperature
+        Temperature [K].
+
+    Returns
+    -------
+    ndarray
+        Saturation mixing ratio [kg kg^-1].
+
+    Raises
+    ------
+    ValueError
+        If a temperature lies outside the range of :func:`saturation_vapor_pressure`, or water of that
+        temperature boils at that pressure.
+
+    Examples
+    --------
+    Grams per kilogram at 20 degC:
+
+    >>> round(1000.0 * float(saturation_mixing_ratio(1000e2, 293.15)), 1)
+    14.9
+    """
+    return mixing_ratio(saturation.saturation_vapor_pressure(temperature), pressure)
+
+
+def relative_humidity_from_dewpoint(temperature: ArrayLike, dewpoint: ArrayLike) -> FloatArray:
+    r"""Return the vapour pressure over that of saturation, :math:`e_s(T_d) / e_s(T)`.
+
+    Parameters
+    ----------
+    temperature
+        Temperature [K], above 30 K, where float64 has no vapour pressure to divide by.
+    dewpoint
+        Dewpoint [K].
+
+    Returns
+    -------
+    ndarray
+        Relative humidity, 1 at saturation, more in supersaturated air [1].
+
+    Raises
+    ------
+    ValueError
+        If a temperature or a dewpoint lies outside the range of :func:`saturation_vapor_pressure`.
+
+    Examples
+    --------
+    >>> round(float(relative_humidity_from_dewpoint(298.15, 290.15)), 3)
+    0.612
+    """
+    if not np.all(as_floats(temperature) >= 30.0):
+        raise ValueError("temperature must be at least 30 K for a relative humidity.")
+    humidity: FloatArray = saturation.saturation_vapor_pressure(dewpoint) / saturation.saturation_vapor_pressure(
+        temperature
+    )
+    return humidity
+
+
+def dewpoint_from_relative_humidity(temperature: ArrayLike, relative_humidity: ArrayLike) -> FloatArray:
+    r"""Return the dewpoint of air of a relative humidity.
+
+    Parameters
+    ----------
+    temperature
+        Temperature [K].
+    relative_humidity
+        Vapour pressure over that of saturation [1].
+
+    Returns
+    -------
+    ndarray
+        Dewpoint [K]; 0 K in dry air.
+
+    Raises
+    ------
+    ValueError
+        If a temperature lies outside the range of :func:`saturation_vapor_pressure` or a humidity is negative.
+
+    Examples
+    --------
+    Half saturated at 20 degC:
+
+    >>> round(float(dewpoint_from_relative_humidity(293.15, 0.5)) - 273.15, 2)
+    9.26
+    """
+    humidity = checked_not_negative(as_floats(relative_humidity), "relative_humidity")
+    return saturation.dewpoint(humidity * saturation.saturation_vapor_pressure(temperature))
+
+
+def virtual_temperature(
+    temperature: ArrayLike, mixing_ratio: ArrayLike, liquid_mixing_ratio: ArrayLike = 0.0
+) -> FloatArray:
+    r"""Return the temperature at which dry air of the same pressure is as dense as this air.
+
+    :math:`T (1 + r / \epsilon) / (1 + r + l)`: vapour makes air lighter, cloud water heavier. With liquid it is
+    also called density temperature.
+
+    Parameters
+    ----------
+    temperature
+        Temperature T [K].
+    mixing_ratio
+        Mass of vapour per mass of dry air r [kg kg^-1].
+    liquid_mixing_ratio
+        Mass of liquid that the air carries per mass of dry air l [kg kg^-1].
+
+    Returns
+    -------
+    ndarray
+        Virtual temperature [K].
+
+    Raises
+    ------
+    ValueError
+        If a temperature is not positive or a mixing ratio is negative.
+
+    References
+    ----------
+    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, equation 4.3.6.
+
+    Examples
+    --------
+    Fifteen grams of vapour count for 2.7 K; as many of cloud water take more than that away:
+
+    >>> virtual_temperature(293.15, 0.015, [0.0, 0.015]).round(1)
+    array([295.8, 291.5])
+    """
+    t = checked_positive(as_floats(temperature), "temperature")
+    r = checked_not_negative(as_floats(mixing_ratio), "mixing_ratio")
+    liquid = checked_not_negative(as_floats(liquid_mixing_ratio), "liquid_mixing_ratio")
+    virtual: FloatArray = t * (1.0 + r / MASS_RATIO) / (1.0 + r + liquid)
+    return virtual

@@ -1,0 +1,219 @@
+"""Clouds form where more vapour meets water than leaves it.
+
+Moist air of real density between walls of one temperature, with more vapour in it than it can hold. Two
+things are counted: the molecules of vapour that meet liquid and stay, and those that leave it. The first rate
+falls while vapour is used up, the second does not care, and where they meet the air is saturated: the vapour
+pressure is then e_s(T), the relative humidity 100 %. No rule says so.
+
+Modelled: hard molecules of air and water at real density; droplets too fine to draw, of one temperature and a
+given area, that every molecule of vapour sticks to which meets them; a binding energy and two heat capacities,
+from which e_s(T) follows. Left out: ice, the curvature of droplets and what is dissolved in them, so that no
+supersaturation is needed to start; forces between molecules of vapour; gravity.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine.liquid import Mist
+from atmosbox.engine.start import random_positions
+from atmosbox.engine.walls import HeatBath
+from atmosbox.engines import EXACT, EngineChoice
+from atmosbox.errors import SettingError
+from atmosbox.headline import Headline
+from atmosbox.instruments import Air, Water
+from atmosbox.moisture import moist_air, vapour_molecules, water
+from atmosbox.panels import Line, Panel
+from atmosbox.scene import Setup
+from atmosbox.settings import SceneSettings, setting
+from atmosbox.statistics import block_average
+from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Condensation"
+FRAMES = 240
+SETTLE = 40
+NUCLEI = 100.0
+"""Heat capacity of the nuclei, in k, that droplets form on; at most half a percent of that of the air."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(10_000, "1", "number of molecules of air and vapour", low=50, high=1_000_000)
+    temperature: float = setting(20.0, "degC", "temperature of the walls", low=-60.0, high=95.0)
+    pressure: float = setting(1000.0, "hPa", "pressure of air and vapour at the start", low=1.0, high=50_000.0)
+    humidity: float = setting(150.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
+    area: float = setting(2.0, "1", "area of all droplets, in faces of the box", low=0.01, high=100.0)
+    duration: float = setting(40.0, "ns", "how long to watch", low=0.01, high=1e5)
+
+    def check(self) -> None:
+        """Refuse vapour that leaves no room for air."""
+        most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
+        if self.si.humidity > most:
+            raise SettingError(
+                "humidity",
+                f"{self.humidity:g} %",
+                f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC",
+                f"give --set humidity={math.floor(100.0 * most)}percent or less",
+            )
+
+
+def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, float]:
+    """Return the scale, the density [1/diameter^3], the side that centres can reach [diameters], and Z."""
+    si = settings.si
+    scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
+    wanted = si.pressure / scale.pressure
+    density, factor = wanted, 1.0
+    for _ in range(100):
+        factor = 1.0 if ideal else float(law.compressibility_factor(law.packing_fraction(density, 1.0)))
+        density = math.sqrt(density * wanted / factor)
+    return scale, density, (settings.molecules / density) ** (1.0 / 3.0), factor
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the moist air between its walls."""
+    si = settings.si
+    n = settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    scale, _, side, _ = _start(settings, ideal=engine.ideal)
+    length = (side + 1.0,) * 3
+    saturated = float(law.saturation_vapor_pressure(si.temperature))
+    vapour = vapour_molecules(n, si.humidity * saturated, si.pressure)
+    gas = moist_air(n, vapour, rng)
+    nuclei = min(NUCLEI, 0.005 * 3.5 * n)
+    parcel = engine.make(
+        random_positions(length, np.ones(n), rng),
+        gas.velocity,
+        length=length,
+        walls=(HeatBath(1.0),) * 6,
+        mass=gas.mass,
+        rotation=gas.rotation,
+        rotational_energy=gas.rotational_energy,
+        seed=settings.seed,
+        liquid=Mist(water(scale), kT=1.0, nuclei=nuclei, area=settings.area * side**2),
+    )
+    full = n * saturated / si.pressure
+    relaxing = 4.0 * side / (settings.area * float(law.mean_speed(1.0, law.WATER_MASS_RATIO)))
+    return Setup(
+        parcel,
+        scale,
+        si.duration / scale.time,
+        FRAMES,
+        (Air(), Water()),
+        samples=4,
+        settle=SETTLE,
+        facts={
+            "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
+            "weight of a molecule": "1: every molecule stands for itself",
+            "exaggeration": "none in the gas; the droplets have far more area than so little water could",
+            "vapour at the start": f"{vapour} molecules; {full:.0f} saturate the air",
+            "time to condense": f"{relaxing * scale.time * 1e9:.2g} ns",
+            "noise of the hygrometer": f"{100.0 / math.sqrt(full):.2g} % at every look",
+        },
+    )
+
+
+def _expected(settings: Settings, *, ideal: bool) -> tuple[float, float, float]:
+    """Return the mean vapour pressure [Pa], its share of saturation, and the rate of exchange at saturation [1/s]."""
+    si = settings.si
+    scale, _, side, factor = _start(settings, ideal=ideal)
+    saturated = float(law.saturation_vapor_pressure(si.temperature))
+    water_molecules = vapour_molecules(settings.molecules, si.humidity * saturated, si.pressure)
+    room = (side * scale.length) ** 3 / factor
+    full = saturated * room / (BOLTZMANN * si.temperature)
+    share = law.isothermal_vapor_number(water_molecules, si.temperature, room).mean / full
+    flux = float(law.hertz_knudsen_flux(si.temperature))
+    return share * saturated, share, share * flux * settings.area * (side * scale.length) ** 2
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return saturation, and the rate at which its vapour meets the liquid."""
+    frames = np.ones(dataset.sizes["elapsed_time"])
+    pressure, share, rate = _expected(settings, ideal="dsmc" in dataset.attrs.get("atmosbox_parameters", ""))
+    return {
+        "water_vapor_partial_pressure_theory": pressure * frames,
+        "relative_humidity_theory": share * frames,
+        "condensation_rate_theory": rate * frames,
+        "air_temperature_theory": settings.si.temperature * frames,
+    }
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return humidity, vapour pressure and both rates, once they have met."""
+    late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    if late.sizes["elapsed_time"] < 40:
+        return ()
+    nothing = "none: the model has no other error than chance"
+    rows = (
+        ("relative_humidity", "1", "percent", "relative humidity", late.relative_humidity_theory),
+        ("water_vapor_partial_pressure", "Pa", "hPa", "vapour pressure", late.water_vapor_partial_pressure_theory),
+        ("condensation_rate", "s-1", "ns-1", "condensation", late.condensation_rate_theory),
+        ("evaporation_rate", "s-1", "ns-1", "evaporation", late.condensation_rate_theory),
+    )
+    found = []
+    for name, unit, shown, label, expected in rows:
+        mean = block_average(late[name].values)
+        found.append(
+            Headline(
+                f"mean_{name}",
+                float(mean.mean),
+                float(mean.standard_error),
+                float(expected[0]),
+                0.0,
+                nothing,
+                unit,
+                shown,
+                label,
+            )
+        )
+    return tuple(found)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return vapour pressure, the two rates and the humidity against time."""
+    return (
+        Panel(
+            "line",
+            "Vapour is used up until the air is just saturated",
+            (
+                Line("elapsed_time", "water_vapor_partial_pressure", "vapour"),
+                Line("elapsed_time", "water_vapor_partial_pressure_theory", "saturation", "theory"),
+            ),
+            x_label="time",
+            y_label="vapour pressure",
+            y_unit="hPa",
+            x_scale="log",
+            headlines=("mean_water_vapor_partial_pressure",),
+        ),
+        Panel(
+            "line",
+            "Saturation is where two rates meet",
+            (
+                Line("elapsed_time", "condensation_rate", "condensation"),
+                Line("elapsed_time", "evaporation_rate", "evaporation"),
+                Line("elapsed_time", "condensation_rate_theory", "Hertz and Knudsen", "theory"),
+            ),
+            x_label="time",
+            y_label="molecules per time",
+            y_unit="ns-1",
+            x_scale="log",
+            headlines=("mean_condensation_rate", "mean_evaporation_rate"),
+        ),
+        Panel(
+            "line",
+            "Water in the air and in the droplets",
+            (
+                Line("elapsed_time", "vapor_molecule_count", "vapour"),
+                Line("elapsed_time", "liquid_molecule_count", "liquid"),
+            ),
+            x_label="time",
+            y_label="molecules",
+            x_scale="log",
+            headlines=("mean_relative_humidity",),
+        ),
+    )

@@ -1,0 +1,124 @@
+"""A parcel of moist air rises past its cloud base.
+
+Below it cools along the dry adiabat, by ten degrees in a kilometre. At the lifting condensation level its vapour
+begins to meet more liquid than leaves it, and every molecule that condenses gives up its binding energy: from
+here on the parcel cools half as fast, along the moist adiabat. Nobody tells it where the cloud base is.
+
+Modelled: hard molecules of air and water that rotate; droplets too fine to draw, of one temperature, carried along
+by the air; a binding energy and two heat capacities, from which the latent heat and e_s(T) follow; a hydrostatic
+environment of constant lapse rate. Reversible: the droplets stay in the parcel; with rain=on the cloud holds a gram
+per kilogram, and what is more falls out, which is nearly pseudo-adiabatic. Left out: ice, the curvature of droplets
+and what is dissolved in them; gravity inside the parcel; mixing with the air outside. Exaggerated: some kilometres
+are climbed within nanoseconds, in a few hundred collisions of each molecule; the molecules are drawn larger than they
+are; the droplets have far more area than so little water could. Few molecules are vapour, one in fifty, and so the
+cloud base is blurred: already below it some molecules are clustered, RH / (1 - RH) on average.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engines import EXACT, EngineChoice, used
+from atmosbox.errors import SettingError
+from atmosbox.headline import Headline
+from atmosbox.panels import Panel
+from atmosbox.rising import MoistAscent, lifted_headlines, lifted_panels, lifted_theory, rise
+from atmosbox.scene import Setup
+from atmosbox.settings import SceneSettings, setting
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Lifting moist air"
+FRAMES = 60
+LOOKS = 10
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(30_000, "1", "number of molecules in the parcel", low=200, high=1_000_000)
+    temperature: float = setting(25.0, "degC", "temperature of parcel and air at the ground", low=-60.0, high=45.0)
+    dewpoint: float = setting(17.0, "degC", "dewpoint of the parcel at the ground", low=-100.0, high=45.0)
+    pressure: float = setting(1000.0, "hPa", "pressure at the ground", low=300.0, high=1100.0)
+    top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=100.0, high=1000.0)
+    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
+    rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
+    cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
+    ascent: float = setting(400.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)
+    area: float = setting(20.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
+
+    def check(self) -> None:
+        """Refuse an ascent that does not go up, and a dewpoint above the temperature."""
+        if self.top_pressure > 0.98 * self.pressure:
+            raise SettingError(
+                "top_pressure",
+                f"{self.top_pressure:g} hPa",
+                f"is not below the pressure at the ground, {self.pressure:g} hPa",
+                f"give --set top_pressure={0.3 * self.pressure:.0f}hPa",
+            )
+        if self.dewpoint > self.temperature:
+            raise SettingError(
+                "dewpoint",
+                f"{self.dewpoint:g} degC",
+                f"is above the temperature, {self.temperature:g} degC: such air is in its cloud already",
+                f"give --set dewpoint={self.temperature:g}degC for saturated air",
+            )
+
+
+def _top(settings: Settings) -> float:
+    """Return how high the parcel rises [m]."""
+    si = settings.si
+    return float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
+
+
+def _ascent(settings: Settings) -> MoistAscent:
+    """Return the way up, as theory knows it."""
+    si = settings.si
+    return MoistAscent(
+        molecules=settings.molecules,
+        diameter=si.diameter,
+        temperature=si.temperature,
+        pressure=si.pressure,
+        vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
+        route=tuple(
+            float(law.environment_pressure(height, si.temperature, si.pressure, si.lapse_rate))
+            for height in np.linspace(0.0, _top(settings), 400)
+        ),
+        length=settings.ascent,
+        area=settings.area,
+        most_liquid=si.cloud_water if settings.rain else math.inf,
+    )
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the moist parcel at the ground with its piston."""
+    si = settings.si
+    top = _top(settings)
+    return rise(
+        _ascent(settings),
+        engine,
+        height=lambda share: top * share,
+        around=lambda share: float(law.environment_temperature(top * share, si.temperature, si.lapse_rate)),
+        frames=FRAMES,
+        looks=LOOKS,
+        seed=settings.seed,
+    )
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return the adiabat without condensation, and the water of the other one."""
+    return lifted_theory(dataset, _ascent(settings), FRAMES)
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return the cloud base and the temperatures on the way."""
+    return lifted_headlines(dataset, _ascent(settings), ideal=used(dataset).ideal)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return temperature and liquid against pressure, and the misfit."""
+    return lifted_panels(_ascent(settings), "adiabat with rain" if settings.rain else "moist adiabat")

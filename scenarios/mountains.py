@@ -1,0 +1,213 @@
+"""Air that crosses mountains arrives warm and dry: the foehn.
+
+A parcel climbs a mountain of two kilometres, sinks into a valley at one, climbs a second of three and sinks to the
+plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down what
+cloud is left evaporates, and from there the parcel warms by ten degrees in a kilometre: more than it had cooled.
+Without rain it would arrive as it set out.
+
+Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the
+air; rain, which takes what liquid the cloud cannot hold with its heat. Left out: ice, the curvature of droplets and
+what is dissolved in them; the wind, mixing with the air outside, heat from the ground and from the sun. Exaggerated:
+eight kilometres up and down within nanoseconds.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engines import EXACT, EngineChoice
+from atmosbox.errors import SettingError
+from atmosbox.headline import Headline
+from atmosbox.panels import Line, Panel
+from atmosbox.rising import MoistAscent, error, lifted_theory, rise
+from atmosbox.scene import Setup
+from atmosbox.settings import SceneSettings, setting
+from atmosbox.statistics import successive_error
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Over the mountains"
+FRAMES = 96
+LOOKS = 8
+BLOCK = 6
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(30_000, "1", "number of molecules in the parcel", low=200, high=1_000_000)
+    temperature: float = setting(25.0, "degC", "temperature of parcel and air in the plain", low=-40.0, high=45.0)
+    dewpoint: float = setting(17.0, "degC", "dewpoint of the parcel in the plain", low=-80.0, high=45.0)
+    pressure: float = setting(1000.0, "hPa", "pressure in the plain", low=500.0, high=1100.0)
+    first: float = setting(2.0, "km", "height of the first mountain", low=0.0, high=6.0)
+    valley: float = setting(1.0, "km", "height of the valley between", low=0.0, high=6.0)
+    second: float = setting(3.0, "km", "height of the second mountain", low=0.1, high=6.0)
+    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
+    rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
+    cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
+    travel: float = setting(500.0, "1", "length of the way in mean free times at its start", low=20.0, high=1e6)
+    area: float = setting(30.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
+
+    def check(self) -> None:
+        """Refuse a valley above its mountains, and a dewpoint above the temperature."""
+        lower = min(self.first, self.second)
+        if self.valley > lower:
+            raise SettingError(
+                "valley",
+                f"{self.valley:g} km",
+                f"is higher than the lower mountain, {lower:g} km",
+                f"give --set valley={lower:g}km or less",
+            )
+        if self.dewpoint > self.temperature:
+            raise SettingError(
+                "dewpoint",
+                f"{self.dewpoint:g} degC",
+                f"is above the temperature, {self.temperature:g} degC: such air is in its cloud already",
+                f"give --set dewpoint={self.temperature:g}degC for saturated air",
+            )
+
+
+def _height(settings: Settings, share: float) -> float:
+    """Return the height of the ground [m] when a share of the way is done: smooth slopes between the five places."""
+    si = settings.si
+    places = np.array([0.0, si.first, si.valley, si.second, 0.0])
+    ends = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(places)))])
+    ends /= ends[-1]
+    k = min(int(np.searchsorted(ends, share, side="right")) - 1, 3)
+    part = min((share - ends[k]) / max(ends[k + 1] - ends[k], 1e-12), 1.0)
+    return float(places[k] + (places[k + 1] - places[k]) * 0.5 * (1.0 - math.cos(math.pi * part)))
+
+
+def _ascent(settings: Settings) -> MoistAscent:
+    """Return the way, as theory knows it."""
+    si = settings.si
+    return MoistAscent(
+        molecules=settings.molecules,
+        diameter=si.diameter,
+        temperature=si.temperature,
+        pressure=si.pressure,
+        vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
+        route=tuple(
+            float(law.environment_pressure(_height(settings, share), si.temperature, si.pressure, si.lapse_rate))
+            for share in np.linspace(0.0, 1.0, 400)
+        ),
+        length=settings.travel,
+        area=settings.area,
+        most_liquid=si.cloud_water if settings.rain else math.inf,
+    )
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the moist parcel in the plain with its piston."""
+    si = settings.si
+
+    def around(share: float) -> float:
+        return float(law.environment_temperature(_height(settings, share), si.temperature, si.lapse_rate))
+
+    return rise(
+        _ascent(settings),
+        engine,
+        height=lambda share: _height(settings, share),
+        around=around,
+        frames=FRAMES,
+        looks=LOOKS,
+        seed=settings.seed,
+    )
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return the water on the way, and the temperature if nothing condensed."""
+    return lifted_theory(dataset, _ascent(settings), FRAMES)
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return how warm and how dry the parcel arrives."""
+    ascent = _ascent(settings)
+    pressure = dataset.parcel_pressure.values
+    if len(pressure) < FRAMES:
+        return ()
+    misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
+    path = ascent.planned[1]
+    arrival = float(path.temperature[-1])
+    late = slice(-BLOCK, None)
+    cold = float(path.temperature.min())
+    lost = error.rain_scatter(ascent) if "rain_mixing_ratio" in dataset else 0.0
+    noise = successive_error(misfit, block=BLOCK)[-1], error.walk(ascent, pressure)[-1] * arrival
+    scatter = math.hypot(*noise, error.warmth_of(lost, cold))
+    humidity = float(law.vapor_pressure(ascent.pressure, path.vapor[-1]) / law.saturation_vapor_pressure(arrival))
+    hurried = ascent.temperature * error.haste(ascent).finite_speed(ascent.top_pressure)
+    found = [
+        Headline(
+            "arrival_temperature",
+            arrival + float(misfit[late].mean()),
+            scatter,
+            arrival,
+            hurried + error.haze(ascent, humidity, arrival),
+            "the way is not infinitely slow, and some molecules are clustered in clear air",
+            "K",
+            "degC",
+            "temperature in the plain beyond",
+        )
+    ]
+    if "rain_mixing_ratio" in dataset:
+        found.append(
+            Headline(
+                "rain",
+                float(dataset.rain_mixing_ratio[-1]),
+                lost,
+                float(path.rain[-1]),
+                0.0,
+                "none: the model has no other error than chance",
+                "kg kg-1",
+                "g kg-1",
+                "rain per dry air",
+            )
+        )
+    return tuple(found)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return the way, the temperature along it, and the water."""
+    return (
+        Panel(
+            "line",
+            "Over two mountains",
+            (Line("elapsed_time", "parcel_height", "parcel"),),
+            x_label="time",
+            y_label="height",
+            y_unit="km",
+        ),
+        Panel(
+            "profile",
+            "Cloudy up, clear down" if settings.rain else "As warm down as up",
+            (
+                Line("parcel_temperature", "parcel_height", "parcel", error="parcel_temperature_se"),
+                Line("adiabat_temperature", "parcel_height", "theory", "theory"),
+                Line("environment_temperature", "parcel_height", "air around", "environment"),
+            ),
+            x_label="temperature",
+            y_label="height",
+            x_unit="degC",
+            y_unit="km",
+            headlines=("arrival_temperature",),
+        ),
+        Panel(
+            "line",
+            "Where the water is",
+            (
+                Line("elapsed_time", "humidity_mixing_ratio", "vapour"),
+                Line("elapsed_time", "cloud_liquid_water_mixing_ratio", "cloud"),
+                Line("elapsed_time", "rain_mixing_ratio", "rain so far"),
+                Line("elapsed_time", "humidity_mixing_ratio_theory", "theory", "theory"),
+                Line("elapsed_time", "rain_mixing_ratio_theory", "theory, rain", "theory"),
+            ),
+            x_label="time",
+            y_label="water per dry air",
+            y_unit="g kg-1",
+            headlines=("rain",) if settings.rain else (),
+        ),
+    )

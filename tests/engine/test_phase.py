@@ -1,0 +1,204 @@
+"""A molecule that condenses is nowhere, one that evaporates stands in its cells: all tables agree after every event.
+
+The kernels are those of `test_moist`.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox.engine import moist_parcelset
+from atmosbox.engine._jit import COMPILED
+from atmosbox.engine.liquid import Mist, Pool, Substance
+from atmosbox.engine.moist_parcelset import MoistParcelSet
+from atmosbox.engine.scatter import random_positions
+from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+
+many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+
+TURNING = (Periodic(),) * 6
+SMOOTH = (Specular(),) * 6
+MASS, DIAMETER = 0.62, 0.8
+WATER = Substance(MASS, DIAMETER, 8.0, 9.0, 0.1 * math.exp(8.0))
+WALLS = {
+    "mist": (HeatBath(1.0),) * 6,
+    "pool": (*(HeatBath(1.0),) * 4, Specular(), HeatBath(1.0)),
+    "periodic": TURNING,
+    "mist under a piston": (*TURNING[:4], Specular(), Piston(-0.05)),
+    "pool under a piston": (*TURNING[:4], Specular(), Piston(-0.05)),
+}
+by_name = pytest.mark.parametrize("name", WALLS)
+
+
+def box(name, *, air=20, vapour=10, sides=(5.5, 5.5, 6.0), number=30, seed=9, substance=WATER, **options):
+    """Return a box of air and vapour at random places, with its liquid."""
+    rng = np.random.default_rng(seed)
+    walls = options.pop("walls", WALLS[name])
+    facts = {"number": number, "nuclei": 50.0} | options
+    liquid = Pool(substance, **facts) if "pool" in name else Mist(substance, **{"area": 60.0} | facts)
+    mass = np.r_[np.full(vapour, MASS), np.ones(air)]
+    diameter = np.r_[np.full(vapour, substance.diameter), np.ones(air)]
+    rotation = np.r_[np.full(vapour, 3.0), np.full(air, 2.0)]
+    periodic = tuple(isinstance(wall, Periodic) for wall in walls[::2])
+    return MoistParcelSet(
+        random_positions(sides, diameter, rng, periodic=periodic),
+        rng.standard_normal((air + vapour, 3)) / np.sqrt(mass)[:, None],
+        length=sides,
+        walls=walls,
+        mass=mass,
+        diameter=diameter,
+        rotation=rotation,
+        rotational_energy=rng.standard_gamma(0.5 * rotation),
+        liquid=liquid,
+        seed=seed,
+    )
+
+
+def members(parcel):
+    """Return for each molecule the sorted cells in which it is listed."""
+    cells = parcel._cells
+    listed = [[] for _ in parcel._fields]
+    for cell in range(cells.number_x * cells.number_y * cells.number_z):
+        row = cells.row[cell * cells.stride : (cell + 1) * cells.stride].astype(int)
+        assert row[0] < cells.stride
+        for i in row[1 : 1 + row[0]]:
+            listed[i].append(cell)
+    return [sorted(cells) for cells in listed]
+
+
+def cells_it_overlaps(parcel, i):
+    """Return the cells that molecule i overlaps, from its slots."""
+    cells, event = parcel._cells, parcel._events[i]
+    size = int(parcel._kinds.table["size_class"][parcel._fields["kind"][i]])
+    ranges = []
+    for axis, (name, number) in enumerate(zip("xyz", (cells.number_x, cells.number_y, cells.number_z), strict=True)):
+        slot = int(event[f"slot_{name}"])
+        first, span = int(cells.first[size, axis, slot]), int(cells.span[size, axis, slot])
+        ranges.append([(first + k) % number for k in range(span)])
+    return sorted(
+        (a * cells.number_y + b) * cells.number_z + c for a in ranges[0] for b in ranges[1] for c in ranges[2]
+    )
+
+
+def tables_agree(parcel):
+    """Assert that cells, calendar, clocks and the list of the absent tell of the same molecules."""
+    assert parcel._modes.spanning
+    absent = np.isinf(parcel._fields["clock"])
+    top = int(parcel._ledger.top[0])
+    assert sorted(parcel._ledger.absent[:top]) == np.flatnonzero(absent).tolist()
+    assert top == parcel.liquid + parcel.rained
+    listed = members(parcel)
+    leaf = parcel._calendar.leaf
+    for i, gone in enumerate(absent):
+        if gone:
+            assert listed[i] == []
+            assert parcel._calendar.time[leaf + i] == math.inf
+            assert parcel._kinds.rotational_energy[i] == 0.0
+            assert parcel._fields["vx"][i] == 0.0
+        else:
+            assert listed[i] == cells_it_overlaps(parcel, i)
+            assert np.isfinite(parcel._calendar.time[leaf + i])
+
+
+@many_events
+@by_name
+def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypatch):
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
+    parcel = box(name)
+    seen = [(0, 0)]
+    tables_agree(parcel)
+
+    def check(time):
+        now = (parcel.condensed, parcel.evaporated)
+        if now != seen[-1]:
+            seen.append(now)
+            tables_agree(parcel)
+
+    while min(seen[-1]) < 15:
+        parcel.advance(parcel.time + 1.0, watch=check)
+        assert parcel.time < 200.0
+
+
+@many_events
+@by_name
+def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
+    parcel = box(name, air=40, vapour=10)
+    seen = [0]
+
+    def check(time):
+        if parcel.evaporated == seen[-1]:
+            return
+        seen.append(parcel.evaporated)
+        present = np.isfinite(parcel._fields["clock"])
+        m = parcel._fields[present]
+        newest = int(np.argmax(m["clock"]))
+        t = m["clock"][newest]
+        place = np.stack([m[u] + (t - m["clock"]) * m["v" + u] for u in "xyz"], axis=1)
+        away = place - place[newest]
+        length = np.array([*parcel.length[:2], parcel.length[2]])
+        away -= np.where(parcel.periodic, length * np.rint(away / length), 0.0)
+        gap = np.sqrt(np.sum(away**2, axis=1)) - 0.5 * (parcel.diameter + DIAMETER)
+        gap[newest] = 0.0
+        assert gap.min() > -1e-9
+        if "pool" in name:
+            # it stands on the floor and goes up
+            assert place[newest, 2] == 0.5 * DIAMETER
+            assert m["vz"][newest] > 0.0
+
+    while seen[-1] < 20:
+        parcel.advance(parcel.time + 1.0, watch=check)
+        assert parcel.time < 200.0
+
+
+@many_events
+@pytest.mark.parametrize("name", ["mist", "pool", "periodic"])
+def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
+    sides = np.array([4.0, 5.0, 6.0])
+    volatile = Substance(MASS, DIAMETER, 2.0, 9.0, 2.0 * math.exp(2.0))
+    wide = {} if name == "pool" else {"area": 200.0}
+    parcel = box(name, air=1, vapour=0, sides=tuple(sides), number=5, substance=volatile, **wide)
+    places, seen = [], [0]
+
+    def check(time):
+        if parcel.evaporated > seen[-1]:
+            seen.append(parcel.evaporated)
+            clock = parcel._fields["clock"]
+            newest = int(np.argmax(np.where(np.isfinite(clock), clock, -np.inf)))
+            places.append([parcel._fields[u][newest] for u in "xyz"])
+
+    while len(places) < 4000:
+        parcel.advance(parcel.time + 20.0, watch=check)
+        assert parcel.time < 20_000.0
+    places = np.array(places)
+    margin = 0.0 if name == "periodic" else 0.5 * DIAMETER
+    if name == "periodic":
+        places %= sides
+    for axis in range(3):
+        low, high = margin, sides[axis] - margin
+        if name == "pool" and axis == 2:
+            assert (places[:, 2] == low).all()
+            continue
+        share = (places[:, axis] - low) / (high - low)
+        assert ((share >= 0.0) & (share <= 1.0)).all()
+        # a mean of 1/2 and a variance of 1/12 within 4 standard errors: a false alarm in 16 000 per number
+        assert abs(share.mean() - 0.5) < 4.0 * math.sqrt(1.0 / 12.0 / len(share))
+        assert abs(np.mean((share - 0.5) ** 2) - 1.0 / 12.0) < 4.0 * math.sqrt(1.0 / 180.0 / len(share))
+
+
+@many_events
+def test_rows_grow_where_many_leave_a_pool_at_once():
+    # a small floor, from which far more than fill a row come up within one mean free time
+    volatile = Substance(MASS, 0.05, 2.0, 9.0, 1e6 * math.exp(2.0))
+    parcel = box("pool", air=3, vapour=0, number=400, sides=(3.0, 3.0, 60.0), substance=volatile, walls=SMOOTH)
+    before = parcel._cells.stride
+    parcel.advance(0.05)
+    assert parcel._cells.stride > before
+    assert parcel.evaporated > 100
+    tables_agree(parcel)
+    parcel.advance(5.0)
+    tables_agree(parcel)
+    assert parcel.escaped() == 0
+    assert parcel.ledger() < 1e-10

@@ -1,0 +1,384 @@
+"""Moist air: its saturation, cloud base and adiabats beside MetPy and textbook tables, and the laws that tie them."""
+
+import numpy as np
+import pytest
+from numpy.polynomial import Chebyshev
+from scipy import integrate
+
+from atmosbox import theory
+from atmosbox.units import BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
+
+EPSILON = WATER.molar_mass / DRY_AIR.molar_mass
+R_DRY, R_VAPOR = GAS_CONSTANT / DRY_AIR.molar_mass, GAS_CONSTANT / WATER.molar_mass
+ZERO_CELSIUS = 273.15
+WEATHER = ZERO_CELSIUS + np.linspace(-10.0, 40.0, 101)
+
+
+def metpy():
+    import metpy.calc
+    from metpy.units import units
+
+    return metpy.calc, units
+
+
+def test_the_vapour_pressure_is_metpys_to_three_parts_in_ten_thousand():
+    calc, units = metpy()
+    expected = calc.saturation_vapor_pressure(WEATHER * units.kelvin).m_as("Pa")
+    ratio = theory.saturation_vapor_pressure(WEATHER) / expected
+    assert np.max(np.abs(ratio - 1.0)) < 3e-4
+
+
+def test_the_latent_heat_is_metpys_to_three_parts_in_ten_thousand():
+    calc, units = metpy()
+    expected = calc.water_latent_heat_vaporization(WEATHER * units.kelvin).m_as("J/kg")
+    assert np.allclose(theory.water_latent_heat_vaporization(WEATHER), expected, rtol=3e-4)
+    assert theory.water_latent_heat_vaporization(273.16) == pytest.approx(2.50084e6, rel=1e-14)
+
+
+def test_the_vapour_pressure_obeys_clausius_and_clapeyron():
+    step = 1e-3
+    temperature = np.linspace(200.0, 400.0, 41)
+    upper, lower = (theory.saturation_vapor_pressure(temperature * (1.0 + s)) for s in (step, -step))
+    slope = np.log(upper / lower) / np.log((1.0 + step) / (1.0 - step))
+    expected = theory.water_latent_heat_vaporization(temperature) / (R_VAPOR * temperature)
+    assert np.allclose(slope, expected, rtol=2e-6)  # the third derivative times step^2 / 6
+
+
+def test_the_constants_are_those_of_steam_tables():
+    assert theory.VAPOR_HEAT_CAPACITY == 4.0
+    assert pytest.approx(4219.4, rel=3e-4) == theory.LIQUID_HEAT_CAPACITY * R_VAPOR
+    per_mass = theory.BINDING_TEMPERATURE * R_VAPOR
+    assert per_mass == pytest.approx(2.50084e6 + 5.14 * R_VAPOR * 273.16, rel=1e-12)
+
+
+@pytest.mark.parametrize("temperature", [0.0, 1e-308, 1e-5, 0.999, 1.0, 5.0])
+def test_at_the_coldest_there_is_no_vapour_and_no_warning(temperature):
+    assert theory.saturation_vapor_pressure(temperature) == 0.0
+    assert theory.lcl(1e5, 290.0, temperature) == (0.0, 0.0)
+
+
+def test_the_dewpoint_is_the_inverse_of_the_vapour_pressure_over_the_whole_range():
+    temperature = np.linspace(30.0, 647.0, 500)
+    assert np.allclose(theory.dewpoint(theory.saturation_vapor_pressure(temperature)), temperature, rtol=4e-15)
+    assert theory.dewpoint(0.0) == 0.0
+    assert 0.0 < theory.dewpoint(5e-324) < theory.dewpoint(1e-300) < 10.0
+
+
+def test_humidities_are_metpys_spelling_and_values():
+    calc, units = metpy()
+    pressure, warm, dew = 95000.0, 298.15, 287.15
+    e = theory.saturation_vapor_pressure(dew)
+    ratio = theory.mixing_ratio(e, pressure)
+    assert ratio == pytest.approx(calc.mixing_ratio(e * units.Pa, pressure * units.Pa).m_as(""), rel=3e-5)
+    expected = calc.vapor_pressure(pressure * units.Pa, ratio * units("")).m_as("Pa")
+    assert theory.vapor_pressure(pressure, ratio) == pytest.approx(expected, rel=3e-5)
+    assert theory.vapor_pressure(pressure, ratio) == pytest.approx(e, rel=1e-14)
+    expected = calc.saturation_mixing_ratio(pressure * units.Pa, warm * units.K).m_as("")
+    assert theory.saturation_mixing_ratio(pressure, warm) == pytest.approx(expected, rel=3e-4)
+    expected = calc.relative_humidity_from_dewpoint(warm * units.K, dew * units.K).m_as("")
+    assert theory.relative_humidity_from_dewpoint(warm, dew) == pytest.approx(expected, rel=3e-4)
+    expected = calc.dewpoint_from_relative_humidity(warm * units.K, 0.3).m_as("K")
+    assert theory.dewpoint_from_relative_humidity(warm, 0.3) == pytest.approx(expected, abs=0.02)
+    expected = calc.virtual_temperature(warm * units.K, ratio * units("")).m_as("K")
+    assert theory.virtual_temperature(warm, ratio) == pytest.approx(expected, rel=1e-6)
+
+
+def test_virtual_temperature_is_that_of_dry_air_as_dense():
+    pressure, warm, vapor, liquid = 9e4, 290.0, 0.012, 0.003
+    e = theory.vapor_pressure(pressure, vapor)
+    dry = (pressure - e) / (R_DRY * warm)
+    density = dry * (1.0 + vapor + liquid)
+    assert theory.virtual_temperature(warm, vapor, liquid) == pytest.approx(pressure / (R_DRY * density), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("start", "base"),
+    [
+        ((1000, 30, 20), (864.213, 17.6625)),
+        ((1000, 25, 15), (862.873, 12.7282)),
+        ((900, 20, 5), (719.117, 1.8229)),
+        ((1000, 35, 5), (646.088, -1.1109)),
+        ((850, 10, -5), (675.313, -8.0002)),
+        ((1000, 25, 17), (888.780, 15.1518)),
+    ],
+)
+def test_the_cloud_base_is_metpys_to_a_tenth_of_a_hectopascal(start, base):
+    p, t, td = start
+    ours = theory.lcl(100.0 * p, t + ZERO_CELSIUS, td + ZERO_CELSIUS)
+    assert float(ours[0]) / 100.0 == pytest.approx(base[0], abs=0.1)
+    assert float(ours[1]) - ZERO_CELSIUS == pytest.approx(base[1], abs=1e-3)
+
+
+def test_at_the_cloud_base_the_air_is_just_saturated():
+    temperature, spread = np.meshgrid(np.linspace(220.0, 320.0, 11), np.linspace(0.0, 60.0, 7))
+    dew = temperature - spread
+    ratio = theory.mixing_ratio(theory.saturation_vapor_pressure(dew), 1e5)
+    base = theory.lcl(1e5, temperature, dew)
+    e = theory.vapor_pressure(base[0], ratio)
+    assert np.allclose(theory.saturation_vapor_pressure(base[1]), e, rtol=1e-12)
+    kappa = theory.moist_air_poisson_exponent(ratio)
+    assert np.allclose(base[1], temperature * (base[0] / 1e5) ** kappa, rtol=1e-14)
+    assert np.all(base[0][0] == 1e5)
+
+
+def test_the_adiabat_of_clear_air_weighs_its_molecules():
+    calc, units = metpy()
+    ratio = np.array([0.0, 0.01, 0.04])
+    share = theory.vapor_pressure(1.0, ratio)
+    expected = 1.0 / ((1.0 - share) * 3.5 + share * 4.0)
+    assert np.allclose(theory.moist_air_poisson_exponent(ratio), expected, rtol=1e-15)
+    theirs = calc.moist_air_poisson_exponent(ratio / (1.0 + ratio) * units("")).m_as("")
+    assert np.allclose(1.0 / ((1.0 - share) * 3.5 + share * 4.0303), theirs, rtol=1e-5)  # MetPy's 1860.08 J/(kg K)
+    assert theory.moist_air_poisson_exponent(0.0, 0.5) == pytest.approx(0.25, rel=1e-15)
+
+
+STARTS = [
+    pytest.param(288.15, 0.008, 0.0, id="clear"),
+    pytest.param(300.0, 0.030, 0.0, id="cloudy"),
+    pytest.param(213.15, 1e-5, 0.0, id="arctic"),
+    pytest.param(293.15, 1.2 * 0.0149, 0.0, id="120 per cent"),
+    pytest.param(293.15, 0.0149, 0.02, id="nuclei"),
+    pytest.param(330.0, 0.3, 0.0, id="steam bath"),
+    pytest.param(288.15, 0.0, 0.0, id="dry"),
+]
+
+
+@pytest.mark.parametrize(("temperature", "water", "nuclei"), STARTS)
+def test_a_reversible_lift_keeps_its_entropy_and_comes_back(temperature, water, nuclei):
+    up = np.geomspace(1e5, 1e4, 60)
+    path = theory.parcel_path(np.append(up, up[::-1]), 1e5, temperature, water, nuclei_heat=nuclei)
+    entropy = theory.moist_entropy(np.append(up, up[::-1]), path.temperature, water, nuclei)
+    assert entropy == pytest.approx(float(theory.moist_entropy(1e5, temperature, water, nuclei)), rel=1e-12)
+    assert path.temperature[-1] == pytest.approx(temperature, rel=1e-14)
+    assert np.allclose(path.vapor + path.liquid, water, rtol=1e-14)
+    assert np.all(path.rain == 0.0)
+    curve = theory.reversible_adiabat(up, 1e5, temperature, water, nuclei)
+    assert np.allclose(curve, path.temperature[:60], rtol=1e-14)
+
+
+def test_entropy_is_the_integral_of_the_heat_that_was_given():
+    # Warmed at constant pressure: dS = dH / T, over the point at which the last of the liquid goes.
+    def enthalpy(t):
+        vapor = min(float(theory.saturation_mixing_ratio(8e4, t)), 0.012)
+        dry = (3.5 * R_DRY + 0.012 * 9.14 * R_VAPOR) * t
+        return dry + vapor * float(theory.water_latent_heat_vaporization(t))
+
+    ends = np.linspace(280.0, 295.0, 20001)
+    given = np.diff([enthalpy(t) for t in ends]) / (0.5 * (ends[1:] + ends[:-1]))
+    gain = np.diff(theory.moist_entropy(8e4, [280.0, 295.0], 0.012))
+    assert float(gain[0]) == pytest.approx(float(np.sum(given)), rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("start", "p0", "p1", "nuclei"),
+    [(293.15, 1e5, 2e4, 0.0), (303.15, 1e5, 3e4, 0.3), (213.15, 5e4, 1e4, 0.0), (280.0, 5e4, 1e5, 0.0)],
+)
+def test_the_pseudoadiabat_obeys_its_law_to_one_part_in_a_thousand_million(start, p0, p1, nuclei):
+    # What the leaving liquid carries off, c_l times the integral of v d ln T, by spectral quadrature of the curve.
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    middle, half = 0.5 * np.log(p0 * p1), 0.5 * np.log(p1 / p0)
+    x = middle + half * nodes
+    curve = Chebyshev.fit(x, np.log(theory.pseudoadiabat(np.exp(x), p0, start, nuclei)), 48)
+    vapor = theory.saturation_mixing_ratio(np.exp(x), np.exp(curve(x))) / EPSILON
+    carried = 9.14 * half * float(weights @ (vapor * curve.deriv()(x)))
+
+    def held(p, t):
+        e = theory.saturation_vapor_pressure(t)
+        warm = theory.water_latent_heat_vaporization(t) / (R_VAPOR * t)
+        return float((3.5 + nuclei) * np.log(t) - np.log(p - e) + e / (p - e) * warm)
+
+    before, after = held(p0, start), held(p1, theory.pseudoadiabat(p1, p0, start, nuclei))
+    assert after + carried == pytest.approx(before, rel=1e-10)
+    assert abs(carried) > 1e-7 * abs(before)
+
+
+def test_the_saturated_adiabats_stand_beside_metpys():
+    # MetPy leaves out the heat of the vapour and lets L stay: the differences are those, and have a sign.
+    calc, units = metpy()
+    levels = np.array([850.0, 700.0, 500.0, 300.0])
+    theirs = calc.moist_lapse(levels * units.hPa, 293.15 * units.K, 1000.0 * units.hPa).m_as("K")
+    assert np.allclose(theirs - ZERO_CELSIUS, [13.984, 6.370, -8.485, -36.685], atol=0.03)
+    ours = theory.pseudoadiabat(100.0 * levels, 1e5, 293.15)
+    assert np.allclose(ours - theirs, [-0.106, -0.197, -0.244, -0.044], atol=2e-3)
+    water = theory.saturation_mixing_ratio(1e5, 293.15)
+    carried = theory.reversible_adiabat(100.0 * levels, 1e5, 293.15, water)
+    assert np.allclose(carried - theirs, [-0.092, -0.121, 0.146, 1.686], atol=2e-3)
+
+
+def test_without_the_heat_of_vapour_and_with_constant_latent_heat_metpys_curve_comes_out():
+    # The same law of lapse with what MetPy leaves out taken out, and its e_s: this is all that separates the two.
+    calc, units = metpy()
+    latent = 2.50084e6
+
+    def slope(log_p, y):
+        t, p = np.exp(y), np.exp(log_p)
+        r = theory.saturation_mixing_ratio(p, t)
+        return R_DRY * (1.0 + latent * r / (R_DRY * t)) / (3.5 * R_DRY + latent**2 * r * EPSILON / (R_DRY * t * t))
+
+    solved = integrate.solve_ivp(slope, np.log([1e5, 3e4]), [np.log(293.15)], rtol=1e-10, atol=1e-12)
+    theirs = calc.moist_lapse([300.0] * units.hPa, 293.15 * units.K, 1000.0 * units.hPa).m_as("K")
+    assert np.exp(solved.y[0, -1]) == pytest.approx(float(theirs), abs=0.015)
+
+
+TABLE = {
+    1000: [9.507, 8.566, 7.636, 6.474, 5.298, 4.306, 3.583],
+    700: [9.402, 8.153, 7.029, 5.761, 4.610, 3.737, 3.154],
+    500: [9.267, 7.673, 6.387, 5.083, 4.021, 3.287, 2.833],
+}
+
+
+@pytest.mark.parametrize("level", TABLE)
+def test_the_saturated_lapse_rate_is_that_of_tables_but_for_the_heat_of_the_vapour(level):
+    # The tables, in K/km from -40 to 30 degC, are of the form that leaves out the heat and weight of the vapour.
+    t, p = ZERO_CELSIUS + np.array([-40.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0]), 100.0 * level
+    r, latent = theory.saturation_mixing_ratio(p, t), theory.water_latent_heat_vaporization(t)
+    dry, condensing = latent * r / (R_DRY * t), latent**2 * r / (R_DRY * t * t)
+    common = STANDARD_GRAVITY * (1.0 + dry) / (3.5 * R_DRY + EPSILON * condensing)
+    assert np.allclose(1000.0 * common, TABLE[level], rtol=2e-3)
+    whole = (1.0 + r) * (1.0 + dry) / (3.5 * R_DRY + 4.0 * R_VAPOR * r + (EPSILON + r) * condensing)
+    assert np.allclose(theory.moist_lapse_rate(p, t), STANDARD_GRAVITY * whole, rtol=1e-13)
+    assert np.allclose(theory.moist_lapse_rate(p, t[:4]), common[:4], rtol=6e-3)
+
+
+def test_the_lapse_rate_is_the_slope_of_the_pseudoadiabat_in_a_column_at_rest():
+    p, step = 7e4, 1e-3
+    around = theory.pseudoadiabat([p * np.exp(-step), p * np.exp(step)], p, 285.0)
+    r = theory.saturation_mixing_ratio(p, 285.0)
+    fall = STANDARD_GRAVITY / (R_DRY * theory.virtual_temperature(285.0, r))
+    slope = float((around[1] - around[0]) / (2.0 * step) * fall)
+    assert float(theory.moist_lapse_rate(p, 285.0)) == pytest.approx(slope, rel=1e-6)
+    assert theory.moist_lapse_rate(p, 285.0, 0.005) < theory.moist_lapse_rate(p, 285.0)
+
+
+def test_dry_air_follows_the_dry_adiabat():
+    p = np.geomspace(2e5, 1e3, 50)
+    expected = theory.dry_adiabat_temperature(p, 288.15, 1e5)
+    for bound in (np.inf, 0.0, 1e-3):
+        path = theory.parcel_path(p, 1e5, 288.15, 0.0, bound)
+        assert np.allclose(path.temperature, expected, rtol=2e-15)
+        assert np.all(path.vapor == 0.0)
+        assert np.all(path.liquid == 0.0)
+
+
+def test_below_its_cloud_base_a_parcel_cannot_know_whether_it_will_rain():
+    dew = theory.dewpoint(theory.vapor_pressure(1e5, 0.008))
+    base = theory.lcl(1e5, 288.15, dew)
+    p = np.append(np.linspace(1e5, base[0], 10), 6e4)
+    paths = [theory.parcel_path(p, 1e5, 288.15, 0.008, bound) for bound in (np.inf, 0.0)]
+    assert paths[0].temperature[9] == pytest.approx(float(base[1]), rel=1e-13)
+    assert np.allclose(paths[0].temperature[:10], paths[1].temperature[:10], rtol=1e-14)
+    assert paths[0].temperature[10] > paths[1].temperature[10] + 0.01
+    assert np.all(paths[0].liquid[:9] == 0.0)
+    assert paths[0].liquid[10] > 1e-3
+    upper = theory.pseudoadiabat(6e4, float(base[0]), float(base[1]))
+    assert paths[1].temperature[10] == pytest.approx(float(upper), rel=1e-11)
+
+
+def test_foehn_air_that_has_lost_its_rain_comes_down_dry_and_warm():
+    over = np.concatenate([np.linspace(1e5, 7e4, 31), np.linspace(7e4, 1e5, 31)])
+    path = theory.parcel_path(over, 1e5, 288.15, 0.008, 0.0)
+    down = slice(31, None)
+    kappa = theory.moist_air_poisson_exponent(path.vapor[-1])
+    expected = path.temperature[30] * (over[down] / 7e4) ** kappa
+    assert np.allclose(path.temperature[down], expected, rtol=1e-13)
+    assert np.ptp(path.vapor[down]) < 1e-15
+    assert path.temperature[-1] > 288.15 + 5.0
+    assert np.allclose(path.vapor + path.liquid + path.rain, 0.008, rtol=1e-13)
+
+
+def test_a_cloud_that_holds_some_water_descends_wet_and_then_dry():
+    down = np.linspace(6e4, 1e5, 81)
+    path = theory.parcel_path(down, 1e5, 293.15, 0.012, 1.5e-3)
+    assert path.liquid[0] == pytest.approx(1.5e-3, rel=1e-10)
+    cloudy = path.liquid > 0.0
+    last = int(np.flatnonzero(cloudy)[-1])
+    assert 0 < last < 79
+    assert np.all(np.diff(path.liquid[: last + 1]) < 0.0)
+    assert np.allclose(path.vapor[cloudy], theory.saturation_mixing_ratio(down[cloudy], path.temperature[cloudy]))
+    exponent = np.diff(np.log(path.temperature)) / np.diff(np.log(down))
+    assert np.allclose(exponent[last + 1 :], theory.moist_air_poisson_exponent(path.vapor[-1]), rtol=1e-10)
+    assert np.all(exponent[:last] < 0.8 * exponent[-1])
+    entropy = theory.moist_entropy(down, path.temperature, 0.012 - path.rain)
+    assert np.allclose(entropy, entropy[0], rtol=1e-13)
+
+
+def test_a_parcel_that_rises_again_goes_on_where_it_had_turned():
+    straight = theory.parcel_path([6e4, 5e4], 1e5, 293.15, 0.012, 5e-4)
+    bumpy = theory.parcel_path([7e4, 9e4, 6e4, 8e4, 6e4, 5e4], 1e5, 293.15, 0.012, 5e-4)
+    for straight_column, bumpy_column in zip(straight, bumpy, strict=True):
+        assert np.allclose(bumpy_column[[2, 4, 5]], straight_column[[0, 1]][[0, 0, 1]], rtol=1e-10)
+
+
+def test_rain_that_takes_its_heat_along_leaves_the_parcel_colder_than_cloud_that_stays():
+    p = np.array([7e4, 5e4, 3e4])
+    curves = [theory.parcel_path(p, 1e5, 298.15, 0.018, bound).temperature for bound in (0.0, 1e-3, 5e-3, np.inf)]
+    assert np.all(np.diff(curves, axis=0)[:, 1:] > 0.0)
+
+
+def test_more_water_than_air_can_hold_starts_as_a_cloud_or_rains_at_once():
+    most = float(theory.saturation_mixing_ratio(1e5, 293.15))
+    cloud = theory.parcel_path(1e5, 1e5, 293.15, 1.2 * most)
+    assert cloud.liquid == pytest.approx(0.2 * most, rel=1e-10)
+    rained = theory.parcel_path([1e5, 9e4], 1e5, 293.15, 1.2 * most, 0.0)
+    assert rained.rain[0] == pytest.approx(0.2 * most, rel=1e-10)
+    assert rained.temperature[1] == pytest.approx(float(theory.pseudoadiabat(9e4, 1e5, 293.15)), rel=1e-12)
+    full = theory.parcel_path([1e5, 9e4], 1e5, 293.15, most, 0.0)
+    assert full.temperature[1] == pytest.approx(rained.temperature[1], rel=1e-10)
+
+
+def test_air_of_sixty_below_hardly_knows_that_it_is_moist():
+    water = float(theory.saturation_mixing_ratio(3e4, 213.15))
+    p = np.array([3e4, 2e4, 1e4])
+    wet = theory.parcel_path(p, 3e4, 213.15, water, 0.0).temperature
+    dry = theory.dry_adiabat_temperature(p, 213.15, 3e4)
+    assert np.all((wet[1:] > dry[1:]) & (wet[1:] < dry[1:] + 0.5))
+
+
+def test_steam_over_its_boiling_point_is_clear_air():
+    path = theory.parcel_path([900.0, 2000.0], 1000.0, 293.15, 0.02)
+    assert np.all(path.liquid == 0.0)
+    kappa = theory.moist_air_poisson_exponent(0.02)
+    assert np.allclose(path.temperature, 293.15 * np.array([0.9, 2.0]) ** kappa, rtol=1e-14)
+
+
+def test_a_parcel_in_the_engines_units_obeys_the_same_law():
+    # 3.5 k per molecule of air and 4 k of vapour, with no mass in it.
+    water = 200 / 10000
+    cooled = theory.reversible_adiabat(9.9e4, 1e5, 300.0, water * EPSILON)
+    heat = 3.5 + 4.0 * water
+    assert float(cooled) == pytest.approx(300.0 * 0.99 ** ((1.0 + water) / heat), rel=1e-14)
+    assert pytest.approx(GAS_CONSTANT / DRY_AIR.molar_mass, rel=1e-12) == BOLTZMANN / DRY_AIR.molecule_mass
+
+
+@pytest.mark.parametrize(
+    ("call", "match"),
+    [
+        (lambda: theory.saturation_vapor_pressure(-1.0), "0 K"),
+        (lambda: theory.saturation_vapor_pressure([280.0, np.nan]), "0 K"),
+        (lambda: theory.saturation_vapor_pressure(700.0), "critical"),
+        (lambda: theory.dewpoint(-1.0), "vapor_pressure"),
+        (lambda: theory.dewpoint(1e9), "critical"),
+        (lambda: theory.mixing_ratio(2e4, 2e4), "no air"),
+        (lambda: theory.saturation_mixing_ratio(2000.0, 293.15), "boils"),
+        (lambda: theory.vapor_pressure(1e5, -0.1), "mixing_ratio"),
+        (lambda: theory.relative_humidity_from_dewpoint(1.0, 1.0), "30 K"),
+        (lambda: theory.dewpoint_from_relative_humidity(290.0, -0.1), "relative_humidity"),
+        (lambda: theory.virtual_temperature(0.0, 0.01), "temperature"),
+        (lambda: theory.moist_air_poisson_exponent(-0.01), "mixing_ratio"),
+        (lambda: theory.lcl(1e5, 290.0, 290.1), "supersaturated"),
+        (lambda: theory.lcl(2000.0, 295.0, 293.15), "boils"),
+        (lambda: theory.parcel_path([9e4, np.nan], 1e5, 290.0, 0.01), "pressure"),
+        (lambda: theory.parcel_path([9e4], 1e5, 0.0, 0.01), "temperature0"),
+        (lambda: theory.parcel_path([9e4], 1e5, 290.0, -0.01), "total_water"),
+        (lambda: theory.parcel_path([9e4], 1e5, 290.0, 0.01, np.nan), "most_liquid"),
+        (lambda: theory.parcel_path([5e4, 1e4], 1e5, 300.0, 6.0, 5.9), "evaporates"),
+        (lambda: theory.moist_entropy(0.0, 290.0, 0.01), "pressure"),
+        (lambda: theory.reversible_adiabat(9e4, 1e5, 290.0, 0.01, -1.0), "nuclei_heat"),
+        (lambda: theory.pseudoadiabat(9e4, 2000.0, 293.15), "boils"),
+        (lambda: theory.pseudoadiabat(1e8, 1e5, 293.15), "no liquid"),
+        (lambda: theory.moist_lapse_rate(2000.0, 293.15), "boils"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_a_sentence(call, match):
+    with pytest.raises(ValueError, match=match):
+        call()

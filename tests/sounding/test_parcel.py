@@ -1,0 +1,89 @@
+import metpy.calc as mpcalc
+import numpy as np
+import pytest
+from metpy.units import units
+
+from atmosbox.errors import SettingError, SoundingError
+from atmosbox.sounding import Sounding, indices, parcel, weisman_klemp
+
+PRESSURE = np.array([1000e2, 950e2, 900e2, 850e2, 700e2, 600e2, 500e2, 400e2, 300e2, 200e2])
+STABLE = Sounding(PRESSURE, 288.0 - np.linspace(0, 30, 10), 270.0 - np.linspace(0, 60, 10), name="calm")
+
+
+def straight(sounding):
+    """What a user of MetPy types."""
+    return sounding.pressure * units.Pa, sounding.temperature * units.K, sounding.dewpoint * units.K
+
+
+def test_the_numbers_are_those_of_metpy():
+    air = weisman_klemp()
+    found = indices(air)
+    p, t, td = straight(air)
+    cape, cin = mpcalc.surface_based_cape_cin(p, t, td)
+    assert found.cape == pytest.approx(cape.to("J/kg").magnitude)
+    assert found.cin == pytest.approx(cin.to("J/kg").magnitude)
+    assert found.precipitable_water == pytest.approx(mpcalc.precipitable_water(p, td).to("m").magnitude)
+    levels = (
+        (found.lcl, mpcalc.lcl(p[0], t[0], td[0])),
+        (found.lfc, mpcalc.lfc(p, t, td)),
+        (found.el, mpcalc.el(p, t, td)),
+    )
+    for level, (pressure, temperature) in levels:
+        assert level.pressure == pytest.approx(pressure.to("Pa").magnitude)
+        assert level.temperature == pytest.approx(temperature.to("K").magnitude)
+        assert level.height == pytest.approx(np.interp(-level.pressure, -air.pressure, air.height), abs=10.0)
+
+
+def test_cloud_base_is_at_the_height_of_a_dry_adiabat():
+    lcl = indices(weisman_klemp()).lcl
+    assert (300.0 - lcl.temperature) / lcl.height == pytest.approx(9.8e-3, rel=0.02)
+
+
+def test_stable_air_has_neither_lfc_nor_el_nor_energy():
+    found = indices(STABLE)
+    assert (found.lfc, found.el) == (None, None)
+    assert (found.cape, found.cin) == (0.0, 0.0)
+    assert 0.0 < found.precipitable_water < 0.05
+
+
+def test_a_sounding_that_ends_below_the_el_has_none_but_energy():
+    air = weisman_klemp()
+    short = Sounding(air.pressure[:30], air.temperature[:30], air.dewpoint[:30])
+    found = indices(short)
+    assert found.el is None
+    assert found.lfc is not None
+    assert 0.0 < found.cape < indices(air).cape
+
+
+def two_caps():
+    """Air in which a parcel is free twice: below a warm layer, and above it."""
+    air = weisman_klemp(0.016)
+    warm = np.where((air.height > 3000.0) & (air.height < 3400.0), 8.0, 0.0)
+    return Sounding(air.pressure, air.temperature + warm, air.dewpoint)
+
+
+def test_of_several_levels_of_free_convection_one_is_chosen():
+    top, bottom = (indices(two_caps(), which_lfc=which).lfc for which in ("top", "bottom"))
+    assert top.height > 3000.0 > bottom.height
+    with pytest.raises(SettingError, match="which_lfc = middle is not a choice: give one of top, bottom, wide"):
+        indices(two_caps(), which_lfc="middle")
+
+
+def test_a_level_above_the_sounding_has_no_height():
+    dry = Sounding(PRESSURE[:7], np.linspace(320.0, 290.0, 7), np.full(7, 180.0))
+    lcl = indices(dry).lcl
+    assert lcl.pressure < 500e2
+    assert lcl.height is None
+
+
+def test_what_metpy_cannot_answer_is_refused_in_a_sentence(monkeypatch):
+    def fail(*args):
+        raise RuntimeError("no convergence")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(mpcalc, "surface_based_cape_cin", fail)
+        with pytest.raises(SoundingError, match=r"calm: MetPy finds no parcel's path \(no convergence\): give"):
+            indices(STABLE)
+    monkeypatch.setattr(parcel, "_level", lambda *args: None)
+    with pytest.raises(SoundingError, match="calm: MetPy finds no cloud base"):
+        indices(STABLE)

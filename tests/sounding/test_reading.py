@@ -1,0 +1,112 @@
+import os
+
+import pytest
+
+from atmosbox.errors import FileError, SoundingError, UnitError
+from atmosbox.sounding import Sounding, read, reading
+
+
+def test_the_content_and_not_the_suffix_tells_the_format(written, wyoming_lines, sharppy_lines, csv_lines, same_as):
+    for lines, kind in ((wyoming_lines, "Wyoming"), (sharppy_lines, "SHARPpy"), (csv_lines, "CSV")):
+        for name in ("a.csv", "a.html", "a.nc", "a"):
+            sounding = read(written(lines, name))
+            same_as(sounding)
+            assert kind in sounding.source
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_any_usual_encoding_and_line_end_is_read(written, csv_lines, same_as, encoding, end):
+    text = end.join(["# Zürich", *csv_lines]).replace("degC", "°C")
+    same_as(read(written(text.encode(encoding))))
+
+
+def test_a_path_may_be_a_text(written, csv_lines, same_as):
+    same_as(read(str(written(csv_lines))))
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"", "is empty"),
+        (b" \n\n ", "is empty"),
+        (b"\x00\x01\x02\x03" * 9, "is not a text"),
+        (b"p,T,Td\n\x01\x02", "is not a text"),
+        (b"\xff\xfe\x00\xd8\x00\x00\x00", "is not a text"),
+        (b"PK\x03\x04....", "is a zip file or a workbook: save it as CSV"),
+        (b"%PDF-1.7", "is a PDF: save the numbers as CSV"),
+        (b"\x1f\x8b....", "is packed: type gunzip first"),
+        (b"\n\n  once upon a time", "line 3: once upon a time begins no sounding that is known"),
+        (b"a,b,c\n1,2,3", "line 1: a,b,c begins no sounding that is known"),
+    ],
+)
+def test_what_is_no_sounding_is_refused_in_a_sentence(written, content, sentence):
+    path = written(content)
+    with pytest.raises(SoundingError, match=sentence) as caught:
+        read(path)
+    assert str(caught.value).startswith(str(path))
+    assert str(caught.value).endswith(".")
+    assert "\n" not in str(caught.value)
+
+
+def test_files_that_cannot_be_read_are_refused(tmp_path):
+    with pytest.raises(FileError, match="is a folder: give a file in it"):
+        read(tmp_path)
+    with pytest.raises(FileError, match="does not exist: check the name"):
+        read(tmp_path / "nothing.csv")
+    with pytest.raises(FileError, match="does not exist"):
+        read("a\0b")
+    with pytest.raises(FileError, match="does not exist"):
+        read("x" * 5000)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are no pipes in the file system")
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(FileError, match="may not be read"):
+        read(tmp_path / "pipe")
+
+
+def test_a_file_that_fails_while_it_is_read_is_refused(written, csv_lines, monkeypatch):
+    def fail(path):
+        raise OSError(5, "Input/output error")
+
+    path = written(csv_lines)
+    monkeypatch.setattr(reading.Path, "read_bytes", fail)
+    with pytest.raises(FileError, match=r"may not be read \(Input/output error\)"):
+        read(path)
+
+
+def test_a_huge_file_is_refused_before_it_is_read(tmp_path, monkeypatch):
+    path = tmp_path / "huge.csv"
+    with path.open("wb") as file:
+        file.truncate(100_000_000)
+    monkeypatch.setattr(reading.Path, "read_bytes", lambda path: pytest.fail("the file was read"))
+    with pytest.raises(FileError, match="has 100 MB, far more than a sounding"):
+        read(path)
+
+
+def test_a_text_of_too_many_lines_is_refused(written, csv_lines, same_as):
+    same_as(read(written([*csv_lines, *[""] * (reading.MOST_LINES - len(csv_lines) - 1)])))
+    with pytest.raises(SoundingError, match="has 100014 lines, far more than a sounding"):
+        read(written([*csv_lines, *[""] * reading.MOST_LINES]))
+
+
+@pytest.mark.parametrize(
+    ("units", "sentence"),
+    [
+        ({"wind": "m/s"}, "units = wind is not a column of a sounding: name one of pressure, temperature, dewpoint"),
+        ({"pressure": "degC"}, "units = degC is not a unit of pressure"),
+        ({"pressure": "blorp"}, "units = blorp is not a unit of pressure"),
+        ({"pressure": 100}, "units = 100 is not a unit of pressure"),
+    ],
+)
+def test_units_that_cannot_be_are_refused(written, csv_lines, units, sentence):
+    with pytest.raises(UnitError, match=sentence):
+        read(written(csv_lines), units=units)
+
+
+def test_what_is_read_is_a_sounding_from_the_ground_up(written, csv_lines, same_as):
+    sounding = read(written([csv_lines[0], *reversed(csv_lines[1:])]))
+    assert isinstance(sounding, Sounding)
+    same_as(sounding)
