@@ -12,9 +12,17 @@ from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields
 from typing import Any
 
-KINDS = ("line", "profile", "histogram", "discs")
+KINDS = ("line", "profile", "histogram", "discs", "skewt")
 ROLES = ("data", "theory", "environment", "reference")
 SCALES = ("linear", "log")
+SKEWT_AXES = {
+    "x_unit": "degC",
+    "y_unit": "hPa",
+    "x_scale": "linear",
+    "y_scale": "log",
+    "x_invert": False,
+    "y_invert": True,
+}
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
 
 _FORMAT = 1
@@ -24,8 +32,8 @@ _FORMAT = 1
 class Line:
     """One curve of a panel: two variables of the file, and what the curve is.
 
-    The *measured* variable of a curve is ``x`` in a profile, where height or pressure goes up the page, and
-    ``y`` in every other panel. A variable may also be a single number: beside a list of values it becomes a
+    The *measured* variable of a curve is ``x`` in a profile and a skew-T, where height or pressure goes up the page,
+    and ``y`` in every other panel. A variable may also be a single number: beside a list of values it becomes a
     straight line across them, and two single numbers make one point.
 
     Parameters
@@ -84,11 +92,14 @@ class Panel:
 
     Parameters
     ----------
-    kind : {"line", "profile", "histogram", "discs"}
+    kind : {"line", "profile", "histogram", "discs", "skewt"}
         ``line``: the measured variable up the page, for instance against time. ``profile``: height or
         pressure up the page, the measured variable along it. ``histogram``: the data as steps between the
         bounds of their bins. ``discs``: the molecules of a flat box themselves, from the variables
-        `DISC_VARIABLES`; it has no lines.
+        `DISC_VARIABLES`; it has no lines. ``skewt``: temperatures over pressure in a skew-T log-p diagram, whose
+        axes are always in degC and hPa. CAPE and CIN are shaded between the first measured curve and the first
+        of the environment: areas between *temperatures*, as is the custom, although the numbers CAPE and CIN are
+        those of virtual temperatures.
     title : str
         What the graph shows, in a few words.
     lines : tuple of Line
@@ -108,6 +119,9 @@ class Panel:
         A sentence under the title.
     headlines : tuple of str
         Names of the headline numbers of the run whose misfit is written into this panel.
+    marks : tuple of str
+        Names of single numbers of the file, pressures that are marked in a ``skewt`` panel if the run has found
+        them. CAPE is shaded between those called "lfc" and "el", CIN below "lfc".
 
     Raises
     ------
@@ -135,10 +149,13 @@ class Panel:
     averages: int = 0
     note: str = ""
     headlines: tuple[str, ...] = ()
+    marks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         _check_choice("panel", "kind", self.kind, KINDS)
         _check_text("panel", "title", self.title)
+        if self.kind == "skewt":
+            self._set_skewt_axes()
         for name in ("x_label", "y_label", "x_unit", "y_unit", "note"):
             if not isinstance(getattr(self, name), str):
                 raise ValueError(f"the {name} of the panel {self.title!r} is no text.")
@@ -149,13 +166,33 @@ class Panel:
                 raise ValueError(f"{name} of the panel {self.title!r} is neither true nor false.")
         if type(self.averages) is not int or self.averages < 0 or (self.averages and self.kind != "line"):
             raise ValueError(f"averages of the panel {self.title!r} is {self.averages!r}: only a line panel has parts.")
-        for name, kind in (("lines", Line), ("headlines", str)):
+        for name, kind in (("lines", Line), ("headlines", str), ("marks", str)):
             values = getattr(self, name)
             if not isinstance(values, tuple) or not all(isinstance(value, kind) for value in values):
                 raise ValueError(f"{name} of the panel {self.title!r} is no tuple of {kind.__name__}.")
         if (self.kind == "discs") == bool(self.lines):
             wanted = "has no lines" if self.kind == "discs" else "needs at least one line"
             raise ValueError(f"the panel {self.title!r} is of the kind {self.kind!r}, which {wanted}.")
+        if self.marks and self.kind != "skewt":
+            raise ValueError(f"the panel {self.title!r} has marks, and only a panel of the kind 'skewt' shows them.")
+        if self.kind == "skewt" and any(line.minus for line in self.lines):
+            raise ValueError(f"the panel {self.title!r} shows temperatures in a skew-T, and no differences of them.")
+
+    def _set_skewt_axes(self) -> None:
+        """Give the panel the axes of a skew-T, which has no others."""
+        defaults = {field.name: field.default for field in fields(self)}
+        for name, value in SKEWT_AXES.items():
+            if getattr(self, name) not in (value, defaults[name]):
+                raise ValueError(
+                    f"the {name} of the panel {self.title!r} is {getattr(self, name)!r}: "
+                    "a skew-T is in degC and hPa, whose logarithm decreases upward."
+                )
+            object.__setattr__(self, name, value)
+
+    @property
+    def measured_across(self) -> bool:
+        """Whether the measured variable of a line is ``x``, with height or pressure up the page."""
+        return self.kind in ("profile", "skewt")
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -229,11 +266,12 @@ def from_json(text: str) -> tuple[Panel, ...]:
 
 def _panel(record: object) -> Panel:
     values = _values("panel", record, Panel)
-    for name in ("lines", "headlines"):
+    for name in ("lines", "headlines", "marks"):
         if not isinstance(values.setdefault(name, []), list):
             raise ValueError(f"{name} of a panel are no list.")
     values["lines"] = tuple(Line(**_values("line", item, Line)) for item in values["lines"])
-    values["headlines"] = tuple(values["headlines"])
+    for name in ("headlines", "marks"):
+        values[name] = tuple(values[name])
     return Panel(**values)
 
 

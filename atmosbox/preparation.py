@@ -158,10 +158,11 @@ def build(prepared: Prepared) -> Setup:
             ) from error
         raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
     if prepared.save_molecules:
-        needed = 16.0 * setup.parcel.number * setup.frames
+        molecules = setup.parcel.present.size
+        needed = 16.0 * molecules * setup.frames
         if needed > _MEMORY:
             raise SettingError(
-                "molecules", setup.parcel.number, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
+                "molecules", molecules, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
                 "leave out --save-molecules, or take fewer molecules",
             )  # fmt: skip
     return setup

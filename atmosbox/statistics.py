@@ -154,3 +154,19 @@ def successive_error(values: ArrayLike, block: int = 1, lag: int = 1, near: int 
     centre = np.arange(len(row)) - (shift + block - 1) // 2
     low = np.clip(centre - near, 0, max(len(half) - 2 * near, 0))
     return np.array([np.sqrt(half[a : a + 2 * near].mean()) for a in low])
+
+
+def running_mean(values: ArrayLike, block: int) -> NDArray[np.float64]:
+    """Return the mean of each value and its neighbours, as many on either side as there are up to half a block.
+
+    Examples
+    --------
+    >>> running_mean([0.0, 3.0, 0.0, 3.0], 3)
+    array([0., 1., 2., 3.])
+    """
+    row = np.asarray(values, float)
+    sums = np.concatenate([[0.0], np.cumsum(row)])
+    place = np.arange(len(row))
+    half = np.minimum(np.minimum(place, len(row) - 1 - place), block // 2)
+    mean: NDArray[np.float64] = (sums[place + half + 1] - sums[place - half]) / (2 * half + 1)
+    return mean

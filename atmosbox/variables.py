@@ -83,6 +83,12 @@ VARIABLES: dict[str, Variable] = {
     **_declared(
         _TIME,
         ("environment_temperature", "K", "temperature of the air around the parcel", "air_temperature"),
+        ("environment_dew_point_temperature", "K", "dewpoint of the air around the parcel", "dew_point_temperature"),
+        ("environment_virtual_temperature", "K", "virtual temperature of the air around the parcel",
+         "virtual_temperature"),
+        ("parcel_virtual_temperature", "K", "virtual temperature of the parcel, without the weight of its droplets",
+         "virtual_temperature"),
+        ("parcel_buoyancy", "m s-2", "buoyancy of the parcel"),
         ("environment_pressure", "Pa", "pressure of the air around the parcel", "air_pressure"),
         ("adiabat_temperature", "K", "temperature of the adiabat at this pressure", "air_temperature"),
         ("dry_air_adiabat_temperature", "K", "temperature of the adiabat of dry air at this pressure",

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 title = "Condensation"
 FRAMES = 240
 SETTLE = 40
+PARTS = 24
+"""Into how many equal parts of the logarithmic axis of time its curves are averaged."""
 NUCLEI = 100.0
 """Heat capacity of the nuclei, in k, that droplets form on; at most half a percent of that of the air."""
 
@@ -144,20 +146,25 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return humidity, vapour pressure and both rates, once they have met."""
+    """Return humidity, vapour pressure and both rates, once they have met.
+
+    The humidity is that at the temperature of the walls. Over that of the air at each look it would come out too large:
+    so few molecules scatter in temperature, and one over e_s is convex.
+    """
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 40:
         return ()
     nothing = "none: the model has no other error than chance"
+    vapour, saturation = late.water_vapor_partial_pressure, law.saturation_vapor_pressure(settings.si.temperature)
     rows = (
-        ("relative_humidity", "1", "percent", "relative humidity", late.relative_humidity_theory),
-        ("water_vapor_partial_pressure", "Pa", "hPa", "vapour pressure", late.water_vapor_partial_pressure_theory),
-        ("condensation_rate", "s-1", "ns-1", "condensation", late.condensation_rate_theory),
-        ("evaporation_rate", "s-1", "ns-1", "evaporation", late.condensation_rate_theory),
+        ("relative_humidity", vapour / saturation, "1", "percent", "relative humidity", late.relative_humidity_theory),
+        (vapour.name, vapour, "Pa", "hPa", "vapour pressure", late.water_vapor_partial_pressure_theory),
+        ("condensation_rate", late.condensation_rate, "s-1", "ns-1", "condensation", late.condensation_rate_theory),
+        ("evaporation_rate", late.evaporation_rate, "s-1", "ns-1", "evaporation", late.condensation_rate_theory),
     )
     found = []
-    for name, unit, shown, label, expected in rows:
-        mean = block_average(late[name].values)
+    for name, measured, unit, shown, label, expected in rows:
+        mean = block_average(measured.values)
         found.append(
             Headline(
                 f"mean_{name}",
@@ -175,45 +182,49 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return vapour pressure, the two rates and the humidity against time."""
+    """Return vapour pressure, the two rates and the water against time."""
+    time = "elapsed_time"
     return (
         Panel(
             "line",
-            "Vapour is used up until the air is just saturated",
+            "Vapour is used up until it just saturates",
             (
-                Line("elapsed_time", "water_vapor_partial_pressure", "vapour"),
-                Line("elapsed_time", "water_vapor_partial_pressure_theory", "saturation", "theory"),
+                Line(time, "water_vapor_partial_pressure", "vapour"),
+                Line(time, "water_vapor_partial_pressure_theory", "saturation", "theory"),
             ),
             x_label="time",
             y_label="vapour pressure",
             y_unit="hPa",
             x_scale="log",
+            averages=PARTS,
             headlines=("mean_water_vapor_partial_pressure",),
         ),
         Panel(
             "line",
-            "Saturation is where two rates meet",
+            "It ends where two rates meet",
             (
-                Line("elapsed_time", "condensation_rate", "condensation"),
-                Line("elapsed_time", "evaporation_rate", "evaporation"),
-                Line("elapsed_time", "condensation_rate_theory", "Hertz and Knudsen", "theory"),
+                Line(time, "condensation_rate", "condensation"),
+                Line(time, "evaporation_rate", "evaporation"),
+                Line(time, "condensation_rate_theory", "theory", "theory"),
             ),
             x_label="time",
             y_label="molecules per time",
             y_unit="ns-1",
             x_scale="log",
-            headlines=("mean_condensation_rate", "mean_evaporation_rate"),
+            averages=PARTS,
+            headlines=("mean_condensation_rate",),
         ),
         Panel(
             "line",
-            "Water in the air and in the droplets",
+            "Where the water is",
             (
-                Line("elapsed_time", "vapor_molecule_count", "vapour"),
-                Line("elapsed_time", "liquid_molecule_count", "liquid"),
+                Line(time, "vapor_molecule_count", "vapour"),
+                Line(time, "liquid_molecule_count", "droplets"),
             ),
             x_label="time",
             y_label="molecules",
             x_scale="log",
+            averages=PARTS,
             headlines=("mean_relative_humidity",),
         ),
     )

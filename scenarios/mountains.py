@@ -172,6 +172,10 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the way, the temperature along it, and the water."""
+    rain = (
+        Line("elapsed_time", "rain_mixing_ratio", "rain so far"),
+        Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
+    )
     return (
         Panel(
             "line",
@@ -201,9 +205,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             (
                 Line("elapsed_time", "humidity_mixing_ratio", "vapour"),
                 Line("elapsed_time", "cloud_liquid_water_mixing_ratio", "cloud"),
-                Line("elapsed_time", "rain_mixing_ratio", "rain so far"),
-                Line("elapsed_time", "humidity_mixing_ratio_theory", "theory", "theory"),
-                Line("elapsed_time", "rain_mixing_ratio_theory", "theory, rain", "theory"),
+                Line("elapsed_time", "humidity_mixing_ratio_theory", "vapour, theory", "theory"),
+                *(rain if settings.rain else ()),
             ),
             x_label="time",
             y_label="water per dry air",

@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 import atmosbox
 from atmosbox import output, provenance, runner, scenarios
 from atmosbox.cli import app, check, progress, report, table, terminal
-from atmosbox.cli.command import Format, Theme, _completed
+from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.request import Request
 from atmosbox.cli.run import FIGURES
 from atmosbox.errors import EngineError

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from atmosbox import runner
-from atmosbox.cli.command import app
+from atmosbox.cli import app
 from atmosbox.engine import Parcel
 from atmosbox.engine.refusal import CoarseStepWarning
 from atmosbox.engines import ENGINES, EXACT, choose, used

@@ -10,8 +10,8 @@ import pytest
 from typer.testing import CliRunner
 
 from atmosbox import scenarios
+from atmosbox.cli import app
 from atmosbox.cli import tradeoff as command
-from atmosbox.cli.command import app
 from atmosbox.errors import SettingError, UnknownSettingError
 from atmosbox.output import read, write
 from atmosbox.plot import save

@@ -9,6 +9,7 @@ failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-
 terminate.
 """
 
-from atmosbox.cli.command import app, main
+from atmosbox.cli.application import app
+from atmosbox.cli.command import main
 
 __all__ = ["app", "main"]

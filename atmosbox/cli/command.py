@@ -4,99 +4,18 @@ from __future__ import annotations
 
 import sys
 import warnings
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
+from atmosbox.cli.application import WORDS, app, examples
+from atmosbox.cli.option import Force, Format, Json, RunFile, SceneName, Theme, Verbose
 from atmosbox.cli.terminal import guarded, say, say_json, width
-
-_WORDS = "atmosbox.words"
-
-
-class Format(StrEnum):
-    """The formats of a figure."""
-
-    png = "png"
-    svg = "svg"
-    pdf = "pdf"
-
-
-class Theme(StrEnum):
-    """What a figure is for: a page, or a screen."""
-
-    notes = "notes"
-    slides = "slides"
-
-
-class _Group(TyperGroup):
-    """A group that remembers what was typed, for the history of a file."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        ctx.meta[_WORDS] = list(args)
-        return super().parse_args(ctx, args)
-
-
-def _examples(*lines: str) -> str:
-    """Return examples that stand below a help, one in a line."""
-    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
-
-
-def _completed(incomplete: str) -> list[str]:
-    """Return the scenes whose names begin like what is typed."""
-    from atmosbox import scenarios
-
-    return [name for name in scenarios.names() if name.startswith(incomplete.replace("_", "-"))]
-
-
-def _version(wanted: bool) -> None:
-    """Say the version and end."""
-    if wanted:
-        from atmosbox import __version__
-
-        say(f"atmosbox {__version__}")
-        raise typer.Exit
-
-
-app = typer.Typer(
-    name="atmosbox",
-    cls=_Group,
-    help="An atmosphere in a box: textbook meteorology that emerges from colliding molecules.",
-    epilog=_examples(
-        "atmosbox list                    the scenes",
-        "atmosbox info lifting-dry        what a scene shows, and what may be set",
-        "atmosbox run lifting-dry         run it",
-        "atmosbox plot lifting-dry.nc     draw it",
-    ),
-    no_args_is_help=True,
-    rich_markup_mode=None,  # plain help is there at once, fits every terminal and can be searched
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-SceneName = typer.Argument(
-    metavar="SCENE", help="A name that `atmosbox list` shows, or the path of your own: ./my_scene.py.",
-    autocompletion=_completed, show_default=False,
-)  # fmt: skip
-RunFile = Annotated[str, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
-Verbose = Annotated[bool, typer.Option("--verbose", help="Say more, with the traceback of a bug.")]
-Force = Annotated[bool, typer.Option("--force", help="Replace the file if there is one.")]
-
-
-@app.callback()
-def _atmosbox(
-    version: Annotated[
-        bool, typer.Option("--version", help="Show the version and exit.", callback=_version, is_eager=True)
-    ] = False,
-) -> None:
-    """Take the options that stand before a command."""
 
 
 @app.command(
-    "list", epilog=_examples("atmosbox list", "atmosbox list --names", "atmosbox list --json")
+    "list", epilog=examples("atmosbox list", "atmosbox list --names", "atmosbox list --json")
 )  # fmt: skip
 @guarded
 def list_scenes(
@@ -118,7 +37,7 @@ def list_scenes(
         say("\n".join([*lines, "", "next: atmosbox info SCENE, or atmosbox run SCENE"]))
 
 
-@app.command(epilog=_examples("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json"))
+@app.command(epilog=examples("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json"))
 @guarded
 def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbose = False) -> None:
     """Show what a scene is about and what may be set."""
@@ -128,7 +47,7 @@ def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbo
 
 
 @app.command(
-    epilog=_examples(
+    epilog=examples(
         "atmosbox run lifting-dry",
         "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
         "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
@@ -198,7 +117,7 @@ def run(
     request = Request(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
     running.run(
         request,
-        words=["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])],
+        words=["atmosbox", *ctx.meta.get(WORDS, sys.argv[1:])],
         out=out,
         force=force,
         quiet=quiet,
@@ -209,7 +128,7 @@ def run(
 
 
 @app.command(
-    epilog=_examples(
+    epilog=examples(
         "atmosbox tradeoff lifting-dry",
         "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
     )
@@ -251,12 +170,12 @@ def tradeoff(
         force=force,
         as_json=as_json,
         quiet=quiet,
-        words=["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])],
+        words=["atmosbox", *ctx.meta.get(WORDS, sys.argv[1:])],
     )
 
 
 @app.command(
-    epilog=_examples(
+    epilog=examples(
         "atmosbox plot lifting-dry.nc",
         "atmosbox plot lifting-dry.nc --format pdf --theme slides",
         "atmosbox plot lifting-dry.nc --out figures/lift.svg --force",
@@ -288,7 +207,7 @@ def plot(
 
 
 @app.command(
-    epilog=_examples(
+    epilog=examples(
         "atmosbox check lifting-dry.nc",
         "atmosbox check lifting-dry.nc --json",
         "atmosbox check --extremes",

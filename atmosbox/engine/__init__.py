@@ -24,6 +24,8 @@ Read it in this order:
 `start`      how they move at the start
 `account`    what a box has counted, and whether its energy adds up
 `parcel`     the box: what it is given, holds and tells
+`box`        the box, as the kernels know it
+`kind`       molecules that are alike
 `stall`      when time can go no further
 `parcelset`  the box, advanced exactly
 `liquid`     water that has condensed: a ledger, and its laws

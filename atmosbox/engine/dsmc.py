@@ -26,17 +26,29 @@ References
 """
 
 import functools
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from atmosbox.engine._jit import kernel, prange
 from atmosbox.engine.pairing import collide, scramble
+from atmosbox.engine.refusal import RefusedError
 from atmosbox.engine.streaming import WAITS, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
-from atmosbox.engine.swarm import BLOCK, index_by_cell, reserve_places, share_cells, share_of
+from atmosbox.engine.swarm import (
+    BLOCK,
+    cells_per_length,
+    count_by_cell,
+    find_cell,
+    index_by_cell,
+    number_present,
+    reserve_places,
+    share_cells,
+    share_of,
+)
 from atmosbox.engine.walls import SPECULAR
 
-__all__ = ["Resolution", "specialise"]
+__all__ = ["Resolution", "numbers_of_cells", "specialise"]
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _SHARED = 8  # steps later cells are shared anew among threads: how never matters for what happens
@@ -53,20 +65,39 @@ class Resolution(NamedTuple):
     step: float
 
 
+def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: str) -> tuple[int, int, int]:
+    """Return how many cells of about this edge [length] there are along each side [length] of a box.
+
+    Raises
+    ------
+    RefusedError
+        If hardly any of so many molecules would share a cell; it says what was ``asked`` for.
+
+    Examples
+    --------
+    >>> numbers_of_cells(1000, (10.0, 10.0, 1.0), 2.0, "occupancy = 10")
+    (5, 5, 1)
+    """
+    x, y, z = (max(1.0, float(np.rint(side / edge))) for side in sides)
+    if x * y * z > max(number, 1000) * 10.0:
+        raise RefusedError(
+            f"{asked} leaves {number / (x * y * z):.2g} molecules to a cell in so thin or so long a box: "
+            "make the cells larger, give more molecules, or a box of more equal sides"
+        )
+    return int(x), int(y), int(z)
+
+
 @kernel
-def _move(first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, box, walls, thread, desk, rotates):
+def _move(
+    first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, box, walls, thread, desk, rotates, mixed, pool
+):
     """Move a share of the molecules, block by block, and count them by cell."""
     count[:] = 0
     queue, state = desk.queue[thread], desk.random[thread]
     r = gas.radius
     nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
     high_x, high_y, high_z = box.length_x - r, box.length_y - r, top - r
-    per_x = nx / (box.length_x if box.inverse_x > 0.0 else high_x - r)
-    per_y = ny / (box.length_y if box.inverse_y > 0.0 else high_y - r)
-    per_z = nz / (top if box.inverse_z > 0.0 else high_z - r)
-    low_x = 0.0 if box.inverse_x > 0.0 else r
-    low_y = 0.0 if box.inverse_y > 0.0 else r
-    low_z = 0.0 if box.inverse_z > 0.0 else r
+    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
     smooth_x = walls.law[0] == SPECULAR and walls.law[1] == SPECULAR
     smooth_y = walls.law[2] == SPECULAR and walls.law[3] == SPECULAR
     for b in range(first, last, BLOCK):
@@ -108,15 +139,13 @@ def _move(first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, bo
             p = b + q
             if mark[q] >= WAITS:
                 state[0] = scramble(key ^ (np.uint64(p) * _MIX_1))
-                bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
+                bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, desk.left, rotates, mixed, pool)
+            mass = gas.masses[swarm.kind[p]] if mixed else gas.mass
             if mark[q] & 1:
-                mirror(p, swarm.x, swarm.vx, 0, r, high_x, gas.mass, books)
+                mirror(p, swarm.x, swarm.vx, 0, r, high_x, mass, books)
             if mark[q] & 2:
-                mirror(p, swarm.y, swarm.vy, 2, r, high_y, gas.mass, books)
-            ix = min(np.int64((swarm.x[p] - low_x) * per_x), nx - 1)
-            iy = min(np.int64((swarm.y[p] - low_y) * per_y), ny - 1)
-            iz = min(np.int64((swarm.z[p] - low_z) * per_z), nz - 1)
-            swarm.cell[p] = (iz * ny + iy) * nx + ix
+                mirror(p, swarm.y, swarm.vy, 2, r, high_y, mass, books)
+            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
         for q in range(e - b):
             count[np.uint32(cell[q])] += np.uint32(1)
 
@@ -142,11 +171,23 @@ def _settle(desk, tallies, threads, piston):
 
 
 @functools.cache
-def specialise(rotates: bool, parallel: bool) -> Any:
-    """Return the kernel that marches: with or without rotation, on one thread or on several."""
+def specialise(rotates: bool, parallel: bool, liquid: Any = None, pool: bool = False) -> Any:
+    """Return the kernel that marches.
+
+    Parameters
+    ----------
+    rotates, parallel
+        Whether molecules rotate, and whether several threads share the work.
+    liquid, pool
+        The kernel of what liquid does in a step, if there is any, and whether the floor is its surface. Molecules are
+        then of several kinds, and come and go.
+    """
+    wet = liquid is not None
 
     @kernel(entry=True, allocates=parallel, parallel=parallel)
-    def march(first_step, steps, dt, ceilings, swarm, grid, gas, cross_section, box, walls, tallies, desk, tries):
+    def march(
+        first_step, steps, dt, ceilings, swarm, grid, gas, cross_section, box, walls, tallies, desk, tries, water
+    ):  # fmt: skip
         """Advance by so many steps; ``ceilings : (step + 1,)`` is how high the ceiling is before and after each."""
         threads = grid.place.shape[0] if parallel else 1
         number = swarm.x.size
@@ -160,12 +201,21 @@ def specialise(rotates: bool, parallel: bool) -> Any:
             top = ceilings[k + 1]
             wall_key = scramble(tallies.random[0] + np.uint64(first_step + k) * _MIX_1)
             cell_key = scramble(wall_key)
+            if wet:
+                number = number_present(swarm, water)
+                desk.books[(number + BLOCK - 1) // BLOCK :] = 0.0
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
                 _move(
                     first, last, grid.place[t], start, dt, ceiling, top, wall_key, swarm, grid, gas, box, walls,
-                    t, desk, rotates,
+                    t, desk, rotates, wet, pool,
                 )  # fmt: skip
+            if wet:
+                liquid(start, dt, ceiling, top, cell_key, swarm, grid, gas, box, walls, tallies, desk, water, rotates)
+                number = number_present(swarm, water)
+                for t in prange(threads):
+                    first, last = share_of(t, threads, number)
+                    count_by_cell(swarm.cell, grid.place[t], first, last)
             reserve_places(grid, cells)
             if parallel and k % _SHARED == 0:
                 share_cells(grid.first, cells, desk.cut)
@@ -175,7 +225,7 @@ def specialise(rotates: bool, parallel: bool) -> Any:
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
             sweep = 0.5 * cross_section * dt / volume
             for t in prange(threads):
-                collide(t, sweep, cell_key, swarm, grid, gas, box.exchange, desk, tries, rotates)
+                collide(t, sweep, cell_key, swarm, grid, gas, box.exchange, desk, tries, rotates, wet)
             _settle(desk, tallies, threads, walls.law[5] == 3)
 
     return march

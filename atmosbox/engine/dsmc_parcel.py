@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
-from atmosbox.engine.dsmc import Resolution, specialise
+from atmosbox.engine.dsmc import Resolution, numbers_of_cells, specialise
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.pairing import new_tries
@@ -80,6 +80,7 @@ class DsmcParcel(MarchingParcel):
 
     engine: ClassVar[str] = "dsmc"
     _shares = True
+    _water: Any = None
 
     def __init__(
         self,
@@ -118,7 +119,7 @@ class DsmcParcel(MarchingParcel):
         sides = self._open_sides()
         numbers = (grid.number_x, grid.number_y, grid.number_z)
         for x, low, side, cells in zip(self._swarm[:3], self._low, sides, numbers, strict=True):
-            layer = np.minimum(((x - low) * (cells / side)).astype(np.int32), cells - 1)
+            layer = np.minimum(((x[:n] - low) * (cells / side)).astype(np.int32), cells - 1)
             crowding = max(crowding, float(np.bincount(layer, minlength=cells).max()) * cells / n)
         path = self._path(float(math.prod(sides))) / crowding
         speed = math.sqrt(8.0 / math.pi * self._mean_square_speed() / 3.0)
@@ -152,14 +153,8 @@ class DsmcParcel(MarchingParcel):
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
-        if n and not self._alike:
-            raise RefusedError(
-                "the molecules of dsmc are all alike: give one mass, diameter and rotation, or take engine exact"
-            )
-        first = [float(a[0]) if n else b for a, b in ((self._mass, 1.0), (self._diameter, 0.0), (self._rotation, 0.0))]
-        self._mass, self._diameter, self._rotation = (np.broadcast_to(np.float64(value), n) for value in first)
-        self._gas = Gas(first[0], 0.5 * first[1], first[2])
-        self._cross_section = math.pi * first[1] ** 2
+        self._gas, kind = self._classify()
+        self._cross_section = math.pi * (2.0 * self._gas.radius) ** 2
         self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
         length = [float(side) for side in self._sides]
         inverse = [1.0 / side if turn else 0.0 for side, turn in zip(length, self._periodic, strict=True)]
@@ -181,18 +176,20 @@ class DsmcParcel(MarchingParcel):
         for axis in range(3):
             if self._periodic[axis]:
                 np.mod(position[:, axis], self._sides[axis], out=position[:, axis])
-        x, y, z, vx, vy, vz, self._spare = new_columns(n, 7)
+        room = self._room
+        x, y, z, vx, vy, vz, self._spare = new_columns(room, 7)
         for axis, (place, speed) in enumerate(((x, vx), (y, vy), (z, vz))):
-            place[:] = position[:, axis]
-            speed[:] = velocity[:, axis]
-        spin = rotational_energy.copy() if self._rotates else np.zeros(1)
-        self._swarm = Swarm(
-            x, y, z, vx, vy, vz, spin, np.arange(n, dtype=np.uint32), np.zeros(n, np.uint32), np.zeros(n, np.uint32)
-        )
-        self._round = _REGROUP_MANY if n >= _MANY else _REGROUP
-        self._workers = self._threads if n >= _THREADED else 1
+            place[:n] = position[:, axis]
+            speed[:n] = velocity[:, axis]
+        spin = np.zeros(room if self._rotates else 1)
+        if self._rotates:
+            spin[:n] = rotational_energy
+        cell, order = np.zeros(room, np.uint32), np.zeros(room, np.uint32)
+        self._swarm = Swarm(x, y, z, vx, vy, vz, spin, np.arange(room, dtype=np.uint32), cell, order, kind)
+        self._round = _REGROUP_MANY if room >= _MANY else _REGROUP
+        self._workers = self._threads if room >= _THREADED else 1
         self._lay_out(sides)
-        self._march_kernel = specialise(self._rotates, self._workers > 1)
+        self._march_kernel = self._specialise()
         self._gather = new_gather(self._workers > 1)
         fastest = self._fastest()
         self._grid.fastest[:] = _FASTEST * fastest
@@ -201,29 +198,42 @@ class DsmcParcel(MarchingParcel):
         # however rarely molecules meet, a step is shorter than their hops on the floor
         self._time_step = min(step, 0.5 * fastest / self._gravity) if self._gravity > 0.0 and fastest > 0.0 else step
 
+    def _classify(self) -> tuple[Gas, Any]:
+        """Return what the molecules are, and the column of their kinds, which means nothing: they are all alike."""
+        n = self._number
+        if n and not self._alike:
+            raise RefusedError(
+                "the molecules of dsmc are all alike: give one mass, diameter and rotation, or take engine exact"
+            )
+        first = [float(a[0]) if n else b for a, b in ((self._mass, 1.0), (self._diameter, 0.0), (self._rotation, 0.0))]
+        self._mass, self._diameter, self._rotation = (np.broadcast_to(np.float64(value), n) for value in first)
+        return Gas(first[0], 0.5 * first[1], first[2], np.zeros(1), np.zeros(1)), np.zeros(1, np.uint8)
+
+    @property
+    def _room(self) -> int:
+        """How many molecules there may ever be in the box."""
+        return self._number
+
+    def _specialise(self) -> Any:
+        """Return the kernel that marches."""
+        return specialise(self._rotates, self._workers > 1)
+
     def _lay_out(self, sides: Sequence[float]) -> None:
         """Choose cells that are as good as cubes."""
-        n = self._number
+        n = self._number or self._room
         volume = math.prod(sides)
-        numbers = [1.0, 1.0, 1.0]
+        edge = math.inf
         if self._cross_section > 0.0 and n > 1:
             edge = math.cbrt(volume * self._occupancy / n) if self._cell is None else self._cell * self._path(volume)
-            numbers = [max(1.0, float(np.rint(side / edge))) for side in sides]
-        if math.prod(numbers) > max(n, 1000) * 10.0:
-            asked = (
-                f"occupancy = {self._occupancy:g}" if self._cell is None else f"cell = {self._cell:g} mean free paths"
-            )
-            raise RefusedError(
-                f"{asked} leaves {n / math.prod(numbers):.2g} molecules to a cell in so thin or so long a box: "
-                "make the cells larger, give more molecules, or a box of more equal sides"
-            )
-        self._grid = new_grid((int(numbers[0]), int(numbers[1]), int(numbers[2])), self._workers)
-        self._desk = new_desk(n, int(math.prod(numbers)), self._workers)
+        asked = f"occupancy = {self._occupancy:g}" if self._cell is None else f"cell = {self._cell:g} mean free paths"
+        numbers = numbers_of_cells(n, sides, edge, asked)
+        self._grid = new_grid(numbers, self._workers)
+        self._desk = new_desk(self._room, math.prod(numbers), self._workers)
         self._tries = new_tries(self._workers)
 
     def _march(self, steps: int) -> None:
         first, last = self._step, self._step + steps
-        if not steps and self._number:
+        if not steps and self._room:
             self._resolve(first, 0, np.full(1, self.ceiling))
         while first < last:
             # the first step brings them into the order of cells, then every so many
@@ -235,7 +245,7 @@ class DsmcParcel(MarchingParcel):
             lowest = 2.0 * self._gas.radius + 1e-3 * (float(self._sides[2]) - 2.0 * self._gas.radius)
             if speed < 0.0 and ceilings[-1] < lowest:
                 many = int(np.argmax(ceilings < lowest)) - 1
-            if many > 0 and self._number:
+            if many > 0 and self._room:
                 self._resolve(first, many, ceilings)
             if speed < 0.0 and ceilings[-1] < lowest:
                 self._step = first + max(many, 0)
@@ -253,20 +263,21 @@ class DsmcParcel(MarchingParcel):
             use_threads(self._workers)
         self._march_kernel(
             first, many, self._time_step, ceilings, self._swarm, self._grid, self._gas, self._cross_section,
-            self._box, self._walls, self._tallies, self._desk, self._tries,
+            self._box, self._walls, self._tallies, self._desk, self._tries, self._water,
         )  # fmt: skip
 
     def _regroup(self) -> None:
         """Put the columns in the order of cells, and let cells forget the fastest pair that they ever saw."""
         changed: dict[str, Any] = {}
+        order = self._swarm.order[: self._number]
         for name in _COLUMNS[: 7 if self._rotates else 6]:
             column = getattr(self._swarm, name)
-            self._gather(column, self._swarm.order, self._spare, self._workers)
+            self._gather(column[: self._number], order, self._spare, self._workers)
             changed[name], self._spare = self._spare, column
         # every step writes the column of cells anew
-        self._gather(self._swarm.identity, self._swarm.order, self._swarm.cell, self._workers)
+        self._gather(self._swarm.identity[: self._number], order, self._swarm.cell, self._workers)
         self._swarm = self._swarm._replace(identity=self._swarm.cell, cell=self._swarm.identity, **changed)
-        usual = _FASTEST * math.sqrt(self._mean_square_speed() / 3.0)
+        usual = _FASTEST * self._thermal_speed()
         np.maximum(self._grid.fastest * _FORGET, usual, out=self._grid.fastest)
 
     def _step_chosen(self) -> None:
@@ -279,18 +290,22 @@ class DsmcParcel(MarchingParcel):
 
     def _path(self, volume: float) -> float:
         """Return the mean free path when molecules fill an open volume evenly [length]."""
-        swept = math.sqrt(2.0) * self._number * self._cross_section
+        swept = math.sqrt(2.0) * (self._number or self._room) * self._cross_section
         return volume / swept if swept > 0.0 else math.inf
 
     def _fastest(self) -> float:
         """Return sqrt(kT/m) of the start or of the hottest wall; of rest, what falling or the piston will give."""
-        if not self._number:
+        if not self._room:
             return 0.0
         kT = self._warmest(self._gas.mass * self._mean_square_speed() / 3.0)
         if kT > 0.0:
             return math.sqrt(kT / self._gas.mass)
         fall = self._gravity * float(np.mean(self._swarm.z)) * 2.0 / 3.0
         return max(math.sqrt(fall), abs(self.piston_velocity))
+
+    def _thermal_speed(self) -> float:
+        """Return sqrt(kT/m), of the lightest molecules if they differ [length/time]."""
+        return math.sqrt(self._mean_square_speed() / 3.0)
 
     def _mean_square_speed(self) -> float:
         """Return the mean of the squared speed [length^2/time^2]."""

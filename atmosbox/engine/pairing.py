@@ -109,7 +109,17 @@ def _fetch(swarm, i):
 
 
 @kernel
-def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates):
+def _weigh(i, j, swarm, gas, mixed):
+    """Return half the reduced mass of a pair [mass], and which share of what they exchange each one's velocity takes."""
+    if mixed:
+        one, other = gas.masses[swarm.kind[i]], gas.masses[swarm.kind[j]]
+        share = other / (one + other)
+        return 0.5 * one * share, share, 1.0 - share
+    return 0.25 * gas.mass, 0.5, 0.5
+
+
+@kernel
+def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates, mixed):
     """Let pairs collide that are fast enough; return how many did."""
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
     one, other = tries.one[thread], tries.other[thread]
@@ -133,12 +143,15 @@ def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates):
         collisions += 1
         after = speed
         draw = word[k]
+        weight, share, other_share = _weigh(i, j, swarm, gas, mixed)
         if rotates:
             state[0] = draw
             if exchange >= 1.0 or uniform(state) < exchange:
-                energy = 0.25 * gas.mass * speed * speed + swarm.spin[i] + swarm.spin[j]
-                shared, swarm.spin[i], swarm.spin[j] = share_energy(energy, 3.0, gas.rotation, gas.rotation, state)
-                after = math.sqrt(4.0 * shared / gas.mass)
+                energy = weight * speed * speed + swarm.spin[i] + swarm.spin[j]
+                turns_i = gas.rotations[swarm.kind[i]] if mixed else gas.rotation
+                turns_j = gas.rotations[swarm.kind[j]] if mixed else gas.rotation
+                shared, swarm.spin[i], swarm.spin[j] = share_energy(energy, 3.0, turns_i, turns_j, state)
+                after = math.sqrt(shared / weight)
                 draw = state[0]
         # a point on the unit sphere, from one in the unit circle (Marsaglia 1972, doi:10.1214/aoms/1177692644)
         a = b = 0.0
@@ -149,20 +162,20 @@ def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates):
             b = (np.int64(draw & _LOW) + 0.5) * (2.0 * _FRACTION) - 1.0
             square = a * a + b * b
         around = 2.0 * after * math.sqrt(1.0 - square)
-        dx = 0.5 * (a * around - ux)
-        dy = 0.5 * (b * around - uy)
-        dz = 0.5 * ((1.0 - 2.0 * square) * after - uz)
-        swarm.vx[i] += dx
-        swarm.vy[i] += dy
-        swarm.vz[i] += dz
-        swarm.vx[j] -= dx
-        swarm.vy[j] -= dy
-        swarm.vz[j] -= dz
+        dx = a * around - ux
+        dy = b * around - uy
+        dz = (1.0 - 2.0 * square) * after - uz
+        swarm.vx[i] += share * dx
+        swarm.vy[i] += share * dy
+        swarm.vz[i] += share * dz
+        swarm.vx[j] -= other_share * dx
+        swarm.vy[j] -= other_share * dy
+        swarm.vz[j] -= other_share * dz
     return collisions
 
 
 @kernel
-def collide(thread, sweep, key, swarm, grid, gas, exchange, desk, tries, rotates):
+def collide(thread, sweep, key, swarm, grid, gas, exchange, desk, tries, rotates, mixed):
     """Let a thread's share of the cells collide; count collisions on the desk.
 
     ``sweep`` is half the cross section times the step over the volume of a cell [time/length], ``key`` a random word
@@ -189,12 +202,12 @@ def collide(thread, sweep, key, swarm, grid, gas, exchange, desk, tries, rotates
             written += min(left, _WIDE)
             if written >= _BATCH:
                 _draw(written, thread, tries, grid.first, swarm.order)
-                collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates)
+                collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates, mixed)
                 written = 0
             if left <= _WIDE:
                 break
             left -= _WIDE
             seed += np.uint64(_WIDE) * _STEP
     _draw(written, thread, tries, grid.first, swarm.order)
-    collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates)
+    collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates, mixed)
     desk.met[thread, 0] = collisions

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.account import Account, Array, Snapshot
 from atmosbox.engine.inputs import column, inside, matrix, natural_time, number, sides_of, whole
@@ -207,6 +207,14 @@ class Parcel(Account):
     def number(self) -> int:
         """Number of molecules."""
         return self._number
+
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """Which of the molecules that the box has ever held are in the gas now: all, unless some can condense.
+
+        A molecule keeps its place in this list, whether it is in the gas or in the liquid.
+        """
+        return np.ones(self.number, np.bool_)
 
     @property
     def time(self) -> float:

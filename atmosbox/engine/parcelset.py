@@ -11,14 +11,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.box import new_box
 from atmosbox.engine.calendar import new_calendar
-from atmosbox.engine.cells import ROW, choose_grid, size_classes
+from atmosbox.engine.cells import ROW, choose_grid
 from atmosbox.engine.exact import BUSY, CROWDED, ROW_FULL, STALLED, specialise
 from atmosbox.engine.inputs import number
+from atmosbox.engine.kind import classify
 from atmosbox.engine.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
-from atmosbox.engine.stall import crushing_height, why_crushed, why_stalled
-from atmosbox.engine.state import EVENT, KIND, MOLECULE, SLOT_OFFSET, Box, Cells, Kinds, Modes, aligned_records
+from atmosbox.engine.stall import crushing_height, is_jammed, why_crushed, why_stalled
+from atmosbox.engine.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Modes, aligned_records
 from atmosbox.engine.walls import HEAT_BATH, PISTON, POOL
 
 __all__ = ["ParcelSet"]
@@ -52,7 +54,15 @@ class ParcelSet(Parcel):
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
         self._fill(position, velocity, rotational_energy)
-        self._box = self._new_box()
+        self._box = new_box(
+            self._sides,
+            self._periodic,
+            moving=self._walls.law[5] == PISTON,
+            gravity=self._gravity,
+            planar=self._planar,
+            exchange=1.0 / self._collision_number,
+            stall=1e-9 * self._spread,
+        )
         self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
         self._cells: Cells
         self._lay_out()
@@ -65,7 +75,9 @@ class ParcelSet(Parcel):
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write down the molecules."""
-        self._kinds, kind = self._classify(rotational_energy)
+        self._kinds, kind, self._size_radius = classify(
+            self._mass, self._diameter, self._rotation, rotational_energy if self._rotates else None
+        )
         self._molecules = aligned_records(len(position), MOLECULE)
         for axis, name in enumerate("xyz"):
             self._molecules[name] = position[:, axis]
@@ -156,7 +168,7 @@ class ParcelSet(Parcel):
                 elif status in _ENDS:
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_stalled(self) if status == STALLED else _WHY_CROWDED)
-                elif self.piston_velocity < 0.0 and self._is_jammed():
+                elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_crushed(self))
                 elif status == BUSY:
@@ -284,37 +296,6 @@ class ParcelSet(Parcel):
                 return
             stride *= 2
 
-    def _classify(self, spin: Array) -> tuple[Kinds, NDArray[np.int64]]:
-        """Gather equal molecules into kinds."""
-        table, kind = np.unique(
-            np.stack([self._mass, 0.5 * self._diameter, self._rotation], axis=1), axis=0, return_inverse=True
-        )
-        if not len(table):
-            table = np.array([[1.0, 0.0, 0.0]])
-        classes, self._size_radius = size_classes(table[:, 1])
-        records = aligned_records(len(table), KIND)
-        records["mass"], records["radius"], records["rotation"] = table.T
-        records["size_class"] = classes
-        return Kinds(records, spin if self._rotates else np.zeros(1)), kind.reshape(-1)
-
-    def _new_box(self) -> Box:
-        length = [float(side) for side in self._sides]
-        if self._walls.law[5] == PISTON:
-            length[2] = math.inf
-        inverse = [1.0 / float(side) if turn else 0.0 for side, turn in zip(self._sides, self._periodic, strict=True)]
-        return Box(
-            length_x=length[0],
-            length_y=length[1],
-            length_z=length[2],
-            inverse_x=inverse[0],
-            inverse_y=inverse[1],
-            inverse_z=inverse[2],
-            gravity=self._gravity,
-            planar=self._planar,
-            exchange=1.0 / self._collision_number,
-            stall=1e-9 * self._spread,
-        )
-
     def _mean_kT(self) -> float:
         if not self.number:
             return 0.0
@@ -325,14 +306,3 @@ class ParcelSet(Parcel):
             float(self._walls.schedule_kT[self._walls.schedule[w]]) for w in range(6) if self._walls.law[w] == HEAT_BATH
         ]
         return max([kT, *baths]) if kT > 0.0 or baths else potential / self.number
-
-    def _is_jammed(self) -> bool:
-        """Tell whether the piston has heated the molecules a million times, as only one that crushes them can.
-
-        Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
-        """
-        m = self._fields
-        kinetic = 0.5 * float(np.sum(self._mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
-        baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
-        usual = self._start_energy + 2.0 * float(self._mass.sum()) * self.piston_velocity**2
-        return kinetic > 1e6 * (usual + 2.0 * self.number * max(baths, default=0.0))

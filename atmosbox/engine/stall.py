@@ -9,7 +9,7 @@ from atmosbox.engine.packing import packing_fraction
 from atmosbox.engine.parcel import Parcel
 from atmosbox.engine.walls import WALL_NAMES
 
-__all__ = ["crushing_height", "why_crushed", "why_stalled"]
+__all__ = ["crushing_height", "is_jammed", "why_crushed", "why_stalled"]
 
 
 def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *, planar: bool) -> float:
@@ -25,6 +25,18 @@ def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *
         filled = packing_fraction([float(sides[0]), float(sides[1]), 1.0], diameter, planar=planar)
         lowest = max(lowest, filled / 0.6, 1.02 * float(diameter.max()))
     return lowest
+
+
+def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.float64], start_energy: float) -> bool:
+    """Tell whether the piston has heated the molecules a million times, as only one that crushes them can.
+
+    Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
+    """
+    m = molecules
+    kinetic = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
+    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
+    usual = start_energy + 2.0 * float(mass.sum()) * parcel.piston_velocity**2
+    return kinetic > 1e6 * (usual + 2.0 * parcel.number * max(baths, default=0.0))
 
 
 def why_crushed(parcel: Parcel) -> str:

@@ -153,8 +153,8 @@ def turn_round(x, v, dt, mark, length, per_length, last, stride, cell):
 
 
 @kernel
-def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates):
-    """Fly one molecule through a step from wall to wall.
+def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_over, rotates, mixed, pool):
+    """Fly one molecule through a step from wall to wall, or as far as a pool.
 
     Parameters
     ----------
@@ -170,8 +170,10 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
         State of the random numbers, moved on.
     books : (3, wall)
         Outward impulse, energy given, hits: added to.
-    rotates
-        Whether molecules rotate.
+    left_over : (slot,)
+        How much of the step is left to one that has come to a pool [time].
+    rotates, mixed, pool
+        Whether molecules rotate, whether there are several kinds, whether the floor is a pool.
 
     Notes
     -----
@@ -181,6 +183,8 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
     x, y, z = swarm.x[p], swarm.y[p], swarm.z[p]
     vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p]
     spin = swarm.spin[p] if rotates else 0.0
+    mass = gas.masses[swarm.kind[p]] if mixed else gas.mass
+    rotation = gas.rotations[swarm.kind[p]] if mixed else gas.rotation
     radius = gas.radius
     high_x, high_y = box.length_x - radius, box.length_y - radius
     piston = walls.piston[1] if walls.law[5] == PISTON else 0.0
@@ -221,12 +225,15 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
         left -= soonest
         if wall < 0:
             break
-        before = 0.5 * gas.mass * (vx * vx + vy * vy + vz * vz) + spin
+        if pool and wall == 4:
+            left_over[p] = left
+            break
+        before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
         axis = wall >> 1
         high = wall & 1 == 1
         came, first, second = (vx, vy, vz) if axis == 0 else ((vy, vx, vz) if axis == 1 else (vz, vx, vy))
         went, first, second, spin = resolve_wall_hit(
-            walls, wall, start + (dt - left), came, first, second, spin, gas.mass, gas.rotation, False, state
+            walls, wall, start + (dt - left), came, first, second, spin, mass, rotation, False, state
         )
         if axis == 0:
             vx, vy, vz = went, first, second
@@ -237,8 +244,8 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, rotates)
         else:
             vx, vy, vz = first, second, went
             z = ceiling + piston * (dt - left) - radius if high else radius
-        books[0, wall] += gas.mass * (came - went) if high else gas.mass * (went - came)
-        books[1, wall] += 0.5 * gas.mass * (vx * vx + vy * vy + vz * vz) + spin - before
+        books[0, wall] += mass * (came - went) if high else mass * (went - came)
+        books[1, wall] += 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
         books[2, wall] += 1.0
     swarm.x[p] = _back_inside(x, radius, high_x, box.length_x, box.inverse_x)
     swarm.y[p] = _back_inside(y, radius, high_y, box.length_y, box.inverse_y)

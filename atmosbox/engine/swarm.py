@@ -23,11 +23,15 @@ __all__ = [
     "Gas",
     "Grid",
     "Swarm",
+    "cells_per_length",
+    "count_by_cell",
+    "find_cell",
     "index_by_cell",
     "new_columns",
     "new_desk",
     "new_gather",
     "new_grid",
+    "number_present",
     "reserve_places",
     "share_cells",
     "share_of",
@@ -45,7 +49,8 @@ class Swarm(NamedTuple):
 
     ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` their
     rotational energy [energy] where they rotate, ``identity : (slot,)`` which molecule stands in a slot.
-    ``cell : (slot,)`` the cell it is in, ``order : (slot,)`` slots in the order of cells.
+    ``cell : (slot,)`` the cell it is in, ``order : (slot,)`` slots in the order of cells, ``kind : (slot,)`` which
+    kind of molecule stands there, if there are several.
     """
 
     x: Any
@@ -58,6 +63,7 @@ class Swarm(NamedTuple):
     identity: Any
     cell: Any
     order: Any
+    kind: Any
 
 
 class Grid(NamedTuple):
@@ -76,11 +82,17 @@ class Grid(NamedTuple):
 
 
 class Gas(NamedTuple):
-    """What all molecules are: mass [mass], radius [length], rotational degrees of freedom."""
+    """What all molecules are: mass [mass], radius [length], rotational degrees of freedom.
+
+    Where there are several kinds, ``masses``, ``rotations : (kind,)`` say what each of them is, and ``mass`` is that of
+    the lightest.
+    """
 
     mass: float
     radius: float
     rotation: float
+    masses: Any
+    rotations: Any
 
 
 class Desk(NamedTuple):
@@ -89,7 +101,8 @@ class Desk(NamedTuple):
     ``mark : (thread, BLOCK)`` for which of a block walls make a difference, ``queue : (thread, BLOCK)`` a list
     of them, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
     what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts; ``cut :
-    (thread + 1,)`` the first cell of each thread's share of them.
+    (thread + 1,)`` the first cell of each thread's share of them; ``left : (slot,)`` for how long molecules that wait
+    on a pool have yet to fly [time], if there is one.
     """
 
     mark: Any
@@ -98,6 +111,7 @@ class Desk(NamedTuple):
     books: Any
     met: Any
     cut: Any
+    left: Any
 
 
 def new_columns(number: int, many: int) -> list[Any]:
@@ -117,8 +131,8 @@ def new_columns(number: int, many: int) -> list[Any]:
     return [room[start + k * stride : start + k * stride + number] for k in range(many)]
 
 
-def new_desk(number: int, cells: int, threads: int) -> Desk:
-    """Return an empty desk for so many molecules, cells and threads."""
+def new_desk(number: int, cells: int, threads: int, waiting: int = 1) -> Desk:
+    """Return an empty desk for so many molecules, cells and threads, and so many molecules that may wait on a pool."""
     return Desk(
         mark=np.zeros((threads, BLOCK), np.int32),
         queue=np.zeros((threads, BLOCK), np.int32),
@@ -126,6 +140,7 @@ def new_desk(number: int, cells: int, threads: int) -> Desk:
         books=np.zeros((-(-number // BLOCK), 3, 6)),
         met=np.zeros((threads, 8), np.int64),
         cut=np.linspace(0, cells, threads + 1).astype(np.int64),
+        left=np.zeros(waiting),
     )
 
 
@@ -151,6 +166,44 @@ def share_of(thread, threads, number):
     """
     blocks = (number + BLOCK - 1) // BLOCK
     return min(blocks * thread // threads * BLOCK, number), min(blocks * (thread + 1) // threads * BLOCK, number)
+
+
+@kernel
+def number_present(swarm, water):
+    """Return how many molecules are in the box: they stand in the first slots, those of the liquid in none."""
+    return swarm.x.size - water.ledger.top[0]
+
+
+@kernel
+def cells_per_length(top, grid, gas, box):
+    """Return how many cells there are to a length, along each axis [1/length], under a ceiling at ``top``."""
+    r = gas.radius
+    return (
+        grid.number_x / (box.length_x if box.inverse_x > 0.0 else box.length_x - r - r),
+        grid.number_y / (box.length_y if box.inverse_y > 0.0 else box.length_y - r - r),
+        grid.number_z / (top if box.inverse_z > 0.0 else top - r - r),
+    )
+
+
+@kernel
+def find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box):
+    """Write down in which cell the molecule of a slot is."""
+    r = gas.radius
+    low_x = 0.0 if box.inverse_x > 0.0 else r
+    low_y = 0.0 if box.inverse_y > 0.0 else r
+    low_z = 0.0 if box.inverse_z > 0.0 else r
+    ix = min(np.int64((swarm.x[p] - low_x) * per_x), grid.number_x - 1)
+    iy = min(np.int64((swarm.y[p] - low_y) * per_y), grid.number_y - 1)
+    iz = min(np.int64((swarm.z[p] - low_z) * per_z), grid.number_z - 1)
+    swarm.cell[p] = (iz * grid.number_y + iy) * grid.number_x + ix
+
+
+@kernel
+def count_by_cell(cell, count, first, last):
+    """Count the molecules of the slots from ``first`` to before ``last`` by cell."""
+    count[:] = 0
+    for p in range(first, last):
+        count[np.uint32(cell[p])] += np.uint32(1)
 
 
 @kernel

@@ -107,7 +107,7 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     >>> curve(dataset, Panel("line", "Temperature", (line,), y_unit="degC"), line).y.tolist()
     [0.0, 10.0]
     """
-    measured_is_x = panel.kind == "profile"
+    measured_is_x = panel.measured_across
     axes = [(line.x, panel.x_unit), (line.y, panel.y_unit)]
     (name, unit), other = axes if measured_is_x else axes[::-1]
     along = _values(dataset, *other)
@@ -202,7 +202,7 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
     first = panel.lines[0]
     unit = panel.x_unit if axis == "x" else panel.y_unit
     unit = unit or _unit(read(dataset, first.x if axis == "x" else first.y))
-    measured_axis = "x" if panel.kind == "profile" else "y"
+    measured_axis = "x" if panel.measured_across else "y"
     return of_difference(unit) if axis == measured_axis and first.minus is not None else unit
 
 

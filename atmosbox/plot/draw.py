@@ -37,6 +37,8 @@ _MOST_POINTS = 40
 _MOST_CROSSINGS, _THINNEST = 25.0, 0.5
 # Where the ground is missing by so little, the axis of pressure still begins at 1000 hPa.
 _NEAR_THE_GROUND = 930.0
+# One level alone stands in the middle of a logarithmic axis that reaches to so many times it.
+_ONE_LEVEL = 1.3
 _ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
 
 
@@ -79,6 +81,47 @@ def draw(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[En
     axes.set_xscale(panel.x_scale)
     axes.set_yscale(panel.y_scale)
     axes.grid(visible=True)
+    entries, most = draw_lines(axes, panel, dataset, theme)
+    _set_limits(axes, panel, most)
+    return entries
+
+
+def draw_lines(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> tuple[list[Entry], int]:
+    """Draw the curves of a panel into axes that have their scales.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    panel : Panel
+        What to draw.
+    dataset : xarray.Dataset
+        The run.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    list of tuple
+        The entries of the legend.
+    int
+        How many values the longest curve has.
+
+    Raises
+    ------
+    FileError
+        If the file lacks a variable of the panel.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> panel = Panel("profile", "Pressure", (Line("p", "z", "air"),), x_unit="hPa")
+    >>> draw_lines(Figure().add_subplot(), panel, dataset, THEMES["notes"])[1]
+    2
+    """
     seen: Counter[str] = Counter()
     entries: list[Entry] = []
     most = 0
@@ -92,14 +135,13 @@ def draw(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[En
             artists = _line(axes, panel, line, values, theme, index)
             most = max(most, values.x.size)
         entries.append((artists, line.label))
-    _set_limits(axes, panel, most)
-    return entries
+    return entries, most
 
 
 def _line(axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int) -> tuple[Artist, ...]:
     x, y, error = values
     style = _style(line.role, theme, index) | {"zorder": _ORDER[line.role]}
-    along_x = panel.kind == "profile"
+    along_x = panel.measured_across
     measured = line.role == "data"
     if x.size == 1 or (measured and x.size <= _MOST_POINTS):
         if measured and not along_x:
@@ -124,7 +166,7 @@ def _line(axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, ind
 
 def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
     """Draw values with bars of one standard error, and hollow where the error is not known."""
-    along_x = panel.kind == "profile"
+    along_x = panel.measured_across
     marker = DATA_MARKERS[index % len(DATA_MARKERS)]
     bars = axes.errorbar(
         values.x,
@@ -206,7 +248,8 @@ def _style(role: str, theme: Theme, index: int) -> dict[str, Any]:
         }
     if role == "environment":
         colour = ENVIRONMENT_COLOURS[index % len(ENVIRONMENT_COLOURS)]
-        return {"color": colour, "linestyle": (0.0, ENVIRONMENT_DASHES), "linewidth": theme.line}
+        dashes = ENVIRONMENT_DASHES[index % len(ENVIRONMENT_DASHES)]
+        return {"color": colour, "linestyle": (0.0, dashes), "linewidth": theme.line}
     if role == "reference":
         colour = REFERENCE_COLOURS[index % len(REFERENCE_COLOURS)]
         return {"color": colour, "linestyle": "solid", "linewidth": theme.line * REFERENCE_WIDTH}
@@ -217,6 +260,9 @@ def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
     """Leave no idle room where a curve of many values runs from end to end, and let heights begin at zero."""
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= _MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
+    low, high = axes.dataLim.intervaly
+    if panel.kind == "profile" and panel.y_scale == "log" and low == high:
+        axes.set_ylim(low / _ONE_LEVEL, high * _ONE_LEVEL)
     axes.autoscale_view()
     if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:
         axes.set_xlim(left=0.0)

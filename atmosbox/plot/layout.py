@@ -17,13 +17,14 @@ from atmosbox.plot.curve import curve, read, unit_of
 from atmosbox.plot.disc import axis_names
 from atmosbox.plot.draw import draw, hollow_points
 from atmosbox.plot.plate import Pen, Plate
+from atmosbox.plot.skewt import BACKGROUND, draw_skewt, levels
 from atmosbox.plot.theme import FAINT, Theme, find, style
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_TALL = ("profile", "discs")
-_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6}
+_TALL = ("profile", "discs", "skewt")
+_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0}
 _TEXT_LINES = 6  # over the axes, for which a page has room; it grows for more
 _ROUNDS = 6  # at most, of placing and measuring, until the texts and the axes agree about the room they have
 _AT_REST = 0.5  # by so much they may still move [pixel]
@@ -99,12 +100,16 @@ def _plates(drawing: Figure, dataset: xr.Dataset, panels: tuple[Panel, ...], loo
     for place, column in enumerate(columns):
         shared = len(column) > 1 and _same_abscissa(*(panels[index] for index in column))
         for row, index in enumerate(column):
-            above = plates[-1].axes if shared and row else None
-            axes = drawing.add_subplot(grid[row if len(column) > 1 else slice(None), place], sharex=above)
-            entries = draw(axes, panels[index], dataset, look)
-            x, y = _labels(dataset, panels[index])
+            panel, spot = panels[index], grid[row if len(column) > 1 else slice(None), place]
+            if panel.kind == "skewt":
+                axes, entries = draw_skewt(drawing, spot, panel, dataset, look)
+            else:
+                axes = drawing.add_subplot(spot, sharex=plates[-1].axes if shared and row else None)
+                entries = draw(axes, panel, dataset, look)
+            x, y = _labels(dataset, panel)
             labels = (("", x[1]) if shared and not row else x, y)
-            plates.append(Plate(axes, panels[index], look, row, place, entries, sentences[index], labels))
+            marked = levels(dataset, panel)
+            plates.append(Plate(axes, panel, look, row, place, entries, sentences[index], labels, marked))
         drawing.align_ylabels([plate.axes for plate in plates if plate.column == place])
     return plates
 
@@ -122,6 +127,7 @@ def _frame(pen: Pen, dataset: xr.Dataset, panels: tuple[Panel, ...], look: Theme
     )
     small = footer(dataset) + (" · bars and bands: ± 1 standard error" if has_errors else "")
     small += ", hollow: not known" if has_hollow else ""
+    small += f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else ""
     small = pen.wrap(small, width - look.text, look.small)
     pen.figure.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
     if look.heading and dataset.attrs.get("title"):

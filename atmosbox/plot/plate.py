@@ -12,6 +12,7 @@ from matplotlib.font_manager import FontProperties
 
 from atmosbox.panels import Panel
 from atmosbox.plot.draw import Entry
+from atmosbox.plot.skewt import fit_skewt
 from atmosbox.plot.theme import Theme
 from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.unit import spelled
@@ -86,6 +87,8 @@ class Plate:
     labels : tuple
         What the two axes show and in which unit: ((label, unit), (label, unit)). An empty label belongs to an
         axis that is labelled in the panel below.
+    levels : dict
+        The pressures that are marked in a skew-T, by what they are called [hPa].
     """
 
     axes: Axes
@@ -96,6 +99,7 @@ class Plate:
     entries: list[Entry]
     sentences: list[str]
     labels: tuple[tuple[str, str], tuple[str, str]]
+    levels: dict[str, float] = field(default_factory=dict)
     left: float = 0.0  # where the text begins, relative to the axes [pt]
     room: float = 0.0  # how wide the text may be [pt]
     columns: int = 0  # of the legend; 0 before it is first written
@@ -109,8 +113,12 @@ class Plate:
         axes, panel, size = self.axes, self.panel, self.theme.text
         width, height = self._size(pen)
         (x_label, x_unit), (y_label, y_unit) = self.labels
-        log = panel.x_scale == "log"
-        power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
+        if panel.kind == "skewt":
+            power = 0
+            self.written += fit_skewt(axes, self.levels, width, height, size)
+        else:
+            log = panel.x_scale == "log"
+            power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
         if x_label:
             axes.set_xlabel(pen.wrap(f"{x_label} ({spelled(x_unit, power)})", width, size))
         else:

@@ -22,11 +22,15 @@ DATA_MARKERS = ("o", "s", "^", "D")
 THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
 THEORY_DASHES = ((5.0, 2.0), (1.2, 1.2), (9.0, 2.0, 2.0, 2.0, 2.0, 2.0))
 ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)
-ENVIRONMENT_DASHES = (7.0, 2.0, 1.5, 2.0)
+ENVIRONMENT_DASHES = ((7.0, 2.0, 1.5, 2.0), (1.5, 1.5))
 # What is compared with lies broad and pale under the rest: where curves coincide, each is still seen.
 REFERENCE_COLOURS = (_ORANGE, _SKY)
 REFERENCE_WIDTH = 2.6
 FIELD_COLOURS = "viridis"
+# Areas are told apart by colour and by hatching, and lines to read a diagram by are paler than any curve.
+AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}
+AREA_HATCHES = {"CAPE": "////", "CIN": "\\\\\\\\"}
+PALE = "#c4c4c4"
 
 
 @dataclass(frozen=True)
@@ -157,6 +161,7 @@ def style(theme: Theme) -> AbstractContextManager[None]:
         "ytick.major.size": 0.35 * theme.text,
         "grid.color": "#d9d9d9",
         "grid.linewidth": theme.line / 3,
+        "hatch.linewidth": theme.line / 3,
         "axes.axisbelow": True,
         "axes.unicode_minus": True,
         "axes.formatter.useoffset": False,

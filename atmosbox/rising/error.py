@@ -126,4 +126,4 @@ def tolerance(ascent: MoistAscent, pressure: float, humidity: float, *, ideal: b
     room = 0.0 if ideal else speed.room(min(pressure, ascent.pressure), density)
     t = float(ascent.planned_at(pressure).temperature[0])
     cluster = haze(ascent, humidity, t) if humidity < 1.0 - 1e-6 else 0.0
-    return ascent.temperature * (speed.finite_speed(pressure) + room) + lag(ascent, pressure) + cluster
+    return t * (speed.finite_speed(pressure) + room) + lag(ascent, pressure) + cluster

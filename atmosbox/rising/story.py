@@ -39,7 +39,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
     return (
         Panel(
             "profile",
-            "Vapour that condenses warms the parcel" if cloud else "Too dry for a cloud",
+            "A kink at the cloud base" if cloud else "Too dry for a cloud",
             (
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
@@ -86,7 +86,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
             ),
             x_label="misfit",
             x_unit="K",
-            headlines=tuple(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels),
+            headlines=tuple(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]),
             y_label="pressure",
             y_unit="hPa",
             y_scale="log",

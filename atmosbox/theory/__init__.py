@@ -10,6 +10,7 @@ file                what it answers
 equation_of_state   how much harder do spheres press than points
 entropy             what their crowding does to the free energy and to the adiabat
 disc                the same in two dimensions
+disc_collision      how often discs meet, and how far they fly between
 collision           how often do molecules meet, and how far do they fly between
 speed               how fast are they
 wall                what hits a wall and what leaves it; the heat between two walls in a very thin gas
@@ -58,14 +59,13 @@ from atmosbox.theory.collision import (
 )
 from atmosbox.theory.disc import (
     FREEZING_PACKING_FRACTION_DISCS,
-    collision_rate_discs,
     compressibility_factor_discs,
     contact_value_discs,
     gas_pressure_discs,
     inverse_compressibility_discs,
-    mean_free_path_discs,
     packing_fraction_discs,
 )
+from atmosbox.theory.disc_collision import collision_rate_discs, mean_free_path_discs
 from atmosbox.theory.entropy import (
     excess_chemical_potential,
     excess_chemical_potential_discs,

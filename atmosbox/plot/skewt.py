@@ -1,0 +1,346 @@
+"""A parcel in its environment on the diagram that forecasters use: the skew-T of MetPy."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+from matplotlib.patches import Patch
+from matplotlib.ticker import FixedFormatter, FixedLocator
+from numpy.typing import NDArray
+
+from atmosbox.errors import FileError
+from atmosbox.panels import Panel
+from atmosbox.plot.curve import curve, read
+from atmosbox.plot.draw import Entry, draw_lines
+from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, DARK, FAINT, PALE, Theme
+from atmosbox.plot.unit import convert
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+BACKGROUND = "grey: dry adiabats (solid), moist adiabats (dashed), mixing ratios (dotted)"
+
+_ABBREVIATIONS = {"lcl": "LCL", "cloud_base": "LCL", "lfc": "LFC", "el": "EL"}
+_ROTATION = 30.0  # of isotherms from the upright [degree], as MetPy has it
+# As long as a decade of pressure are at least so many kelvin, where the axes are wide: else the adiabats lie flat.
+_KELVINS_PER_DECADE = 60.0
+_SLENDER = 0.75  # width of the curves in that of others: at the ground they run close together
+# The curves keep so far from the sides, in widths of the axes, and less far from the ground and the top.
+_MARGIN, _END = 0.06, 0.02
+# At least so much of the atmosphere is shown, as a ratio of pressures; and no diagram is narrower or wider [K].
+_LEAST_RATIO, _LEAST_WIDTH, _MOST_WIDTH = 2.0, 40.0, 400.0
+# The lines in the background begin at these temperatures of 1000 hPa [degC], and mixing ratios [g kg-1].
+_DRY = np.arange(-80.0, 321.0, 20.0)
+_MOIST = np.arange(-30.0, 41.0, 10.0)
+_MIXING = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
+_MIXING_TOP = 400.0  # hPa
+_HIGHEST_MOIST = 50.0  # hPa
+
+Floats = NDArray[np.float64]
+
+
+def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
+    """Return the pressures that a panel marks.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    panel : Panel
+        The panel; its ``marks`` name single numbers of the file.
+
+    Returns
+    -------
+    dict of str to float
+        Pressures by what they are called [hPa]: those that the run has found.
+
+    Raises
+    ------
+    FileError
+        If a mark is a list of numbers, or no pressure.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.panels import Line
+    >>> parcel = Line("parcel_temperature", "parcel_pressure", "parcel")
+    >>> panel = Panel("skewt", "Air", (parcel,), marks=("lcl", "lfc", "el"))
+    >>> held = {"lcl": ((), 9e4, {"units": "Pa"}), "lfc": ((), float("nan"), {"units": "Pa"})}
+    >>> levels(xr.Dataset(held), panel)
+    {'LCL': 900.0}
+    """
+    found: dict[str, float] = {}
+    for name in panel.marks:
+        if name not in dataset.variables:
+            continue
+        variable = read(dataset, name)
+        if variable.ndim:
+            raise FileError(f"The variable {name!r} of the file is a list, and a mark is a single number.")
+        unit = str(variable.attrs.get("units", "1"))
+        pressure = float(convert(variable.values, unit, panel.y_unit, name=name))
+        if math.isfinite(pressure) and pressure > 0.0:
+            found.setdefault(_ABBREVIATIONS.get(name, name.replace("_", " ")), pressure)
+    return found
+
+
+def draw_skewt(
+    figure: Figure, spot: SubplotSpec, panel: Panel, dataset: xr.Dataset, theme: Theme
+) -> tuple[Axes, list[Entry]]:
+    """Draw a parcel and its environment as a skew-T, with CAPE and CIN shaded.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        Where to draw.
+    spot : matplotlib.gridspec.SubplotSpec
+        The place of the panel in it.
+    panel : Panel
+        A panel of the kind ``skewt``.
+    dataset : xarray.Dataset
+        The run.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes. Their range of temperatures is that of `fit_skewt`.
+    list of tuple
+        The entries of the legend.
+
+    Raises
+    ------
+    FileError
+        If the file lacks a variable of the panel.
+
+    Notes
+    -----
+    The shaded areas are those between the curves that are drawn, of temperature. On MetPy's diagram an area is
+    nearly, not quite, proportional to an energy, and CAPE and CIN are of virtual temperatures: the areas show
+    where these energies come from, the numbers say how large they are.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from atmosbox.panels import Line
+    >>> from atmosbox.plot.theme import THEMES
+    >>> held = {
+    ...     "t": ("level", np.array([300.0, 280.0, 250.0]), {"units": "K"}),
+    ...     "p": ("level", np.array([1000e2, 700e2, 400e2]), {"units": "Pa"}),
+    ... }
+    >>> figure = Figure()
+    >>> spot = figure.add_gridspec(1, 1)[0, 0]
+    >>> panel = Panel("skewt", "Air", (Line("t", "p", "air"),))
+    >>> axes, entries = draw_skewt(figure, spot, panel, xr.Dataset(held), THEMES["notes"])
+    >>> axes.get_yscale(), [label for _, label in entries]
+    ('log', ['air'])
+    """
+    with warnings.catch_warnings(action="ignore"):  # what a new Python thinks of MetPy is nothing a user can mend
+        from metpy.plots import SkewT
+
+        skewed = SkewT(figure, rotation=_ROTATION, subplot=spot, aspect="auto")
+    axes: Axes = skewed.ax
+    _mend_ticks(axes)
+    axes.grid(visible=True)
+    axes.spines[:].set_visible(True)
+    axes.tick_params(top=False)
+    entries, _ = draw_lines(axes, panel, dataset, replace(theme, line=_SLENDER * theme.line))
+    bottom, top = _pressures(axes)
+    axes.set_ylim(bottom, top)
+    _draw_background(skewed, bottom, top, theme)
+    return axes, entries + _shade(skewed, panel, dataset, theme)
+
+
+def fit_skewt(axes: Axes, marks: dict[str, float], width: float, height: float, size: float) -> list[Artist]:
+    """Choose the range of temperatures for the room that a skew-T has, and write its numbers and levels.
+
+    Isotherms are inclined on the page, and so the room that a curve needs to the left and to the right depends on
+    how high and how wide the page is.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes, from `draw_skewt`.
+    marks : dict of str to float
+        The levels, from `levels` [hPa].
+    width, height : float
+        Size of the axes [pt].
+    size : float
+        Size of the type [pt].
+
+    Returns
+    -------
+    list of matplotlib.artist.Artist
+        The marks, to be removed before the axes are fitted again.
+
+    Examples
+    --------
+    >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
+    >>> _ = axes.plot([20.0, -60.0], [1000.0, 100.0])
+    >>> fit_skewt(axes, {}, 200.0, 200.0, 8.0)
+    []
+    >>> [round(float(limit)) for limit in axes.get_xlim()]
+    [-45, 35]
+    """
+    bottom, top = axes.get_ylim()
+    left, across = _temperatures(axes, bottom, top, height / width)
+    axes.set_xlim(left, left + across)
+    step = next(step for step in (5.0, 10.0, 20.0, 50.0, 100.0) if step * width / across >= 3.2 * size)
+    coldest = left - across * math.tan(math.radians(_ROTATION)) * height / width
+    isotherms = step * np.arange(math.floor(coldest / step), math.ceil((left + across) / step) + 1)
+    numbers = [f"{t:.0f}".replace("-", "−") if left <= t <= left + across else "" for t in isotherms]
+    axes.xaxis.set_major_locator(FixedLocator(list(isotherms)))
+    axes.xaxis.set_major_formatter(FixedFormatter(numbers))
+    return _write_marks(axes, {name: p for name, p in marks.items() if top <= p <= bottom}, height, size)
+
+
+def _mend_ticks(axes: Any) -> None:
+    """Let the ticks of skewed axes know where the axes end without a function that matplotlib is giving up.
+
+    MetPy 1.7 calls it whenever a tick is drawn, which would warn anew wherever the figure is shown.
+    """
+    from metpy.plots.skewt import SkewXTick
+
+    class Tick(SkewXTick):  # type: ignore[misc]
+        lower_in_bounds = property(lambda self: _holds(self.axes.lower_xlim, self.get_loc()))
+        upper_in_bounds = property(lambda self: _holds(self.axes.upper_xlim, self.get_loc()))
+        grid_in_bounds = property(lambda self: _holds(self.axes.xaxis.get_view_interval(), self.get_loc()))
+
+    axes.xaxis._get_tick = lambda major: Tick(axes, None, major=major)
+    axes.xaxis.reset_ticks()
+
+
+def _holds(interval: tuple[float, float], value: float) -> bool:
+    """Tell whether a value lies in an interval, whichever end is given first."""
+    return bool(min(interval) <= value <= max(interval))
+
+
+def _pressures(axes: Axes) -> tuple[float, float]:
+    """Return the lower and the upper end of the pressures to show [hPa]."""
+    seen = np.concatenate([np.zeros(0), *(line.get_xydata()[:, 1] for line in axes.lines)])  # type: ignore[index]
+    seen = seen[np.isfinite(seen)]
+    ground, highest = (float(seen.max()), float(seen.min())) if seen.size else (1000.0, 500.0)
+    if ground > 930.0:
+        ground = max(ground, 1000.0)
+    highest = min(highest, ground / _LEAST_RATIO)
+    return ground * (ground / highest) ** _END, highest * (highest / ground) ** _END
+
+
+def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[float, float]:
+    """Return the left end and the width of the temperatures at the bottom of axes of a height per width [degC, K].
+
+    A curve leans to the right by the tangent of the rotation; in a wider range of temperatures it leans less.
+    """
+    points = np.concatenate([np.zeros((0, 2)), *(np.asarray(line.get_xydata()) for line in axes.lines)])
+    points = points[np.isfinite(points).all(axis=1)]
+    temperature, up = points[:, 0], np.log(bottom / points[:, 1]) / math.log(bottom / top)
+    lean = math.tan(math.radians(_ROTATION)) * slope
+    least = min(max(_LEAST_WIDTH, _KELVINS_PER_DECADE * math.log10(bottom / top) / slope), _MOST_WIDTH)
+    if not points.size:
+        return -least / 2, least
+    widths = np.arange(least, _MOST_WIDTH + 1.0)
+    fitting = (each for each in widths if np.ptp(temperature / each + lean * up) <= 1.0 - 2 * _MARGIN)
+    across = float(next(fitting, widths[-1]))
+    place = temperature + across * lean * up
+    return float(place.min() + place.max() - across) / 2, across
+
+
+def _draw_background(skewed: Any, bottom: float, top: float, theme: Theme) -> None:
+    """Draw what a forecaster reads the diagram by, paler than any curve."""
+    with warnings.catch_warnings(action="ignore"):
+        from metpy.units import units
+
+        def between(upper: float) -> Any:
+            return units.Quantity(np.geomspace(bottom, upper, 60), "hPa")
+
+        look = {"colors": PALE, "alpha": 1.0, "linewidths": theme.line / 2.4, "zorder": 0.5}
+        skewed.plot_dry_adiabats(units.Quantity(_DRY + 273.15, "K"), between(top), linestyles="solid", **look)
+        if bottom > _HIGHEST_MOIST:
+            dashes = (0.0, (6.0, 3.0))
+            start = units.Quantity(_MOIST, "degC")
+            skewed.plot_moist_adiabats(start, between(max(top, _HIGHEST_MOIST)), linestyles=[dashes], **look)
+        if bottom > _MIXING_TOP:
+            dots = (0.0, (1.0, 2.5))
+            skewed.plot_mixing_lines(_MIXING / 1e3, between(max(top, _MIXING_TOP)), linestyles=[dots], **look)
+
+
+def _shade(skewed: Any, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
+    """Shade CAPE and CIN, and return their entries of the legend; none without a level of free convection."""
+    marks = levels(dataset, panel)
+    pair = [next((line for line in panel.lines if line.role == role), None) for role in ("data", "environment")]
+    if "LFC" not in marks or pair[0] is None or pair[1] is None:
+        return []
+    lfc, el = marks["LFC"], marks.get("EL", 0.0)
+    pressure, parcel, around = _together(*(curve(dataset, panel, line)[:2] for line in pair if line), (lfc, el))
+    free, below = (pressure <= lfc) & (pressure >= el), pressure >= lfc
+    entries: list[Entry] = []
+    for name, part, shade in (("CAPE", free, skewed.shade_cape), ("CIN", below, skewed.shade_cin)):
+        sign = 1.0 if name == "CAPE" else -1.0
+        if not (sign * (parcel - around)[part] > 0.0).any():
+            continue
+        look = {"facecolor": (*AREA_COLOURS[name], 0.5), "edgecolor": AREA_COLOURS[name], "alpha": None}
+        look |= {"hatch": AREA_HATCHES[name], "linewidth": 0.0}
+        shade(pressure[part], around[part], parcel[part], zorder=0.8, **look)
+        entries.append(((Patch(**look),), name))
+    return entries
+
+
+def _together(
+    parcel: tuple[Floats, Floats], around: tuple[Floats, Floats], ends: tuple[float, float]
+) -> tuple[Floats, Floats, Floats]:
+    """Return pressures from the ground up, among them the ends of areas, with the temperatures of both curves there."""
+    curves = []
+    for temperature, pressure in (parcel, around):
+        known = np.isfinite(temperature) & np.isfinite(pressure)
+        order = np.argsort(-pressure[known], kind="stable")
+        curves.append((-np.log(pressure[known][order]), temperature[known][order]))
+    if not all(height.size for height, _ in curves):
+        return np.zeros(0), np.zeros(0), np.zeros(0)
+    low, high = max(height[0] for height, _ in curves), min(height[-1] for height, _ in curves)
+    heights = np.unique(np.concatenate([*(height for height, _ in curves), [-math.log(end) for end in ends if end]]))
+    heights = heights[(heights >= low) & (heights <= high)]
+    temperatures = [np.interp(heights, *each) for each in curves]
+    return np.exp(-heights), temperatures[0], temperatures[1]
+
+
+def _write_marks(axes: Axes, marks: dict[str, float], height: float, size: float) -> list[Artist]:
+    """Mark levels across the diagram, and write their names to the right of it, apart from each other."""
+    if not marks:
+        return []
+    bottom, top = axes.get_ylim()
+    order = sorted(marks, key=lambda name: -marks[name])
+    places = [height * math.log(bottom / marks[name]) / math.log(bottom / top) for name in order]
+    lines = axes.hlines(
+        [marks[name] for name in order], 0.0, 1.0, transform=axes.get_yaxis_transform(), colors=FAINT,
+        linewidths=0.06 * size, zorder=0.9,
+    )  # fmt: skip
+    written: list[Artist] = [lines]
+    for name, place, wanted in zip(order, _apart(places, 1.15 * size, height), places, strict=True):
+        label = axes.annotate(
+            name, (1.0, wanted / height), (0.8 * size, place - wanted), xycoords="axes fraction",
+            textcoords="offset points", ha="left", va="center", size=size, color=DARK, annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": FAINT, "linewidth": 0.06 * size, "shrinkA": 0.0, "shrinkB": 0.0,
+                        "relpos": (0.0, 0.5)},
+        )  # fmt: skip
+        written.append(label)
+    return written
+
+
+def _apart(places: list[float], gap: float, height: float) -> list[float]:
+    """Return ascending places, moved until they are a gap apart and within the height."""
+    moved = list(places)
+    for i in range(1, len(moved)):
+        moved[i] = max(moved[i], moved[i - 1] + gap)
+    ceiling = height
+    for i in reversed(range(len(moved))):
+        moved[i] = min(moved[i], ceiling)
+        ceiling = moved[i] - gap
+    return moved

@@ -1,0 +1,377 @@
+"""Water evaporates, and what is left of it cools.
+
+Dry air over a pool of water, at the pressure of the air outside and without heat from anywhere. Of the molecules
+of the pool only those leave that happen to have far more energy than the mean, and the rest grows colder: first
+the pool, then the air above it. The vapour comes back to the pool, the oftener the more there is of it, and where
+as many come back as leave, the air is saturated. No rule says so.
+
+Modelled: hard molecules of air and water of real size and density under a piston that keeps the pressure; a pool
+on the floor that every molecule of vapour sticks to which hits it, that air exchanges heat with, and whose
+molecules leave at the rate of its energy; a binding energy and two heat capacities, from which e_s(T) follows.
+Left out: ice, gravity, currents within the pool, which is of one temperature and takes no room; forces between
+molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is needed to remove it.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine.lift import FollowPressure
+from atmosbox.engine.liquid import Pool
+from atmosbox.engine.start import random_positions
+from atmosbox.engine.walls import Piston, Specular
+from atmosbox.engines import EXACT, EngineChoice, used
+from atmosbox.errors import SettingError
+from atmosbox.headline import Headline
+from atmosbox.instruments import Air, Leaving, Water
+from atmosbox.moisture import moist_air, water
+from atmosbox.panels import Line, Panel
+from atmosbox.rising import AirOverPool
+from atmosbox.scene import Setup
+from atmosbox.settings import SceneSettings, setting
+from atmosbox.statistics import block_average
+from atmosbox.units import BOLTZMANN, DRY_AIR
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Evaporation"
+FRAMES = 400
+BLOCKS = 20
+PARTS = 36
+"""Into how many parts of the logarithmic axis of time curves are averaged."""
+HOTTEST = 647.0
+"""Temperature above which nothing saturates, as a pool of one molecule may have for a moment [K]."""
+LATE = "the piston moves a little late"
+NOTHING = "none: the model has no other error than chance"
+FEW = 100
+"""With fewer molecules than that to come or go, errors are those of chance events, and not read from their scatter."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(15_000, "1", "number of molecules of air and vapour at the start", low=200, high=1_000_000)
+    pool: int = setting(3000, "1", "number of molecules in the pool at the start", low=1, high=1_000_000)
+    temperature: float = setting(
+        30.0, "degC", "temperature of the air and of the pool at the start", low=-60.0, high=95.0
+    )
+    humidity: float = setting(20.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
+    pressure: float = setting(1000.0, "hPa", "pressure of the air, which stays", low=1.0, high=20_000.0)
+    duration: float = setting(20.0, "ns", "how long to watch", low=0.01, high=1e4)
+    diameter: float = setting(0.37, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.0)
+
+    def check(self) -> None:
+        """Refuse water that boils, vapour that leaves no room for air, and molecules that do."""
+        saturated = float(law.saturation_vapor_pressure(self.si.temperature))
+        if saturated >= self.si.pressure:
+            coldest = float(law.dewpoint(self.si.pressure)) - 273.15
+            raise SettingError(
+                "temperature",
+                f"{self.temperature:g} degC",
+                f"makes water boil at {self.pressure:g} hPa, which drives the piston out without end",
+                f"give --set temperature={math.floor(coldest)}degC or less"
+                if coldest >= -60.0
+                else f"give --set pressure={math.ceil(saturated / 100.0)}hPa or more",
+            )
+        most = self.si.pressure / saturated
+        if self.si.humidity > 0.95 * most:
+            raise SettingError(
+                "humidity",
+                f"{self.humidity:g} %",
+                f"is so much vapour that hardly any air is left at {self.pressure:g} hPa and {self.temperature:g} degC",
+                f"give --set humidity={math.floor(95.0 * most)}percent or less",
+            )
+        filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
+        if filled > 0.1:
+            widest = self.diameter * (0.1 / filled) ** (1.0 / 3.0)
+            raise SettingError(
+                "diameter",
+                f"{self.diameter:g} nm",
+                f"is too wide for {self.pressure:g} hPa: air must be a gas for its vapour to saturate at e_s",
+                f"give --set diameter={math.floor(100.0 * widest) / 100.0:g}nm or less",
+            )
+
+
+def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
+    """Return the air over the pool, as theory knows it."""
+    si = settings.si
+    vapour_pressure = si.humidity * float(law.saturation_vapor_pressure(si.temperature))
+    return AirOverPool(
+        settings.molecules, settings.pool, si.diameter, si.temperature, si.pressure, vapour_pressure, ideal
+    )
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the air over its pool."""
+    si = settings.si
+    start = _start(settings, ideal=engine.ideal)
+    scale, n = start.scale, settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    gas = moist_air(n, start.vapour, rng)
+    length = tuple(start.sides + 1.0)
+    substance = water(scale)
+    driver = FollowPressure(
+        [0.0],
+        [si.pressure / scale.pressure],
+        mean_free_time=start.free_time,
+        relaxation=start.closing / start.free_time,
+        excess=start.excess,
+    )
+    parcel = engine.make(
+        random_positions(length, np.ones(n), rng),
+        gas.velocity,
+        length=length,
+        walls=(Specular(),) * 5 + (Piston(),),
+        mass=gas.mass,
+        rotation=gas.rotation,
+        rotational_energy=gas.rotational_energy,
+        seed=settings.seed,
+        driver=driver,
+        liquid=Pool(substance, number=settings.pool, kT=1.0),
+    )
+    duration = si.duration / scale.time
+    end, rest = start.end, start.rest
+    left = float(end.liquid)
+    humidity = 100.0 * float(end.vapor_pressure / law.saturation_vapor_pressure(end.temperature))
+    return Setup(
+        parcel,
+        scale,
+        duration,
+        FRAMES,
+        (Air(), Water(), Leaving(substance.binding_energy)),
+        samples=3,
+        settle=min(_settled(start, settings), FRAMES - 1),
+        facts={
+            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in length) + " nm at the start, real size",
+            "weight of a molecule": "1: every molecule stands for itself",
+            "exaggeration": "none"
+            if settings.diameter == 0.37
+            else f"molecules {si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+            "vapour at the start": f"{start.vapour} molecules",
+            "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
+            + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")
+            + (f"{left:.0f} in the pool" if left > 0.0 else f"the pool dry and {humidity:.0f} % of humidity"),
+            "of so few molecules": f"{rest.temperature - 273.15:.2f} degC on average",
+            "wet-bulb temperature": _wet_bulb(settings),
+            "time in which vapour meets the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
+            "heat lost to the piston": f"up to {start.loss(duration):.1g} K",
+        },
+    )
+
+
+def _wet_bulb(settings: Settings) -> str:
+    """Return the temperature that a pool without end of its own would come to, or why there is none."""
+    if settings.humidity > 100.0:
+        return "none: the air is supersaturated"
+    si = settings.si
+    dewpoint = float(law.dewpoint(si.humidity * law.saturation_vapor_pressure(si.temperature)))
+    bulb = float(law.wet_bulb_temperature(si.pressure, si.temperature, min(dewpoint, si.temperature)))
+    return f"{bulb - 273.15:.2f} degC, of air over water that is as cold from the start"
+
+
+def _settled(start: AirOverPool, settings: Settings) -> int:
+    """Return how many frames pass until all has come to rest."""
+    frame: float = settings.si.duration / start.scale.time / FRAMES
+    return math.ceil(min(start.settling / frame, float(FRAMES)))
+
+
+def _temperature_of_those_that_left(dataset: "xr.Dataset") -> float:
+    """Return the temperature of the liquid as those knew it that left it [K]; NaN if nobody did.
+
+    A pool that is lost now and then is made of a molecule or two that came from the gas, and has its temperature.
+    """
+    always = bool(np.isfinite(dataset.liquid_temperature.values).all())
+    warm = (dataset.liquid_temperature if always else dataset.gas_temperature).values
+    rate = dataset.evaporation_rate.values
+    return float(np.average(warm, weights=rate)) if rate.any() else math.nan
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return where all ends, saturation over the pool as it is now, and who leaves and who stays."""
+    start = _start(settings, ideal=used(dataset).ideal)
+    rest = start.rest
+    frames = np.ones(dataset.sizes["elapsed_time"])
+    bounds = dataset.energy_bnds.values
+    edges = np.append(bounds[:, 0], bounds[-1, 1])
+    warm = _temperature_of_those_that_left(dataset)
+    known = math.isfinite(warm) and warm > 0.0
+    nothing = np.full(len(bounds), math.nan)
+    liquid = dataset.liquid_temperature.values
+    saturation = law.saturation_vapor_pressure(np.clip(np.nan_to_num(liquid), 0.0, HOTTEST))
+    return {
+        "gas_temperature_theory": rest.temperature * frames,
+        "liquid_saturation_vapor_pressure": np.where(np.isfinite(liquid), saturation, math.nan),
+        "water_vapor_partial_pressure_theory": rest.vapor_pressure * frames,
+        "condensation_rate_theory": start.rate(rest.vapor_pressure, rest.temperature) * frames,
+        "leaving_energy_probability_density_theory": law.leaving_energy_density(edges, warm) if known else nothing,
+        "staying_energy_probability_density": law.staying_energy_density(edges, warm) if known else nothing,
+    }
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return temperatures, vapour pressure and both rates, once all is at rest, and the energy of those that leave."""
+    start = _start(settings, ideal=used(dataset).ideal)
+    late = dataset.isel(elapsed_time=slice(_settled(start, settings), None))
+    if late.sizes["elapsed_time"] < 2 * BLOCKS:
+        return ()
+    rest, until = start.rest, settings.si.duration / start.scale.time
+    lost, walk = start.loss(until), start.walk(until)
+    steep = start.latent / rest.temperature
+    lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
+    short = _short(start, lasted / BLOCKS)
+    rate = start.rate(rest.vapor_pressure, rest.temperature)
+    met = rate * lasted
+
+    def headline(
+        name: str, expected: float, heated: float, chance: float, unit: str, shown: str, label: str
+    ) -> Headline:
+        # heated: what a kelvin does to it; chance: its error if only few molecules came and went
+        found = block_average(late[name].values, BLOCKS)
+        error = max(short * float(found.standard_error), chance if met < FEW else 0.0)
+        value, error = float(found.mean), math.hypot(error, walk * heated)
+        return Headline(f"mean_{name}", value, error, expected, lost * heated, LATE, unit, shown, label)
+
+    scatter = math.sqrt(2.0 * rest.variance * start.exchange * start.scale.time / lasted)
+    scatter *= settings.si.pressure / (start.air + rest.vapor)
+    wet = bool(np.isfinite(late.liquid_temperature.values).all())
+    found = [headline("gas_temperature", rest.temperature, 1.0, 0.0, "K", "degC", "temperature of the air")]
+    if wet:
+        found += [headline("liquid_temperature", rest.temperature, 1.0, 0.0, "K", "degC", "temperature of the pool")]
+    e, heated = rest.vapor_pressure, steep * rest.vapor_pressure
+    found += [headline("water_vapor_partial_pressure", e, heated, scatter, "Pa", "hPa", "vapour pressure")]
+    if found[-1].value > 0.0:
+        found.append(_saturation(late, found[-1], start, 0.0 if wet else lost, scatter if met < FEW else 0.0, short))
+    for name in ("condensation", "evaporation"):
+        alone = math.sqrt(met) / lasted
+        found.append(headline(f"{name}_rate", rate, steep * rate, alone, "s-1", "ns-1", name))
+    return (*found, *_leaver(dataset, start))
+
+
+def _short(start: AirOverPool, block: float) -> float:
+    r"""Return by what to multiply errors that are read from blocks so long [s], which remember each other a little.
+
+    Of a memory that fades as :math:`e^{-t/\tau}` a block of length L shows the share
+    :math:`1 - (1 - e^{-L/\tau}) \tau/L` of the variance of the mean.
+    """
+    lengths = block / (0.5 * (start.exchange + start.free_time) * start.scale.time)
+    return 1.0 / math.sqrt(1.0 + math.expm1(-lengths) / lengths)
+
+
+def _saturation(
+    late: "xr.Dataset", vapour: Headline, start: AirOverPool, lost: float, chance: float, short: float
+) -> Headline:
+    """Return the vapour pressure over that of saturation at the temperature of the pool, of the air if that is dry.
+
+    Both are averaged first: the mean of their quotient would be another number, for they scatter together.
+    """
+    rest = start.rest
+    steep = start.latent / rest.temperature
+    wet = bool(np.isfinite(late.liquid_temperature.values).all())
+    warm = (late.liquid_temperature if wet else late.gas_temperature).values
+    share = vapour.value / float(law.saturation_vapor_pressure(warm.mean()))
+    expected = rest.vapor_pressure / float(law.saturation_vapor_pressure(rest.temperature))
+    together = late.water_vapor_partial_pressure.values / vapour.value - steep * warm
+    error = share * max(short * float(block_average(together, BLOCKS).standard_error), chance / vapour.value)
+    tolerance = lost * steep * expected
+    reason = NOTHING if wet else LATE
+    label = "vapour pressure / saturation"
+    return Headline("final_humidity", share, error, expected, tolerance, reason, "1", "percent", label)
+
+
+def _leaver(dataset: "xr.Dataset", start: AirOverPool) -> tuple[Headline, ...]:
+    """Return the mean energy of those that leave, if many have left a pool of many."""
+    left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
+    if min(left, start.pool) < FEW or not np.isfinite(dataset.liquid_temperature.values).all():
+        return ()
+    warm = _temperature_of_those_that_left(dataset)
+    middle, width = dataset.energy.values, np.diff(dataset.energy_bnds.values)[:, 0]
+    share = dataset.leaving_energy_probability_density.values * width
+    mean = float(middle @ share)
+    flux = BOLTZMANN * law.LEAVING_FREEDOM * warm
+    return (
+        Headline(
+            "energy_of_those_that_leave",
+            mean,
+            math.sqrt(float((middle - mean) ** 2 @ share) / left),
+            BOLTZMANN * law.BINDING_TEMPERATURE + flux,
+            flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
+            "a pool of few molecules is warmer when it lets one go",
+            "J",
+            "zJ",
+            "energy of those that leave",
+        ),
+    )
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return temperatures, vapour pressure and the two rates against time, and the energies of those that leave."""
+    time = "elapsed_time"
+    return (
+        Panel(
+            "line",
+            "The pool cools, and then the air",
+            (
+                Line(time, "gas_temperature", "air"),
+                Line(time, "liquid_temperature", "pool"),
+                Line(time, "gas_temperature_theory", "enthalpy", "theory"),
+            ),
+            x_label="time",
+            y_label="temperature",
+            y_unit="degC",
+            x_scale="log",
+            averages=PARTS,
+            headlines=("mean_liquid_temperature",),
+        ),
+        Panel(
+            "line",
+            "Vapour rises to what the pool can keep up",
+            (
+                Line(time, "water_vapor_partial_pressure", "vapour"),
+                Line(time, "liquid_saturation_vapor_pressure", "saturation"),
+                Line(time, "water_vapor_partial_pressure_theory", "enthalpy", "theory"),
+            ),
+            x_label="time",
+            y_label="vapour pressure",
+            y_unit="hPa",
+            x_scale="log",
+            averages=PARTS,
+            headlines=("final_humidity",),
+        ),
+        Panel(
+            "line",
+            "It ends where as many come back as leave",
+            (
+                Line(time, "evaporation_rate", "leave"),
+                Line(time, "condensation_rate", "come back"),
+                Line(time, "condensation_rate_theory", "theory", "theory"),
+            ),
+            x_label="time",
+            y_label="molecules per time",
+            y_unit="ns-1",
+            x_scale="log",
+            averages=PARTS,
+            headlines=("mean_evaporation_rate",),
+        ),
+        Panel(
+            "histogram",
+            "Only those leave that have far more energy",
+            (
+                Line(
+                    "energy",
+                    "leaving_energy_probability_density",
+                    "leave",
+                    error="leaving_energy_probability_density_se",
+                ),
+                Line("energy", "leaving_energy_probability_density_theory", "theory", "theory"),
+                Line("energy", "staying_energy_probability_density", "stay", "environment"),
+            ),
+            x_label="energy of a molecule",
+            y_label="share per energy",
+            x_unit="zJ",
+            y_unit="zJ-1",
+            headlines=("energy_of_those_that_leave",),
+        ),
+    )

@@ -1,0 +1,287 @@
+"""A parcel of air rises through a sounding, and may become a thunderstorm.
+
+The air at the ground is lifted through the air that a balloon has found above it. As long as it is colder than the
+air around, it must be pushed; above the level of free convection its cloud is warmer, and it rises by itself, up to
+the equilibrium level. The area between the two curves is the energy that a storm can have.
+
+Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the air;
+the environment as it was measured, hydrostatic; buoyancy of virtual temperatures. Reversible: the droplets stay in the
+parcel, but their weight is not counted, as is usual for CAPE; with rain=on the cloud holds a gram per kilogram. Left
+out: ice, the curvature of droplets; mixing with the air outside, which weakens every real cloud; the parcel's own
+motion: it is lifted at a steady pace, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within
+nanoseconds.
+"""
+
+import functools
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import sounding as air
+from atmosbox import theory as law
+from atmosbox.engines import EXACT, EngineChoice, used
+from atmosbox.errors import SettingError
+from atmosbox.headline import Headline
+from atmosbox.panels import Line, Panel
+from atmosbox.rising import MoistAscent, error, lifted_headlines, lifted_theory, rise
+from atmosbox.scene import Setup
+from atmosbox.settings import SceneSettings, setting
+from atmosbox.statistics import running_mean, successive_error
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Lifting through a sounding"
+FRAMES = 80
+LOOKS = 8
+SMOOTH = 9
+"""Over how many frames the misfit is averaged before curves are crossed."""
+BUILT_IN = "weisman-klemp"
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    sounding: str = setting(BUILT_IN, "", "file of a sounding, or weisman-klemp for the analytic one")
+    molecules: int = setting(20_000, "1", "number of molecules in the parcel", low=200, high=1_000_000)
+    top_pressure: float = setting(150.0, "hPa", "pressure at which the ascent ends", low=50.0, high=900.0)
+    rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
+    cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
+    ascent: float = setting(500.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)
+    area: float = setting(30.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
+
+    def check(self) -> None:
+        """Refuse a sounding that cannot be read, and an ascent that does not go up."""
+        ground = float(_read(self.sounding).pressure[0])
+        if self.si.top_pressure > 0.98 * ground:
+            raise SettingError(
+                "top_pressure",
+                f"{self.top_pressure:g} hPa",
+                f"is not below the lowest level of the sounding, {ground / 100.0:g} hPa",
+                f"give --set top_pressure={0.003 * ground:.0f}hPa",
+            )
+
+
+@functools.lru_cache(maxsize=8)
+def _read(name: str) -> air.Sounding:
+    """Return the sounding of a name or a file."""
+    return air.weisman_klemp() if name == BUILT_IN else air.read(name)
+
+
+@functools.lru_cache(maxsize=8)
+def _height(name: str) -> np.ndarray:
+    """Return the heights of its levels above the lowest [m]."""
+    return np.asarray(air.hydrostatic_height(_read(name)))
+
+
+@functools.lru_cache(maxsize=8)
+def _indices(name: str) -> air.Indices:
+    """Return what MetPy says of it."""
+    return air.indices(_read(name))
+
+
+def _between(settings: Settings, levels: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Return values of the sounding's levels between them, straight in the logarithm of the pressure."""
+    found: np.ndarray = np.interp(-np.log(pressure), -np.log(_read(settings.sounding).pressure), levels)
+    return found
+
+
+def _around(settings: Settings, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return temperature, dewpoint and virtual temperature of the air around at pressures [Pa], in K."""
+    found = _read(settings.sounding)
+    temperature = _between(settings, found.temperature, pressure)
+    dewpoint = _between(settings, found.dewpoint, pressure)
+    ratio = law.mixing_ratio(law.saturation_vapor_pressure(dewpoint), pressure)
+    return temperature, dewpoint, np.asarray(law.virtual_temperature(temperature, ratio))
+
+
+@functools.lru_cache(maxsize=8)
+def _ascent(settings: Settings) -> MoistAscent:
+    """Return the way up, as theory knows it; it ends where the sounding does, at the latest."""
+    found = _read(settings.sounding)
+    ground = float(found.pressure[0])
+    top = max(settings.si.top_pressure, float(found.pressure[-1]))
+    return MoistAscent(
+        molecules=settings.molecules,
+        diameter=settings.si.diameter,
+        temperature=float(found.temperature[0]),
+        pressure=ground,
+        vapour_pressure=float(law.saturation_vapor_pressure(found.dewpoint[0])),
+        route=tuple(float(p) for p in np.geomspace(ground, top, 400)),
+        length=settings.ascent,
+        area=settings.area,
+        most_liquid=settings.si.cloud_water if settings.rain else math.inf,
+    )
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the parcel of the ground with its piston."""
+    ascent = _ascent(settings)
+    route = np.array(ascent.route)
+    shares = np.linspace(0.0, 1.0, len(route))
+    heights = _between(settings, _height(settings.sounding), route)
+    temperatures = _around(settings, route)[0]
+    setup = rise(
+        ascent,
+        engine,
+        height=lambda share: float(np.interp(share, shares, heights)),
+        around=lambda share: float(np.interp(share, shares, temperatures)),
+        frames=FRAMES,
+        looks=LOOKS,
+        seed=settings.seed,
+    )
+    found = _read(settings.sounding)
+    facts = {"sounding": f"{found.name}: {len(found)} levels"}
+    facts |= {f"remark {number}": remark for number, remark in enumerate(found.remarks, 1)}
+    return Setup(**(vars(setup) | {"facts": facts | dict(setup.facts) | {"verdict": _verdict(settings)}}))
+
+
+def _convection(settings: Settings, misfit: np.ndarray | float = 0.0) -> law.Convection:
+    """Return what theory's parcel can do, its temperature changed by a misfit along the route [K]."""
+    ascent = _ascent(settings)
+    path = ascent.planned[1]
+    route = np.array(ascent.route)
+    parcel = law.virtual_temperature(path.temperature + misfit, path.vapor)
+    return law.cape_cin(route, _around(settings, route)[2], parcel, ascent.base)
+
+
+def _verdict(settings: Settings) -> str:
+    """Return whether this air is stable."""
+    convection = _convection(settings)
+    if convection.lfc is None:
+        return "stable"
+    return "conditionally unstable" if convection.cin < -1.0 else "unstable"
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return the water of the adiabat, the air around, and the buoyancy."""
+    pressure = dataset.parcel_pressure.values
+    _, dewpoint, virtual = _around(settings, dataset.environment_pressure.values)
+    at_parcel = _around(settings, pressure)[2]
+    parcel = law.virtual_temperature(dataset.parcel_temperature.values, dataset.humidity_mixing_ratio.values)
+    return lifted_theory(dataset, _ascent(settings), FRAMES) | {
+        "environment_dew_point_temperature": dewpoint,
+        "environment_virtual_temperature": virtual,
+        "parcel_virtual_temperature": np.asarray(parcel),
+        "parcel_buoyancy": np.asarray(law.parcel_buoyancy(parcel, at_parcel)),
+    }
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return the levels and the energies of the simulated parcel, and what MetPy says of the sounding."""
+    ascent = _ascent(settings)
+    ideal = used(dataset).ideal
+    pressure = dataset.parcel_pressure.values
+    found = list(lifted_headlines(dataset, ascent, ideal=ideal))
+    if len(pressure) < FRAMES:
+        return tuple(found)
+    misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
+    smooth = running_mean(misfit, SMOOTH)
+    route = np.array(ascent.route)
+    along = np.interp(-np.log(route), -np.log(pressure), smooth)
+    noise = np.interp(-np.log(route), -np.log(pressure), successive_error(misfit, block=SMOOTH, near=8))
+    noise = np.hypot(noise, error.walk(ascent, route) * ascent.planned[1].temperature)
+    off = np.array([error.tolerance(ascent, p, 1.0, ideal=ideal) for p in route[::10]])
+    off = np.interp(-np.log(route), -np.log(route[::10]), off)
+    here, expected = _convection(settings, along), _convection(settings)
+    colder, warmer = _convection(settings, along - noise), _convection(settings, along + noise)
+    least, most = _convection(settings, -off), _convection(settings, off)
+    independent = max((len(pressure) * _depth(expected, route)) / SMOOTH, 1.0)
+    reason = "the ascent is not infinitely slow, spheres take up room, and vapour must find liquid"
+    rows = (
+        ("cape", "J kg-1", "J kg-1", "CAPE of the parcel", math.sqrt(independent)),
+        ("cin", "J kg-1", "J kg-1", "CIN of the parcel", 1.0),
+        ("lfc", "Pa", "hPa", "level of free convection", 1.0),
+        ("el", "Pa", "hPa", "equilibrium level", 1.0),
+    )
+    for name, unit, shown, label, fewer in rows:
+        value, answer = getattr(here, name), getattr(expected, name)
+        sides = [getattr(each, name) for each in (colder, warmer, least, most)]
+        if value is None or answer is None or None in sides:
+            continue
+        scatter, allowed = abs(sides[1] - sides[0]) / 2.0 / fewer, abs(sides[3] - sides[2]) / 2.0
+        found.append(Headline(name, value, scatter, answer, allowed, reason, unit, shown, label))
+    return (*found, *_metpy(settings))
+
+
+def _depth(convection: law.Convection, route: np.ndarray) -> float:
+    """Return which part of the way the parcel is free, in the logarithm of the pressure."""
+    if convection.lfc is None:
+        return 0.0
+    return math.log(convection.lfc / (convection.el or route[-1])) / math.log(route[0] / route[-1])
+
+
+def _metpy(settings: Settings) -> tuple[Headline, ...]:
+    """Return MetPy's numbers of the sounding beside those of the pseudo-adiabat from our constants."""
+    ascent, metpy = _ascent(settings), _indices(settings.sounding)
+    found = _read(settings.sounding)
+    levels = np.unique(np.append(found.pressure, np.geomspace(found.pressure[0], found.pressure[-1], 400)))[::-1]
+    water = float(law.mixing_ratio(ascent.vapour_pressure, ascent.pressure))
+    path = law.parcel_path(levels, ascent.pressure, ascent.temperature, water, 0.0)
+    base = float(law.lcl(ascent.pressure, ascent.temperature, found.dewpoint[0])[0])
+    parcel = law.virtual_temperature(path.temperature, path.vapor)
+    ours = law.cape_cin(levels, _around(settings, levels)[2], parcel, base)
+    reason = "MetPy leaves out the heat of the vapour, and its EL is one of temperatures, not of virtual ones"
+    rows = [
+        ("metpy_lcl", metpy.lcl.pressure, base, 200.0, "Pa", "hPa", "condensation level, MetPy"),
+        ("metpy_cape", metpy.cape, ours.cape, 0.05 * ours.cape, "J kg-1", "J kg-1", "CAPE of the sounding, MetPy"),
+    ]
+    if metpy.el is not None and ours.el is not None:
+        rows.append(("metpy_el", metpy.el.pressure, ours.el, 1000.0, "Pa", "hPa", "equilibrium level, MetPy"))
+    return tuple(Headline(n, v, 0.0, t, allowed, reason, u, s, label) for n, v, t, allowed, u, s, label in rows)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return the skew-T, the buoyancy, and the misfit."""
+    verdict = _verdict(settings)
+    return (
+        Panel(
+            "profile",
+            f"This air is {verdict}",
+            (
+                Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
+                Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
+                Line("environment_temperature", "environment_pressure", "air around", "environment"),
+                Line("environment_dew_point_temperature", "environment_pressure", "its dewpoint", "environment"),
+            ),
+            x_label="temperature",
+            y_label="pressure",
+            x_unit="degC",
+            y_unit="hPa",
+            y_scale="log",
+            y_invert=True,
+            headlines=("cape", "cin") if _convection(settings).lfc is not None else (),
+        ),
+        Panel(
+            "profile",
+            "Buoyancy",
+            (Line("parcel_buoyancy", "parcel_pressure", "parcel"),),
+            x_label="buoyancy",
+            y_label="pressure",
+            y_unit="hPa",
+            y_scale="log",
+            y_invert=True,
+        ),
+        Panel(
+            "profile",
+            "Parcel less adiabat",
+            (
+                Line(
+                    "parcel_temperature",
+                    "parcel_pressure",
+                    "parcel",
+                    error="parcel_temperature_se",
+                    minus="adiabat_temperature",
+                ),
+                Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory", minus="adiabat_temperature"),
+            ),
+            x_label="misfit",
+            y_label="pressure",
+            x_unit="K",
+            y_unit="hPa",
+            y_scale="log",
+            y_invert=True,
+        ),
+    )

@@ -1,0 +1,181 @@
+"""The scene of evaporation: where it ends, what the piston costs, who leaves, and what is refused.
+
+Means allow 4 standard errors from 20 blocks, and what the piston may take: a false alarm once in 1 500 per
+comparison for a fresh seed (there are some 40 here), and never for these.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox import runner, theory
+from atmosbox.errors import SettingError
+from atmosbox.theory import LEAVING_FREEDOM, isobaric_water
+from atmosbox.units import BOLTZMANN
+
+
+def run(**settings):
+    return runner.execute(runner.prepare("evaporation", settings), command="atmosbox run evaporation")
+
+
+def found(outcome):
+    return {each.name: each for each in outcome.headlines}
+
+
+def agree(outcome):
+    for each in outcome.headlines:
+        assert abs(each.value - each.theory) <= 4.0 * each.standard_error + each.tolerance, each.name
+
+
+def test_a_large_parcel_comes_to_the_balance_of_enthalpy():
+    gaps = []
+    for size in (1, 10, 100):
+        large = theory.evaporation_equilibrium(1e5, 303.15, 990 * size, 10 * size, 200 * size)
+        small = isobaric_water(1e5, 303.15, 990 * size, 10 * size, 200 * size)
+        gaps.append(small.temperature - float(large.temperature))
+        assert small.probability.sum() == pytest.approx(1.0)
+    # what so few molecules differ by goes as one over their number
+    assert gaps[0] / gaps[1] == pytest.approx(10.0, rel=0.1)
+    assert gaps[1] / gaps[2] == pytest.approx(10.0, rel=0.1)
+    assert 0.1 < gaps[0] < 0.2
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"molecules": 4000, "pool": 800, "duration": 8.0},
+        {"molecules": 2000, "pool": 400, "duration": 8.0, "humidity": 150.0},
+        {"molecules": 1000, "pool": 200, "duration": 12.0, "temperature": 70.0},
+        {"molecules": 2000, "pool": 400, "duration": 4.0, "pressure": 5000.0, "diameter": 0.8},
+    ],
+    ids=["dry", "supersaturated", "hot", "dense"],
+)
+def test_air_over_a_pool_ends_saturated_where_its_enthalpy_says(settings):
+    outcome = run(**settings)
+    assert outcome.ledger < 1e-12
+    assert {"mean_gas_temperature", "mean_liquid_temperature", "final_humidity"} <= found(outcome).keys()
+    agree(outcome)
+    assert all(check.passed for check in runner.verify(outcome.dataset))
+
+
+def test_nothing_evaporates_in_the_cold_so_nothing_cools():
+    outcome = run(molecules=1000, pool=200, duration=6.0, temperature=-60.0)
+    agree(outcome)
+    assert "final_humidity" not in found(outcome)
+    assert found(outcome)["mean_gas_temperature"].theory == pytest.approx(213.15, abs=0.1)
+
+
+def test_dry_air_cools_the_pool_below_the_air_and_both_end_alike():
+    outcome = run(molecules=4000, pool=800, duration=8.0, seed=2)
+    early = outcome.dataset.isel(elapsed_time=slice(0, 10))
+    assert float((early.gas_temperature - early.liquid_temperature).mean()) > 4.0
+    assert float(early.evaporation_rate.mean() / early.condensation_rate.mean()) > 1.3
+    ends = found(outcome)
+    gap = ends["mean_gas_temperature"].value - ends["mean_liquid_temperature"].value
+    error = math.hypot(*(ends[f"mean_{each}_temperature"].standard_error for each in ("gas", "liquid")))
+    assert abs(gap) <= 4.0 * error
+    assert ends["mean_gas_temperature"].value < 273.15 + 30.0 - 10.0
+
+
+def test_a_pool_of_a_few_molecules_comes_to_the_mean_of_its_distribution():
+    outcome = run(molecules=200, pool=20, duration=40.0)
+    agree(outcome)
+    expected = found(outcome)["mean_gas_temperature"].theory
+    # the balance of enthalpy of a large parcel would be 0.8 K off
+    assert expected - float(theory.evaporation_equilibrium(1e5, 303.15, 198, 2, 20).temperature) > 0.5
+
+
+def test_a_pool_that_dries_out_leaves_air_that_is_not_saturated():
+    outcome = run(molecules=1000, pool=5, duration=20.0)
+    agree(outcome)
+    ends = found(outcome)
+    assert "mean_liquid_temperature" not in ends
+    assert 0.2 < ends["final_humidity"].value < 0.6
+    assert (outcome.dataset.liquid_molecule_count.values[-50:] == 0).any()
+
+
+@pytest.mark.parametrize(("pool", "humidity"), [(1, 0.0), (1, 100.0)])
+def test_a_pool_of_one_molecule_is_a_pool(pool, humidity):
+    outcome = run(molecules=300, pool=pool, humidity=humidity, duration=20.0)
+    assert outcome.ledger < 1e-12
+    agree(outcome)
+
+
+def test_the_work_of_the_piston_is_that_of_a_constant_pressure_but_for_what_it_is_late():
+    prepared = runner.prepare("evaporation", {"molecules": 3000, "pool": 600})
+    setup = runner.build(prepared)
+    start = prepared.module._start(prepared.settings, ideal=False)
+    parcel = setup.parcel
+    pressure = prepared.settings.si.pressure / setup.scale.pressure
+
+    def enthalpy():
+        return sum(parcel.energy()) + parcel.condensed_energy + pressure * parcel.number / parcel.open_density
+
+    before, volume = enthalpy(), parcel.number / parcel.open_density
+    until = 5.0e-9 / setup.scale.time
+    parcel.advance(until)
+    work = pressure * (parcel.number / parcel.open_density - volume)
+    assert abs(work) > 50.0
+    kelvin = (enthalpy() - before) / (3.5 * 3000 + theory.LIQUID_HEAT_CAPACITY * 600) * prepared.settings.si.temperature
+    # always a loss, and less than what is stated
+    assert -start.loss(until) < kelvin < 0.0
+    assert start.loss(until) < 0.15
+
+
+def test_those_that_leave_have_the_binding_energy_and_the_flux_of_a_vapour():
+    outcome = run(molecules=2000, pool=2000, humidity=100.0, duration=8.0, temperature=50.0)
+    data = outcome.dataset
+    width = np.diff(data.energy_bnds.values)[:, 0]
+    share = data.leaving_energy_probability_density.values * width
+    expected = data.leaving_energy_probability_density_theory.values * width
+    below = data.energy_bnds.values[:, 1] <= BOLTZMANN * theory.BINDING_TEMPERATURE * (1.0 + 1e-9)
+    assert share.sum() == pytest.approx(1.0)
+    assert not share[below].any()
+    assert (data.staying_energy_probability_density.values * width)[below].sum() > 0.99
+    number = float(data.evaporation_rate.mean() * data.elapsed_time[-1]) * 1e-9
+    many = expected * number > 10.0
+    chi = ((share - expected)[many] ** 2 / expected[many]).sum() * number
+    degrees = many.sum()
+    assert number > 5000
+    # 4 standard deviations of chi-squared
+    assert abs(chi - degrees) < 4.0 * math.sqrt(2.0 * degrees) + 1.0
+    leaver = found(outcome)["energy_of_those_that_leave"]
+    warm = (leaver.theory / BOLTZMANN - theory.BINDING_TEMPERATURE) / LEAVING_FREEDOM
+    assert warm == pytest.approx(323.15, abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"pressure": 42.0}, "makes water boil at 42 hPa.*temperature=29degC"),
+        ({"pressure": 1.0, "temperature": 95.0}, "boil.*temperature=-23degC"),
+        ({"humidity": 600.0, "temperature": 60.0}, "hardly any air is left.*humidity=4[0-9][0-9]percent"),
+        ({"pressure": 20_000.0, "diameter": 1.0}, r"too wide for 20000 hPa.*diameter=0\.[0-9]+nm"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_what_to_type_instead(settings, words):
+    with pytest.raises(SettingError, match=words) as refusal:
+        runner.prepare("evaporation", settings)
+    fix = str(refusal.value).rpartition("--set ")[2].removesuffix(".").split(" ")[0]
+    name, _, value = fix.partition("=")
+    runner.prepare("evaporation", {**settings, name: value})
+
+
+def test_a_run_too_short_to_come_to_rest_states_no_answer():
+    outcome = run(molecules=300, pool=60, duration=0.1)
+    assert outcome.headlines == ()
+    assert all(check.passed for check in runner.verify(outcome.dataset))
+
+
+def test_the_wet_bulb_is_a_fact_unless_the_air_is_supersaturated():
+    def facts(**settings):
+        prepared = runner.prepare("evaporation", {"molecules": 200, "pool": 20, **settings})
+        return runner.build(prepared).facts
+
+    bulb = float(facts()["wet-bulb temperature"].split()[0])
+    assert bulb == pytest.approx(15.63, abs=0.01)
+    # a pool that is warm at the start ends warmer
+    assert bulb < float(facts(pool=40)["at the end, by the balance of enthalpy"].split()[0]) < 30.0
+    assert facts(humidity=120.0)["wet-bulb temperature"].startswith("none")
+    assert float(facts(humidity=100.0)["wet-bulb temperature"].split()[0]) == pytest.approx(30.0, abs=0.01)
