@@ -81,6 +81,12 @@ def _dsmc() -> type[Parcel]:
     return DsmcParcel
 
 
+def _moist_dsmc() -> type[Parcel]:
+    from atmosbox.engine.moist_dsmc_parcel import MoistDsmcParcel
+
+    return MoistDsmcParcel
+
+
 def _classic() -> type[Parcel]:
     from atmosbox.engine.classic import ClassicParcel
 
@@ -144,6 +150,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 ),
                 ideal=True,
                 reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
+                moist=_moist_dsmc,
             ),
             Engine(
                 "classic",

@@ -146,7 +146,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             arrival + float(misfit[late].mean()),
             scatter,
             arrival,
-            hurried + error.haze(ascent, humidity, arrival),
+            hurried + error.haze(ascent, humidity, 0.0, arrival),
             "the way is not infinitely slow, and some molecules are clustered in clear air",
             "K",
             "degC",

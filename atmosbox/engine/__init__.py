@@ -30,6 +30,7 @@ Read it in this order:
 `parcelset`  the box, advanced exactly
 `liquid`     water that has condensed: a ledger, and its laws
 `phase`      a molecule leaves the box, or comes into it
+`moist_account`  what a box with liquid in it holds
 `moist`      from event to event, with liquid in the box
 `moist_parcelset`  the box of moist air, advanced exactly
 `marching`   the box, advanced step by step
@@ -49,8 +50,11 @@ Read it in this order:
 `swarm`      many molecules in columns, sorted into cells
 `streaming`  a step of free flight for all of them, with walls on the way
 `pairing`    who of a cell collide, drawn by chance
+`moist_swarm`  what liquid does in a step among many molecules, and a mist
+`moist_pool`   what a pool does
 `dsmc`       collisions with whom chance chooses nearby
 `dsmc_parcel`  the box, advanced by direct simulation Monte Carlo
+`moist_dsmc_parcel`  the box of moist air, advanced so
 `measure`    what is read off it
 `lift`       a piston that follows a pressure
 `_jit`       the one door to numba

@@ -32,6 +32,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atmosbox.engine._jit import kernel, prange
+from atmosbox.engine.moist_pool import pool_step
+from atmosbox.engine.moist_swarm import mist_step
 from atmosbox.engine.pairing import collide, scramble
 from atmosbox.engine.refusal import RefusedError
 from atmosbox.engine.streaming import WAITS, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
@@ -171,18 +173,17 @@ def _settle(desk, tallies, threads, piston):
 
 
 @functools.cache
-def specialise(rotates: bool, parallel: bool, liquid: Any = None, pool: bool = False) -> Any:
+def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = False) -> Any:
     """Return the kernel that marches.
 
     Parameters
     ----------
     rotates, parallel
         Whether molecules rotate, and whether several threads share the work.
-    liquid, pool
-        The kernel of what liquid does in a step, if there is any, and whether the floor is its surface. Molecules are
-        then of several kinds, and come and go.
+    wet, pool
+        Whether there is liquid, so that molecules are of several kinds and come and go, and whether the floor is its
+        surface.
     """
-    wet = liquid is not None
 
     @kernel(entry=True, allocates=parallel, parallel=parallel)
     def march(
@@ -211,7 +212,10 @@ def specialise(rotates: bool, parallel: bool, liquid: Any = None, pool: bool = F
                     t, desk, rotates, wet, pool,
                 )  # fmt: skip
             if wet:
-                liquid(start, dt, ceiling, top, cell_key, swarm, grid, gas, box, walls, tallies, desk, water, rotates)
+                if pool:
+                    pool_step(start, dt, ceiling, top, cell_key, swarm, grid, gas, box, walls, desk, water, rotates)
+                else:
+                    mist_step(dt, ceiling, top, cell_key, swarm, grid, gas, box, water, rotates)
                 number = number_present(swarm, water)
                 for t in prange(threads):
                     first, last = share_of(t, threads, number)

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
+from atmosbox.engine.box import new_box
 from atmosbox.engine.dsmc import Resolution, numbers_of_cells, specialise
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.pairing import new_tries
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
-from atmosbox.engine.state import Box
 from atmosbox.engine.swarm import Gas, Swarm, new_columns, new_desk, new_gather, new_grid
 
 __all__ = ["DsmcParcel"]
@@ -156,15 +156,10 @@ class DsmcParcel(MarchingParcel):
         self._gas, kind = self._classify()
         self._cross_section = math.pi * (2.0 * self._gas.radius) ** 2
         self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
-        length = [float(side) for side in self._sides]
-        inverse = [1.0 / side if turn else 0.0 for side, turn in zip(length, self._periodic, strict=True)]
-        self._box = Box(
-            length_x=length[0],
-            length_y=length[1],
-            length_z=length[2],
-            inverse_x=inverse[0],
-            inverse_y=inverse[1],
-            inverse_z=inverse[2],
+        self._box = new_box(
+            self._sides,
+            self._periodic,
+            moving=False,
             gravity=self._gravity,
             planar=False,
             exchange=1.0 / self._collision_number,

@@ -49,7 +49,7 @@ class MarchingParcel(Parcel):
         interval = number(interval, "interval")
         if self._step or not interval > 0.0:
             raise RefusedError("a time step is chosen before the first step, for an interval above 0")
-        if self._number:
+        if self._effort():
             self._time_step = interval / math.ceil(interval / self._time_step * (1.0 - _SLACK))
             self._step_chosen()
 

@@ -1,4 +1,4 @@
-r"""What liquid does in a step among many molecules: a mist everywhere, or a pool on the floor.
+r"""What liquid does in a step among many molecules, and what a mist does.
 
 All molecules have flown, and those that came to a pool wait on it. Now the events of the liquid take their turn, *one
 by one* in the order of their times within the step: a molecule meets it, one leaves it, one rains out. Were those that
@@ -6,10 +6,8 @@ meet it dealt with in the order of the list instead, many would condense before 
 warm. Each clock is a Poisson process, drawn anew whenever the liquid has changed, which its lack of memory allows.
 
 In an ideal gas a molecule of speed w relative to the air meets the **mist** at the rate :math:`A w / 4 V`. Drawn is the
-time for the fastest of all; what is drawn is accepted in proportion to the speed. Molecules come to the **pool** when
-their flight takes them there; whoever leaves it flies for *the rest of the step*, and may be back within it.
-
-A molecule that has gone leaves a hole in the columns, which the last of them fills.
+time for the fastest of all; what is drawn is accepted in proportion to the speed. One that has gone leaves a hole in
+the columns, which the last of them fills. The pool is in `moist_pool`.
 """
 
 import math
@@ -18,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atmosbox.engine._jit import kernel
-from atmosbox.engine.calendar import new_calendar, next_event, schedule
+from atmosbox.engine.calendar import new_calendar
 from atmosbox.engine.liquid import (
     AIR_MET,
     LIQUID,
@@ -34,13 +32,9 @@ from atmosbox.engine.liquid import (
 )
 from atmosbox.engine.pairing import scramble
 from atmosbox.engine.random import uniform
-from atmosbox.engine.streaming import bounce
 from atmosbox.engine.swarm import cells_per_length, find_cell, number_present
 
-__all__ = ["Water", "fill_holes", "mist", "new_water", "pool"]
-
-_GONE = -1.0
-
+__all__ = ["Water", "copy_slot", "emit", "mist_step", "new_water", "next_rain", "place", "strike", "touch"]
 
 class Water(NamedTuple):
     """The liquid of a swarm.
@@ -64,7 +58,7 @@ def new_water(ledger: Ledger, waiting: int) -> Water:
 
 
 @kernel
-def _copy(source, p, swarm, rotates):
+def copy_slot(source, p, swarm, rotates):
     """Write what stands in one slot into another."""
     swarm.x[p], swarm.y[p], swarm.z[p] = swarm.x[source], swarm.y[source], swarm.z[source]
     swarm.vx[p], swarm.vy[p], swarm.vz[p] = swarm.vx[source], swarm.vy[source], swarm.vz[source]
@@ -76,37 +70,10 @@ def _copy(source, p, swarm, rotates):
 
 
 @kernel
-def _strike(p, swarm, ledger):
+def strike(p, swarm, ledger):
     """Note that the molecule of a slot is not in the box any more."""
     ledger.absent[ledger.top[0]] = swarm.identity[p]
     ledger.top[0] += 1
-
-
-@kernel
-def fill_holes(last, swarm, left, water, rotates):
-    """Put the last molecules into the holes before them; ``last`` is the slot after the last that is in use.
-
-    Examples
-    --------
-    The first and the third of four have gone: the fourth takes the place of the first.
-
-    >>> from atmosbox.engine.swarm import Swarm
-    >>> columns = [np.arange(4.0) for _ in range(7)] + [np.arange(4) for _ in range(4)]
-    >>> left, water = np.array([-1.0, 0.0, -1.0, 0.0]), Water(None, None, np.array([0, 2]), np.array([2]), None)
-    >>> fill_holes(4, Swarm(*columns), left, water, True)
-    >>> columns[0][:2], left
-    (array([3., 1.]), array([0., 0., 0., 0.]))
-    """
-    for k in range(water.holes[0]):
-        while last > 0 and left[last - 1] == _GONE:
-            last -= 1
-            left[last] = 0.0
-        p = water.hole[k]
-        if p < last:
-            last -= 1
-            _copy(last, p, swarm, rotates)
-            left[p] = 0.0
-    water.holes[0] = 0
 
 
 @kernel
@@ -119,7 +86,7 @@ def _direction(pool, state):
 
 
 @kernel
-def _touch(p, flow, swarm, gas, ledger, state, rotates, pool):
+def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
     """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
 
     Otherwise it leaves with another energy.
@@ -150,7 +117,7 @@ def _touch(p, flow, swarm, gas, ledger, state, rotates, pool):
 
 
 @kernel
-def _emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, pool):
+def emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, pool):
     """Let a molecule leave the liquid, into a slot that is free."""
     mass = gas.masses[ledger.kind]
     flight, spin = evaporate(ledger, state)
@@ -173,7 +140,7 @@ def _emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, pool):
 
 
 @kernel
-def _place(radius, length, inverse, state):
+def place(radius, length, inverse, state):
     """Return a coordinate that a centre can have along an axis, at random."""
     margin = radius if inverse == 0.0 else 0.0
     return margin + (length - 2.0 * margin) * uniform(state)
@@ -196,13 +163,13 @@ def _fastest(number, swarm):
 
 
 @kernel
-def _next_rain(t, ledger, state):
+def next_rain(t, ledger, state):
     """Return when the next molecule rains [time]."""
     return t + wait(ledger.rain * (ledger.count[LIQUID] - ledger.keeps), state)
 
 
 @kernel(entry=True)
-def mist(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, tallies, desk, water, rotates):
+def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
     """Let a mist, carried along by the air, do what it does in a step."""
     ledger, state = water.ledger, water.random
     state[0] = scramble(~key)
@@ -217,7 +184,7 @@ def mist(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, tallies, de
     bound = _fastest(number, swarm) + abs(rise)
     meets = wait(number * often * bound, state)
     leaves = wait(evaporation_rate(ledger), state)
-    rains = _next_rain(0.0, ledger, state)
+    rains = next_rain(0.0, ledger, state)
     while True:
         t = min(meets, leaves, rains)
         if t > dt:
@@ -230,20 +197,20 @@ def mist(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, tallies, de
             if enough * enough >= vx * vx + vy * vy + vz * vz:
                 meets = t + wait(number * often * bound, state)
                 continue
-            if _touch(p, flow, swarm, gas, ledger, state, rotates, False):
+            if touch(p, flow, swarm, gas, ledger, state, rotates, False):
                 number -= 1
-                _strike(p, swarm, ledger)
-                _copy(number, p, swarm, rotates)
+                strike(p, swarm, ledger)
+                copy_slot(number, p, swarm, rotates)
             else:
                 vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
                 bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
         elif t == leaves:
             p = number
-            x = _place(r, box.length_x, box.inverse_x, state)
-            y = _place(r, box.length_y, box.inverse_y, state)
-            z = _place(r, top, box.inverse_z, state)
+            x = place(r, box.length_x, box.inverse_x, state)
+            y = place(r, box.length_y, box.inverse_y, state)
+            z = place(r, top, box.inverse_z, state)
             flow = rise * z / top
-            _emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, False)
+            emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, False)
             find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
             number += 1
             vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
@@ -252,62 +219,4 @@ def mist(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, tallies, de
             rain_out(ledger)
         meets = t + wait(number * often * bound, state)
         leaves = t + wait(evaporation_rate(ledger), state)
-        rains = _next_rain(t, ledger, state)
-
-
-@kernel(entry=True)
-def pool(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, tallies, desk, water, rotates):
-    """Let a pool on the floor do what it does in a step, with those that wait on it."""
-    ledger, state, calendar, left = water.ledger, water.random, water.calendar, desk.left
-    state[0] = scramble(~key)
-    number = number_present(swarm, water)
-    books = desk.books[desk.books.shape[0] - 1]
-    rise = (top - ceiling) / dt
-    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
-    for p in range(number):
-        if left[p] > 0.0:
-            schedule(calendar, p, dt - left[p])
-    leaves = wait(evaporation_rate(ledger), state)
-    rains = _next_rain(0.0, ledger, state)
-    while True:
-        p, comes = next_event(calendar)
-        t = min(comes, leaves, rains)
-        if t > dt:
-            break
-        flies = False
-        if t == comes:
-            schedule(calendar, p, math.inf)
-            left[p] = 0.0
-            mass = gas.masses[swarm.kind[p]]
-            books[0, 4] -= mass * swarm.vz[p]
-            books[2, 4] += 1.0
-            flies = not _touch(p, 0.0, swarm, gas, ledger, state, rotates, True)
-            if not flies:
-                _strike(p, swarm, ledger)
-                left[p] = _GONE
-                water.hole[water.holes[0]] = p
-                water.holes[0] += 1
-        elif t == leaves:
-            flies = True
-            p = number
-            if water.holes[0] > 0:
-                water.holes[0] -= 1
-                p = water.hole[water.holes[0]]
-            else:
-                number += 1
-            left[p] = 0.0
-            x = _place(gas.radius, box.length_x, box.inverse_x, state)
-            y = _place(gas.radius, box.length_y, box.inverse_y, state)
-            _emit(p, x, y, gas.radius, 0.0, swarm, gas, ledger, state, rotates, True)
-        else:
-            rain_out(ledger)
-        if flies:
-            books[0, 4] += gas.masses[swarm.kind[p]] * swarm.vz[p]
-            here = ceiling + rise * t
-            bounce(p, start + t, dt - t, here, swarm, gas, box, walls, state, books, left, rotates, True, True)
-            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
-            if left[p] > 0.0:
-                schedule(calendar, p, dt - left[p])
-        leaves = t + wait(evaporation_rate(ledger), state)
-        rains = _next_rain(t, ledger, state)
-    fill_holes(number, swarm, left, water, rotates)
+        rains = next_rain(t, ledger, state)

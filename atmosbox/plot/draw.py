@@ -261,7 +261,8 @@ def _set_limits(axes: Axes, panel: Panel, values: int) -> None:
     across = {"profile": 0.07, "histogram": 0.0}.get(panel.kind, 0.03 if values <= _MOST_POINTS else 0.0)
     axes.margins(x=across, y=0.07 if panel.kind == "line" else 0.02)
     low, high = axes.dataLim.intervaly
-    if panel.kind == "profile" and panel.y_scale == "log" and low == high:
+    if panel.kind == "profile" and panel.y_scale == "log" and low >= high * (1.0 - 1e-9):
+        axes.set_autoscaley_on(False)
         axes.set_ylim(low / _ONE_LEVEL, high * _ONE_LEVEL)
     axes.autoscale_view()
     if panel.kind == "line" and panel.x_scale == "linear" and 0.0 < axes.get_xlim()[0] < 0.1 * axes.get_xlim()[1]:

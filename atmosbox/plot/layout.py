@@ -128,7 +128,8 @@ def _frame(pen: Pen, dataset: xr.Dataset, panels: tuple[Panel, ...], look: Theme
     small = footer(dataset) + (" · bars and bands: ± 1 standard error" if has_errors else "")
     small += ", hollow: not known" if has_hollow else ""
     small += f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else ""
-    small = pen.wrap(small, width - look.text, look.small)
+    # Type that is hinted for a screen may be narrower than in print.
+    small = pen.wrap(small, 0.98 * (width - look.text), look.small)
     pen.figure.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
     if look.heading and dataset.attrs.get("title"):
         size = 1.3 * look.title

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.panels import Panel
-from atmosbox.plot.curve import curve, read
+from atmosbox.plot.curve import Curve, curve, read
 from atmosbox.plot.draw import Entry, draw_lines
 from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, DARK, FAINT, PALE, Theme
 from atmosbox.plot.unit import convert
@@ -43,6 +43,7 @@ _MOIST = np.arange(-30.0, 41.0, 10.0)
 _MIXING = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 _MIXING_TOP = 400.0  # hPa
 _HIGHEST_MOIST = 50.0  # hPa
+_ROUNDING = 1.0 + 1e-12  # of a pressure that has been through its logarithm
 
 Floats = NDArray[np.float64]
 
@@ -275,39 +276,44 @@ def _draw_background(skewed: Any, bottom: float, top: float, theme: Theme) -> No
 def _shade(skewed: Any, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
     """Shade CAPE and CIN, and return their entries of the legend; none without a level of free convection."""
     marks = levels(dataset, panel)
-    pair = [next((line for line in panel.lines if line.role == role), None) for role in ("data", "environment")]
-    if "LFC" not in marks or pair[0] is None or pair[1] is None:
+    measured, environment = (
+        next((line for line in panel.lines if line.role == role), None) for role in ("data", "environment")
+    )
+    if "LFC" not in marks or measured is None or environment is None:
         return []
     lfc, el = marks["LFC"], marks.get("EL", 0.0)
-    pressure, parcel, around = _together(*(curve(dataset, panel, line)[:2] for line in pair if line), (lfc, el))
-    free, below = (pressure <= lfc) & (pressure >= el), pressure >= lfc
+    curves = [curve(dataset, panel, line) for line in (measured, environment)]
+    pressure, parcel, around = _together(curves, [lfc, el] if el else [lfc])
+    free, below = (pressure <= lfc * _ROUNDING) & (pressure * _ROUNDING >= el), pressure * _ROUNDING >= lfc
+    warmer = parcel - around
     entries: list[Entry] = []
-    for name, part, shade in (("CAPE", free, skewed.shade_cape), ("CIN", below, skewed.shade_cin)):
-        sign = 1.0 if name == "CAPE" else -1.0
-        if not (sign * (parcel - around)[part] > 0.0).any():
+    for name, part, sign, shade in (
+        ("CAPE", free, 1.0, skewed.shade_cape),
+        ("CIN", below, -1.0, skewed.shade_cin),
+    ):
+        if not (sign * warmer[part] > 0.0).any():
             continue
-        look = {"facecolor": (*AREA_COLOURS[name], 0.5), "edgecolor": AREA_COLOURS[name], "alpha": None}
-        look |= {"hatch": AREA_HATCHES[name], "linewidth": 0.0}
+        colour = AREA_COLOURS[name]
+        look: dict[str, Any] = {"facecolor": (*colour, 0.5), "edgecolor": colour, "alpha": None, "linewidth": 0.0}
+        look["hatch"] = AREA_HATCHES[name]
         shade(pressure[part], around[part], parcel[part], zorder=0.8, **look)
         entries.append(((Patch(**look),), name))
     return entries
 
 
-def _together(
-    parcel: tuple[Floats, Floats], around: tuple[Floats, Floats], ends: tuple[float, float]
-) -> tuple[Floats, Floats, Floats]:
-    """Return pressures from the ground up, among them the ends of areas, with the temperatures of both curves there."""
-    curves = []
-    for temperature, pressure in (parcel, around):
+def _together(curves: list[Curve], ends: list[float]) -> tuple[Floats, Floats, Floats]:
+    """Return pressures from the ground up, the ends of areas among them, and the temperatures of two curves there."""
+    columns = []
+    for temperature, pressure, _ in curves:
         known = np.isfinite(temperature) & np.isfinite(pressure)
         order = np.argsort(-pressure[known], kind="stable")
-        curves.append((-np.log(pressure[known][order]), temperature[known][order]))
-    if not all(height.size for height, _ in curves):
+        columns.append((-np.log(pressure[known][order]), temperature[known][order]))
+    if not all(height.size for height, _ in columns):
         return np.zeros(0), np.zeros(0), np.zeros(0)
-    low, high = max(height[0] for height, _ in curves), min(height[-1] for height, _ in curves)
-    heights = np.unique(np.concatenate([*(height for height, _ in curves), [-math.log(end) for end in ends if end]]))
+    low, high = max(height[0] for height, _ in columns), min(height[-1] for height, _ in columns)
+    heights = np.unique(np.concatenate([*(height for height, _ in columns), -np.log(ends)]))
     heights = heights[(heights >= low) & (heights <= high)]
-    temperatures = [np.interp(heights, *each) for each in curves]
+    temperatures = [np.interp(heights, *each) for each in columns]
     return np.exp(-heights), temperatures[0], temperatures[1]
 
 

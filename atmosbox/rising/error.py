@@ -72,13 +72,29 @@ def blur(ascent: MoistAscent) -> float:
     return ascent.base / (_scatter(ascent, t) * (_latent(t) / 3.5 - 1.0))
 
 
-def haze(ascent: MoistAscent, humidity: float, temperature: float) -> float:
-    """Return how much the molecules warm the air that are clustered below saturation, RH / (1 - RH) on average [K]."""
+def haze(ascent: MoistAscent, humidity: float, liquid: float, temperature: float) -> float:
+    r"""Return how much the molecules warm the air that are clustered beyond what theory has as liquid [K].
+
+    Of a number that scatters by s about m, but cannot be less than none, the mean is :math:`m + s \phi(m/s) /
+    \Phi(m/s)`, with the normal density and its integral. In clear air, where theory has no liquid, m is below zero, and
+    the mean is nearly RH / (1 - RH); in a cloud it soon is m.
+
+    Parameters
+    ----------
+    ascent
+        The way.
+    humidity, liquid, temperature
+        Relative humidity [1], liquid per dry air [kg kg-1] and temperature [K] by theory.
+    """
     if not ascent.vapour:
         return 0.0
-    most = _scatter(ascent, temperature)
-    clustered = min(humidity / (1.0 - humidity), most) if humidity < 1.0 else most
-    return warmth_of(law.WATER_MASS_RATIO * clustered / (ascent.molecules - ascent.vapour), temperature)
+    air = ascent.molecules - ascent.vapour
+    scatter = _scatter(ascent, temperature)
+    cloudy = max(liquid, 0.0) / law.WATER_MASS_RATIO * air
+    mean = cloudy if cloudy > 0.0 else (humidity - 1.0) * scatter**2
+    a = max(mean / scatter, -30.0)
+    more = scatter * math.sqrt(2.0 / math.pi) * math.exp(-0.5 * a * a) / math.erfc(-a / math.sqrt(2.0))
+    return warmth_of(law.WATER_MASS_RATIO * (min(mean, 0.0) + more) / air, temperature)
 
 
 def _meeting(ascent: MoistAscent, pressure: float) -> float:
@@ -119,11 +135,13 @@ def rain_scatter(ascent: MoistAscent) -> float:
     return law.WATER_MASS_RATIO * lost / (ascent.molecules - ascent.vapour)
 
 
-def tolerance(ascent: MoistAscent, pressure: float, humidity: float, *, ideal: bool) -> float:
-    """Return how far from the adiabat the model itself may take the parcel at a pressure and humidity [K]."""
+def tolerance(ascent: MoistAscent, pressure: float, *, ideal: bool) -> float:
+    """Return how far from the adiabat the model itself may take the parcel where it first meets a pressure [K]."""
     density = size_of_parcel(ascent.scale, ascent.molecules, ascent.pressure, ideal=ideal)[0]
     speed = haste(ascent)
     room = 0.0 if ideal else speed.room(min(pressure, ascent.pressure), density)
-    t = float(ascent.planned_at(pressure).temperature[0])
-    cluster = haze(ascent, humidity, t) if humidity < 1.0 - 1e-6 else 0.0
-    return t * (speed.finite_speed(pressure) + room) + lag(ascent, pressure) + cluster
+    path = ascent.planned_at(pressure)
+    t = float(path.temperature[0])
+    humidity = float(law.vapor_pressure(pressure, path.vapor[0]) / law.saturation_vapor_pressure(t))
+    clustered = haze(ascent, humidity, float(path.liquid[0]), t)
+    return t * (speed.finite_speed(pressure) + room) + lag(ascent, pressure) + clustered

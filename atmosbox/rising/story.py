@@ -151,7 +151,7 @@ def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -
                 expected + float(misfit[near].mean()),
                 float(np.hypot(scatter[middle], expected * error.walk(ascent, np.array([level]))[0])),
                 expected,
-                error.tolerance(ascent, level, _humidity(ascent, level), ideal=ideal),
+                error.tolerance(ascent, level, ideal=ideal),
                 "the ascent is not infinitely slow, spheres take up room, and vapour must find liquid",
                 "K",
                 "degC",
@@ -159,10 +159,3 @@ def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -
             )
         )
     return tuple(found)
-
-
-def _humidity(ascent: MoistAscent, pressure: float) -> float:
-    """Return the relative humidity that theory expects where the way first meets a pressure [Pa]."""
-    path = ascent.planned_at(pressure)
-    saturation = float(law.saturation_vapor_pressure(path.temperature[0]))
-    return float(law.vapor_pressure(pressure, path.vapor[0])) / saturation

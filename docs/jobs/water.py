@@ -1,0 +1,155 @@
+"""Water at rest: the curve of saturation, and the balance of a few molecules."""
+
+import math
+
+import numpy as np
+from jobs.drawing import BLUE, save, sheet
+from jobs.registry import Findings, job
+
+from atmosbox import runner, theory
+from atmosbox.engine.liquid import Mist
+from atmosbox.engine.moist_parcelset import MoistParcelSet
+from atmosbox.moisture import moist_air, water
+from atmosbox.plot.theme import DARK, REFERENCE_COLOURS
+from atmosbox.statistics import block_average
+from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+
+RUNS: dict[float, dict[str, float]] = {
+    -10.0: {"pressure": 100.0, "area": 12.0, "duration": 75.0},
+    0.0: {"pressure": 200.0, "area": 10.0, "duration": 55.0},
+    10.0: {"pressure": 500.0, "area": 8.0, "duration": 36.0},
+    20.0: {"area": 6.0, "duration": 26.0},
+    30.0: {"area": 6.0, "duration": 30.0, "molecules": 6000},
+    40.0: {"area": 6.0, "duration": 28.0, "molecules": 4000},
+}
+"""Settings by temperature [degC]. In the cold the air is thin: it plays no part, and more molecules are vapour."""
+FINE = 0.015
+"""Largest standard error of a vapour pressure, as a share of it."""
+
+
+def metpy_saturation(celsius: np.ndarray) -> np.ndarray:
+    """Return MetPy's saturation vapour pressure over liquid water [Pa]."""
+    from metpy.calc import saturation_vapor_pressure
+    from metpy.units import units
+
+    found: np.ndarray = saturation_vapor_pressure(units.Quantity(celsius, "degC")).m_as("Pa")
+    return found
+
+
+@job("saturation")
+def saturation(found: Findings) -> None:
+    """Let vapour condense at six temperatures: what is left of it is the curve of saturation."""
+    import metpy
+
+    rows = []
+    for celsius, (molecules, duration) in RUNS.items():
+        settings = {
+            "temperature": celsius,
+            "molecules": molecules,
+            "duration": duration,
+            "area": 6.0,
+            "humidity": 120.0,
+        }
+        outcome = runner.execute(runner.prepare("condensation", settings))
+        stated = next(each for each in outcome.headlines if each.name == "mean_relative_humidity")
+        pressure = next(each for each in outcome.headlines if each.name == "mean_water_vapor_partial_pressure")
+        rows.append((celsius, pressure.value, pressure.standard_error, stated.value, stated.standard_error))
+        where = f"vapour pressure / saturation at {celsius:g} °C".replace("-", "−")
+        found.agree(where, stated.value, stated.standard_error, float(stated.theory or 1.0))
+        if stated.standard_error > FINE:
+            found.failures.append(f"{where} is known to {100.0 * stated.standard_error:.2f} % only")
+    t, e, error, share, share_error = np.array(rows).T
+    worst = int(np.argmax(share_error))
+    found.number("error", f"{100.0 * share_error.min():.1f} to {100.0 * share_error.max():.1f} %")
+    found.number("worst", f"{t[worst]:g} °C".replace("-", "−"))
+    mean = float(np.average(share, weights=share_error**-2))
+    found.number("mean", f"{100.0 * mean:.1f} ± {100.0 * np.sum(share_error**-2) ** -0.5:.1f} %")
+    found.number("chi-squared", f"{np.sum(((share - 1.0) / share_error) ** 2):.1f} for {len(t)} degrees of freedom")
+    apart = metpy_saturation(t) / theory.saturation_vapor_pressure(t + 273.15) - 1.0
+    found.number("metpy", f"{100.0 * np.max(np.abs(apart)):.3f} %")
+    found.number("metpy-version", metpy.__version__)
+    draw_saturation(found, t, e, error, share, share_error)
+
+
+def draw_saturation(
+    found: Findings, t: np.ndarray, e: np.ndarray, error: np.ndarray, share: np.ndarray, share_error: np.ndarray
+) -> None:
+    """Draw vapour pressure against temperature, and its share of saturation."""
+    line = np.linspace(-15.0, 44.0, 200)
+    textbook, metpy = theory.saturation_vapor_pressure(line + 273.15), metpy_saturation(line)
+    with sheet((7.2, 6.6)) as drawing:
+        top, low = drawing.subplots(2, 1, sharex=True, height_ratios=(2.1, 1.0))
+        top.plot(line, metpy / 100.0, color=REFERENCE_COLOURS[0], linewidth=5.0, alpha=0.7, label="MetPy")
+        top.plot(line, textbook / 100.0, "--", color=DARK, label="$e_s(T)$ of one binding energy")
+        top.errorbar(t, e / 100.0, error / 100.0, fmt="o", capsize=3, color=BLUE, label="molecules", zorder=5)
+        top.set(
+            title="What is left of the vapour is the curve of saturation",
+            ylabel="vapour pressure (hPa)",
+            xlim=(-15.0, 44.0),
+            ylim=(0.0, 85.0),
+        )
+        top.legend(loc="upper left")
+        low.plot(line, 100.0 * (metpy / textbook - 1.0), color=REFERENCE_COLOURS[0], linewidth=5.0, alpha=0.7)
+        low.axhline(0.0, linestyle="--", color=DARK)
+        low.errorbar(t, 100.0 * (share - 1.0), 100.0 * share_error, fmt="o", capsize=3, color=BLUE)
+        low.set(xlabel="temperature (°C)", ylabel="less $e_s$ (%)", ylim=(-5.0, 5.0))
+        save(found, drawing, "saturation")
+
+
+WATERS, AIR, NUCLEI = 6, 20, 30.0
+
+
+def isolated_box(seed: int) -> tuple[MoistParcelSet, Scale]:
+    """Return a box without heat bath that holds a few molecules of air and water, at about 20 degC."""
+    rng = np.random.default_rng(seed)
+    scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 293.15)
+    small, vapour = 1e-3, WATERS // 2
+    side = (vapour / float(theory.saturation_vapor_pressure(293.15) / scale.pressure)) ** (1.0 / 3.0)
+    gas = moist_air(AIR + vapour, vapour, rng)
+    box = MoistParcelSet(
+        rng.uniform(small, side - small, (AIR + vapour, 3)),
+        gas.velocity,
+        length=(side,) * 3,
+        mass=gas.mass,
+        diameter=small,
+        rotation=gas.rotation,
+        rotational_energy=gas.rotational_energy,
+        liquid=Mist(
+            water(scale, small), number=WATERS - vapour, kT=1.0, nuclei=NUCLEI, area=20.0 * side * side
+        ),
+        seed=seed,
+    )  # fmt: skip
+    return box, scale
+
+
+@job("few-molecules")
+def few_molecules(found: Findings) -> None:
+    """Count how often so many of six molecules of water are vapour, in a box of which nothing leaves."""
+    box, scale = isolated_box(1)
+    energy = (sum(box.energy()) + box.condensed_energy) * scale.energy
+    exact = theory.isolated_vapor_number(WATERS, AIR, energy, box.volume * scale.length**3, NUCLEI)
+    box.advance(200.0)
+    looks, step = 100_000, 4.0
+    number = np.empty(looks)
+    for k in range(looks):
+        box.advance(200.0 + (k + 1) * step)
+        number[k] = box.vapour
+    for n, chance in enumerate(exact.probability):
+        if chance > 0.01:
+            share = block_average((number == n).astype(float), 40)
+            found.agree(
+                f"probability that {n} of {WATERS} are vapour",
+                float(share.mean),
+                float(share.standard_error),
+                float(chance),
+                limit=0.02,
+            )
+    mean = block_average(number, 40)
+    found.agree("mean number of molecules of vapour", float(mean.mean), float(mean.standard_error), exact.mean)
+    naive = float(theory.hertz_knudsen_flux(293.15))
+    thermal = (3 * theory.LIQUID_HEAT_CAPACITY + NUCLEI) * BOLTZMANN * 293.15
+    ratio = float(theory.microcanonical_flux(thermal, 3, NUCLEI)) / naive
+    found.number("rate", f"{ratio:.2f}")
+    found.number("exchanges", f"{box.evaporated:,}")
+    if not math.isfinite(ratio):
+        found.failures.append("the rate of three molecules is not finite")

@@ -1,0 +1,124 @@
+"""The scene lifting-sounding: any format, any stability, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from atmosbox import runner, scenarios, sounding, theory
+from atmosbox.cli import app
+from atmosbox.verification import verify
+
+SCENE = "lifting-sounding"
+SMALL = {"molecules": 1000, "ascent": 60}
+PRESSURE = (1000.0, 925.0, 850.0, 700.0, 500.0, 400.0, 300.0, 250.0)
+STABLE = (20.0, 19.0, 18.0, 10.0, -5.0, -15.0, -30.0, -38.0)
+LOADED = (30.0, 24.0, 18.0, 6.0, -14.0, -26.0, -42.0, -51.0)
+
+
+def csv(path, temperature, dewpoint):
+    rows = zip(PRESSURE, temperature, dewpoint, strict=True)
+    lines = ["pressure [hPa],temperature [degC],dewpoint [degC]", *(",".join(map(str, row)) for row in rows)]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return str(path)
+
+
+def outcome(**settings):
+    return runner.execute(runner.prepare(SCENE, SMALL | settings))
+
+
+def headline(found, name):
+    return next((each for each in found.headlines if each.name == name), None)
+
+
+def test_the_built_in_sounding_is_weisman_and_klemps_and_passes_its_own_check():
+    found = outcome()
+    assert all(check.passed for check in verify(found.dataset))
+    air = sounding.weisman_klemp()
+    assert found.dataset.environment_temperature.values[0] == pytest.approx(air.temperature[0], abs=1.0)
+    assert headline(found, "metpy_cape").agrees
+    assert headline(found, "metpy_lcl").agrees
+    assert headline(found, "metpy_el").agrees
+
+
+def test_the_buoyancy_is_that_of_virtual_temperatures():
+    data = outcome().dataset
+    warmer = data.parcel_virtual_temperature.values - data.parcel_temperature.values
+    vapour = data.humidity_mixing_ratio.values
+    # T_v is T (1 + 0.608 r) to a percent of the difference
+    assert warmer == pytest.approx(0.608 * vapour * data.parcel_temperature.values, rel=0.02)
+    air = sounding.weisman_klemp()
+    levels = -np.log(air.pressure)
+    moist = theory.mixing_ratio(theory.saturation_vapor_pressure(air.dewpoint), air.pressure)
+    around = np.interp(-np.log(data.parcel_pressure), levels, theory.virtual_temperature(air.temperature, moist))
+    expected = theory.parcel_buoyancy(data.parcel_virtual_temperature, around)
+    # the scene interpolates temperature and dewpoint, which is not quite the same between levels 250 m apart
+    assert data.parcel_buoyancy.values == pytest.approx(np.asarray(expected), abs=0.002)
+
+
+def test_a_stable_sounding_has_no_energy_and_the_word_for_it(tmp_path):
+    path = csv(tmp_path / "stable.csv", STABLE, [t - 3.0 for t in STABLE])
+    found = outcome(sounding=path)
+    assert headline(found, "cape").theory == 0.0
+    # few molecules may be buoyant for a moment at the ground, where both temperatures are the same
+    assert 0.0 <= headline(found, "cape").value < 5.0
+    assert headline(found, "lfc") is None
+    assert runner.card(runner.prepare(SCENE, {"sounding": path})).facts[-1] == ("verdict", "stable")
+    assert math.isfinite(headline(found, "cape").value)
+
+
+def test_moist_air_below_cold_air_is_unstable(tmp_path):
+    path = csv(tmp_path / "loaded.csv", LOADED, [24.0, 20.0, 14.0, 0.0, -25.0, -40.0, -60.0, -70.0])
+    facts = dict(runner.card(runner.prepare(SCENE, {"sounding": path})).facts)
+    assert facts["verdict"] in ("unstable", "conditionally unstable")
+    module = scenarios.load(SCENE)
+    energy = module._convection(runner.prepare(SCENE, {"sounding": path}).settings)
+    assert energy.cape > 1000.0
+    # MetPy's own, to five percent
+    metpy = sounding.indices(sounding.read(path))
+    settings = runner.prepare(SCENE, {"sounding": path, "rain": True, "cloud_water": 0.0}).settings
+    rows = {each.name: each for each in module._metpy(settings)}
+    assert rows["metpy_cape"].value == metpy.cape
+    assert rows["metpy_cape"].agrees
+
+
+def test_an_ascent_ends_where_its_sounding_does(tmp_path):
+    path = csv(tmp_path / "short.csv", LOADED, [t - 5.0 for t in LOADED])
+    found = outcome(sounding=path, top_pressure=100.0)
+    assert 245e2 < found.dataset.environment_pressure.values[-1] < 260e2
+
+
+def test_the_same_seed_gives_the_same_bytes():
+    first, second = (outcome(seed=4).dataset for _ in range(2))
+    for name in ("parcel_temperature", "liquid_molecule_count", "parcel_buoyancy"):
+        np.testing.assert_array_equal(first[name].values, second[name].values)
+
+
+@pytest.mark.parametrize(
+    ("content", "complaint"),
+    [
+        ("pressure [hPa],temperature [degC],dewpoint [degC]\n1000,20,10\n900,15,25\n", "line 3"),
+        ("pressure [hPa],temperature [degC],dewpoint [degC]\n1000,20,10\n900,15,5\n", "five levels"),
+        ("", "empty"),
+    ],
+)
+def test_a_broken_file_gets_one_sentence_and_exit_2(tmp_path, monkeypatch, content, complaint):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "broken.csv").write_text(content, encoding="utf-8")
+    result = CliRunner().invoke(app, ["run", SCENE, "--set", "sounding=broken.csv"])
+    assert result.exit_code == 2
+    assert complaint in result.stderr.replace("5 levels", "five levels")
+    assert "Traceback" not in result.stderr
+    assert not (tmp_path / f"{SCENE}.nc").exists()
+
+
+def test_a_top_below_the_ground_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = csv(tmp_path / "high.csv", LOADED, [t - 5.0 for t in LOADED])
+    text = (tmp_path / "high.csv").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "high.csv").write_text("\n".join([text[0], *text[3:]]) + "\n", encoding="utf-8")
+    result = CliRunner().invoke(app, ["run", SCENE, "--set", f"sounding={path}", "--set", "top_pressure=880hPa"])
+    assert result.exit_code == 2
+    assert "top_pressure" in result.stderr
+    assert "give --set top_pressure=" in result.stderr
