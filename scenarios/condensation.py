@@ -20,7 +20,7 @@ from atmosbox import theory as law
 from atmosbox.engine.liquid import Mist
 from atmosbox.engine.start import random_positions
 from atmosbox.engine.walls import HeatBath
-from atmosbox.engines import EXACT, EngineChoice
+from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Water
@@ -39,6 +39,9 @@ FRAMES = 240
 SETTLE = 40
 PARTS = 24
 """Into how many equal parts of the logarithmic axis of time its curves are averaged."""
+BLOCKS = 20
+FEW = 400
+"""How many molecules must have condensed for an error to be read from blocks alone."""
 NUCLEI = 100.0
 """Heat capacity of the nuclei, in k, that droplets form on; at most half a percent of that of the air."""
 
@@ -100,7 +103,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         liquid=Mist(water(scale), kT=1.0, nuclei=nuclei, area=settings.area * side**2),
     )
     full = n * saturated / si.pressure
-    relaxing = 4.0 * side / (settings.area * float(law.mean_speed(1.0, law.WATER_MASS_RATIO)))
     return Setup(
         parcel,
         scale,
@@ -114,10 +116,37 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "weight of a molecule": "1: every molecule stands for itself",
             "exaggeration": "none in the gas; the droplets have far more area than so little water could",
             "vapour at the start": f"{vapour} molecules; {full:.0f} saturate the air",
-            "time to condense": f"{relaxing * scale.time * 1e9:.2g} ns",
+            "time to condense": f"{_memory(settings, ideal=engine.ideal) * 1e9:.2g} ns",
             "noise of the hygrometer": f"{100.0 / math.sqrt(full):.2g} % at every look",
         },
     )
+
+
+def _memory(settings: Settings, *, ideal: bool) -> float:
+    r"""Return how long the number of molecules of vapour remembers a chance surplus [s].
+
+    A surplus must find liquid, :math:`4V/A\bar c`, but its latent heat must leave the droplets with the air that hits
+    them, and the air with the walls: until then the liquid is too warm to keep it. A hit takes 3 kT along. With the
+    share x of the vapour and :math:`\ell = L/kT`,
+
+    .. math:: \frac{4 V}{A \bar c_v} + \frac{x \ell^2}{3} \frac{4 V}{\bar c_a} \left[\frac1A + \frac1{A_w}\right].
+    """
+    si = settings.si
+    scale, _, side, _ = _start(settings, ideal=ideal)
+    share = float(law.saturation_vapor_pressure(si.temperature)) / si.pressure
+    latent = law.BINDING_TEMPERATURE / si.temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
+    find, cool = (4.0 * side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))
+    held = share * latent**2 / 3.0 * cool * (1.0 / settings.area + 1.0 / 6.0)
+    return (find / settings.area + held) * scale.time
+
+
+def _short(lengths: float) -> float:
+    r"""Return by what to multiply errors that are read from blocks of so many memories, which know of each other.
+
+    Of a memory that fades as :math:`e^{-t/\tau}` a block of length L shows the share
+    :math:`1 - (1 - e^{-L/\tau}) \tau/L` of the variance of the mean.
+    """
+    return 1.0 / math.sqrt(1.0 + math.expm1(-lengths) / lengths)
 
 
 def _expected(settings: Settings, *, ideal: bool) -> tuple[float, float, float]:
@@ -136,7 +165,7 @@ def _expected(settings: Settings, *, ideal: bool) -> tuple[float, float, float]:
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return saturation, and the rate at which its vapour meets the liquid."""
     frames = np.ones(dataset.sizes["elapsed_time"])
-    pressure, share, rate = _expected(settings, ideal="dsmc" in dataset.attrs.get("atmosbox_parameters", ""))
+    pressure, share, rate = _expected(settings, ideal=used(dataset).ideal)
     return {
         "water_vapor_partial_pressure_theory": pressure * frames,
         "relative_humidity_theory": share * frames,
@@ -152,10 +181,20 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     so few molecules scatter in temperature, and one over e_s is convex.
     """
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
-    if late.sizes["elapsed_time"] < 40:
+    if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
     nothing = "none: the model has no other error than chance"
-    vapour, saturation = late.water_vapor_partial_pressure, law.saturation_vapor_pressure(settings.si.temperature)
+    vapour = late.water_vapor_partial_pressure
+    saturation = float(law.saturation_vapor_pressure(settings.si.temperature))
+    ideal = used(dataset).ideal
+    lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
+    memory = _memory(settings, ideal=ideal)
+    short = _short(lasted / BLOCKS / memory)
+    _, share, rate = _expected(settings, ideal=ideal)
+    # if only few came and went, blocks tell little of the error: that of a Poisson number with this memory
+    few = rate * lasted < FEW
+    full = settings.molecules * saturation / settings.si.pressure
+    alone = math.sqrt(2.0 * memory / lasted * share / full) if few else 0.0
     rows = (
         ("relative_humidity", vapour / saturation, "1", "percent", "relative humidity", late.relative_humidity_theory),
         (vapour.name, vapour, "Pa", "hPa", "vapour pressure", late.water_vapor_partial_pressure_theory),
@@ -164,12 +203,13 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     )
     found = []
     for name, measured, unit, shown, label, expected in rows:
-        mean = block_average(measured.values)
+        mean = block_average(measured.values, BLOCKS)
+        error = max(short * float(mean.standard_error), alone * float(expected[0]) / share if share else 0.0)
         found.append(
             Headline(
                 f"mean_{name}",
                 float(mean.mean),
-                float(mean.standard_error),
+                error,
                 float(expected[0]),
                 0.0,
                 nothing,

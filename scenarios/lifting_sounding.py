@@ -238,7 +238,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     verdict = _verdict(settings)
     return (
         Panel(
-            "profile",
+            "skewt",
             f"This air is {verdict}",
             (
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
@@ -248,11 +248,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             ),
             x_label="temperature",
             y_label="pressure",
-            x_unit="degC",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
             headlines=("cape", "cin") if _convection(settings).lfc is not None else (),
+            marks=("cloud_base", "lfc", "el"),
         ),
         Panel(
             "profile",

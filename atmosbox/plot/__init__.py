@@ -5,8 +5,8 @@ the variables they name, the headline numbers and the provenance. A figure can t
 file is, without the scene and without the engine, and drawing it twice gives the same bytes.
 
 Read in this order: `unit` (from SI to what a meteorologist reads), `curve` (from a line of a panel to
-numbers), `draw` and `disc` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
-`plate` (one panel) and `layout` (all of them), `file` (PNG, SVG, PDF).
+numbers), `draw`, `disc` and `skewt` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
+`tilt` and `plate` (one panel) and `layout` (all of them), `file` (PNG, SVG, PDF).
 """
 
 from atmosbox.plot.file import FORMATS, save

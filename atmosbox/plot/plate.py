@@ -12,9 +12,9 @@ from matplotlib.font_manager import FontProperties
 
 from atmosbox.panels import Panel
 from atmosbox.plot.draw import Entry
-from atmosbox.plot.skewt import fit_skewt
 from atmosbox.plot.theme import Theme
 from atmosbox.plot.tick import put_ticks
+from atmosbox.plot.tilt import fit_skewt
 from atmosbox.plot.unit import spelled
 
 _FIXED = "\u00a0"  # a space that no line breaks at

@@ -27,10 +27,12 @@ def haste(ascent: MoistAscent) -> law.Ascent:
 def walk(ascent: MoistAscent, pressure: Array) -> Array:
     r"""Return what the chance of the piston's work leaves behind, as a share of the temperature, by pressure [Pa].
 
-    As in dry air it is :math:`\sqrt{2 s / N} / c_p`, for the entropy s that the haste makes per molecule.
+    As in dry air it is :math:`\sqrt{2 s / N} / c_p`, for the entropy s that the haste makes per molecule. The pressures
+    are in the order in which they are met: what was left behind at the lowest so far stays on the way down.
     """
     speed = haste(ascent)
-    gained = np.array([3.5 * speed.finite_speed(min(float(p), ascent.pressure)) for p in pressure.ravel()])
+    lowest = np.minimum.accumulate(np.minimum(pressure.ravel(), ascent.pressure))
+    gained = np.array([3.5 * speed.finite_speed(float(p)) for p in lowest])
     share: Array = np.sqrt(2.0 * gained.reshape(pressure.shape) / ascent.molecules) / 3.5
     return share
 

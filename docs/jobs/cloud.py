@@ -159,9 +159,9 @@ def draw_adiabats(found: Findings, keeps: list[Any], rains: list[Any], settings:
             axes.set_yticks(TICKS, [str(tick) for tick in TICKS])
             axes.set_yticks([], minor=True)
         left.set(title="Clouds cool half as fast", xlabel="temperature (°C)")
-        right.set(title="Which adiabat is it?", xlabel="less the reversible adiabat (K)", xlim=(-3.0, 2.0))
+        right.set(title="Which adiabat is it?", xlabel="less the reversible adiabat (K)", xlim=(-3.3, 1.1))
         left.legend(loc="upper right")
-        right.legend(loc="upper right")
+        right.legend(loc="center left")
         save(found, drawing, "moist-adiabats")
 
 
@@ -262,12 +262,12 @@ def draw_mountains(found: Findings, runs: dict[bool, Any]) -> None:
             data = runs[rain].dataset
             t, own = data.parcel_temperature - 273.15, data.adiabat_temperature - 273.15
             warm.plot(way, t, color=colour, marker=marker, markevery=6, markersize=5, label=label)
-            tall.plot(t, ground, color=colour, marker=marker, markevery=6, markersize=5, label=label)
+            tall.plot(running_mean(t, 3), ground, color=colour, marker=marker, markevery=6, markersize=5, label=label)
             warm.plot(way, own, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5)
             tall.plot(own, ground, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5, label="theory")
         tall.plot(wet.environment_temperature - 273.15, ground, "-.", color=ENVIRONMENT_COLOURS[0], label="air around")
         warm.set(xlabel="share of the way (%)", ylabel="temperature (°C)", title="It arrives warmer than it left")
-        tall.set(xlabel="temperature (°C)", ylabel="height (km)", title="Slowly up, fast down")
+        tall.set(xlabel="temperature (°C)", ylabel="height (km)", title="5 K per kilometre up, 10 K down")
         warm.legend(loc="lower left")
         tall.legend(loc="upper right")
         save(found, drawing, "mountains-rain")
