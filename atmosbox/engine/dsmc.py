@@ -30,6 +30,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atmosbox.engine._jit import kernel, prange
 from atmosbox.engine.moist_pool import pool_step
@@ -50,7 +51,7 @@ from atmosbox.engine.swarm import (
 )
 from atmosbox.engine.walls import SPECULAR
 
-__all__ = ["Resolution", "numbers_of_cells", "specialise"]
+__all__ = ["Resolution", "densest_layer", "numbers_of_cells", "specialise"]
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _SHARED = 8  # steps later cells are shared anew among threads: how never matters for what happens
@@ -87,6 +88,18 @@ def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: st
             "make the cells larger, give more molecules, or a box of more equal sides"
         )
     return int(x), int(y), int(z)
+
+
+def densest_layer(x: NDArray[np.float64], low: float, side: float, layers: int) -> float:
+    """Return how much more molecules than on average are in one of so many layers, of places from ``low`` on [length].
+
+    Examples
+    --------
+    >>> densest_layer(np.array([0.1, 0.2, 0.3, 0.9]), 0.0, 1.0, 2)
+    1.5
+    """
+    layer = np.minimum(((x - low) * (layers / side)).astype(np.int32), layers - 1)
+    return float(np.bincount(layer, minlength=layers).max()) * layers / len(x)
 
 
 @kernel

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
 from atmosbox.engine.box import new_box
-from atmosbox.engine.dsmc import Resolution, numbers_of_cells, specialise
+from atmosbox.engine.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.pairing import new_tries
@@ -57,8 +57,7 @@ class DsmcParcel(MarchingParcel):
     -----
     The errors of transport grow with the squares of step and cell [1]_: of a viscosity by 11 % (Δx / λ)^2, of a
     conductivity by 4.5 % (Δx / λ)^2; and with one over the occupancy, for the molecules of a cell keep their common
-    momentum. When a piston moves, cells stretch with the box: in proportion to the mean
-    free path they stay as high as they were.
+    momentum. When a piston moves, cells stretch with the box, as the mean free path does.
 
     References
     ----------
@@ -80,6 +79,7 @@ class DsmcParcel(MarchingParcel):
 
     engine: ClassVar[str] = "dsmc"
     _shares = True
+    _wet = _pool = False
     _water: Any = None
 
     def __init__(
@@ -115,12 +115,9 @@ class DsmcParcel(MarchingParcel):
         n, grid = self._number, self._grid
         if not n:
             return Resolution(0.0, 0.0)
-        crowding = 1.0
         sides = self._open_sides()
         numbers = (grid.number_x, grid.number_y, grid.number_z)
-        for x, low, side, cells in zip(self._swarm[:3], self._low, sides, numbers, strict=True):
-            layer = np.minimum(((x[:n] - low) * (cells / side)).astype(np.int32), cells - 1)
-            crowding = max(crowding, float(np.bincount(layer, minlength=cells).max()) * cells / n)
+        crowding = max(map(densest_layer, (x[:n] for x in self._swarm[:3]), self._low, sides, numbers))
         path = self._path(float(math.prod(sides))) / crowding
         speed = math.sqrt(8.0 / math.pi * self._mean_square_speed() / 3.0)
         longest = max(side / cells for side, cells in zip(sides, numbers, strict=True))
@@ -166,7 +163,7 @@ class DsmcParcel(MarchingParcel):
             stall=0.0,
         )
         sides = self._open_sides()
-        if n and not min(sides) > 0.0:
+        if self._room and not min(sides) > 0.0:
             raise RefusedError(f"length = {tuple(self._sides)} leaves no room between walls: make the diameter smaller")
         for axis in range(3):
             if self._periodic[axis]:
@@ -177,14 +174,13 @@ class DsmcParcel(MarchingParcel):
             place[:n] = position[:, axis]
             speed[:n] = velocity[:, axis]
         spin = np.zeros(room if self._rotates else 1)
-        if self._rotates:
-            spin[:n] = rotational_energy
+        spin[:n] = rotational_energy if self._rotates else 0.0
         cell, order = np.zeros(room, np.uint32), np.zeros(room, np.uint32)
         self._swarm = Swarm(x, y, z, vx, vy, vz, spin, np.arange(room, dtype=np.uint32), cell, order, kind)
         self._round = _REGROUP_MANY if room >= _MANY else _REGROUP
         self._workers = self._threads if room >= _THREADED else 1
         self._lay_out(sides)
-        self._march_kernel = self._specialise()
+        self._march_kernel = specialise(self._rotates, self._workers > 1, self._wet, self._pool)
         self._gather = new_gather(self._workers > 1)
         fastest = self._fastest()
         self._grid.fastest[:] = _FASTEST * fastest
@@ -207,11 +203,7 @@ class DsmcParcel(MarchingParcel):
     @property
     def _room(self) -> int:
         """How many molecules there may ever be in the box."""
-        return self._number
-
-    def _specialise(self) -> Any:
-        """Return the kernel that marches."""
-        return specialise(self._rotates, self._workers > 1)
+        return len(self._mass)
 
     def _lay_out(self, sides: Sequence[float]) -> None:
         """Choose cells that are as good as cubes."""

@@ -28,8 +28,8 @@ from atmosbox.engine.state import Modes
 __all__ = ["BUSY", "CROWDED", "DONE", "MET", "ROW_FULL", "STALLED", "proceed", "specialise"]
 
 DONE, BUSY, ROW_FULL, STALLED, MET, CROWDED = range(6)
-"""Status: up to the time asked for; not yet; a row must grow; a pile-up; the next event is a molecule that falls into
-a pool; one that evaporates finds no place."""
+"""Status: up to the time asked for; not yet; a row must grow; a pile-up; the next event is a molecule that meets
+liquid; one that evaporates finds no place."""
 
 _MANY = 4_000
 FLOOR = 4
@@ -74,7 +74,8 @@ def _warm_up(calendar, cells, molecules, events, modes):
 def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most, modes):
     """Resolve events up to time ``until``, at most ``most`` of them; return a status and how many.
 
-    The status ``MET`` says that the next event is a molecule that falls into a pool: it is left to the caller.
+    The status ``MET`` says that the next event is a molecule that falls into a pool, or hits a drop: it is left to the
+    caller.
     """
     done = 0
     status = BUSY
@@ -119,6 +120,9 @@ def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, unti
         if what == CONTACT:
             j = np.int64(event.partner)
             if molecules[j].count == event.partner_count:
+                if modes.drops > 0 and max(np.int64(molecules[i].kind), np.int64(molecules[j].kind)) >= modes.drops:
+                    status = MET
+                    break
                 vx, vy, vz, px, py, pz, wx, wy, wz = meet(
                     i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes
                 )

@@ -43,6 +43,7 @@ __all__ = [
     "EVAPORATED",
     "LIQUID",
     "RAINED",
+    "Drops",
     "Ledger",
     "Liquid",
     "Mist",
@@ -198,6 +199,41 @@ class Pool(Liquid):
     """The floor of the box is the surface of the liquid, which itself takes no room."""
 
 
+@dataclass(frozen=True)
+class Drops(Liquid):
+    """Drops that can be seen: spheres that fly, that molecules hit, that grow, shrink and merge.
+
+    Each sits on a nucleus, and carries its share of the molecules; they are all of one temperature. The molecules in
+    the liquid at the start are shared out evenly.
+
+    Parameters
+    ----------
+    position
+        Centres of the nuclei at the start [length], where no molecule is; the drops start at rest.
+    nucleus
+        Radius of a nucleus [length].
+    nucleus_mass
+        Its mass [mass].
+    molecule_radius
+        Radius of the ball by whose volume each molecule makes its drop larger [length].
+    """
+
+    position: tuple[tuple[float, float, float], ...] = ()
+    nucleus: float = 1.0
+    nucleus_mass: float = 10.0
+    molecule_radius: float = 0.5
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _above_zero(self.nucleus, "radius of the nuclei")
+        _above_zero(self.nucleus_mass, "mass of the nuclei")
+        number(self.molecule_radius, "radius of a molecule in a drop", least=0.0)
+        if not self.position:
+            raise RefusedError("drops need nuclei: give the position of one at least")
+        if self.rain:
+            raise RefusedError("drops do not rain: leave rain at 0, or take a mist")
+
+
 class Ledger(NamedTuple):
     """The liquid, as the kernels know it.
 
@@ -205,7 +241,8 @@ class Ledger(NamedTuple):
     may meet the mist next, leave, rain [time]; ``bound : (2,)`` the speed [length/time] and the volume [length^3]
     for which the first was drawn; ``absent : (molecule,)`` the numbers of molecules that are not in the box, of
     which the last to go is ``absent[top[0] - 1]``; ``spectrum : (bin,)`` how many left with which energy beyond
-    the binding energy; ``log_rate`` the logarithm of Q; then what `Substance` and `Liquid` say.
+    the binding energy; ``surface : (1,)`` the area of the liquid over ``area``, which
+    changes for drops alone; ``log_rate`` the logarithm of Q for ``area``; then what `Substance` and `Liquid` say.
     """
 
     energy: Any
@@ -215,6 +252,7 @@ class Ledger(NamedTuple):
     absent: Any
     top: Any
     spectrum: Any
+    surface: Any
     bin_width: float
     log_rate: float
     area: float
@@ -269,6 +307,7 @@ def new_ledger(liquid: Liquid, area: float, capacity: int, present: int, kind: i
         absent=absent,
         top=np.array([missing], np.int64),
         spectrum=np.zeros(_BINS, np.int64),
+        surface=np.ones(1),
         bin_width=_WIDEST / _BINS * max(liquid.kT, 1e-300),
         log_rate=math.log(flux),
         area=float(area),
@@ -305,7 +344,7 @@ def evaporation_rate(ledger):
     rest = max(capacity - ledger.molecule_capacity, 0.0)
     logarithm = ledger.log_rate + (rest + shape - 1.0) * math.log(left) - math.lgamma(rest + shape)
     logarithm += math.lgamma(capacity) - (capacity - 1.0) * math.log(energy)
-    return math.exp(min(logarithm, 600.0))
+    return ledger.surface[0] * math.exp(min(logarithm, 600.0))
 
 
 @kernel

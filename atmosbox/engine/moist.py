@@ -35,7 +35,7 @@ from atmosbox.engine.plan import plan
 from atmosbox.engine.random import uniform
 from atmosbox.engine.state import Modes
 
-__all__ = ["specialise"]
+__all__ = ["renew", "specialise"]
 
 _MAY_MEET, _LEAVES, _RAINS = range(3)
 
@@ -64,7 +64,7 @@ def _volume(t, diameter, box, walls, ledger, number, modes):
 
 
 @kernel
-def _renew(t, tallies, ledger):
+def renew(t, tallies, ledger):
     """Draw anew when the next molecule leaves the liquid, and when the next rains."""
     ledger.clock[_LEAVES] = t + wait(evaporation_rate(ledger), tallies.random)
     ledger.clock[_RAINS] = t + wait(ledger.rain * (ledger.count[LIQUID] - ledger.keeps), tallies.random)
@@ -109,7 +109,7 @@ def _touch(
     if number == ledger.kind and (ledger.sticking >= 1.0 or uniform(tallies.random) < ledger.sticking):
         condense(ledger, energy)
         withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes)
-        _renew(t, tallies, ledger)
+        renew(t, tallies, ledger)
         return
     speed = math.sqrt(2.0 / mass)
     relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
@@ -124,7 +124,7 @@ def _touch(
         vx, vy, vz = wx, wy, wz
         if modes.rotation:
             kinds.rotational_energy[i] = new_spin
-        _renew(t, tallies, ledger)
+        renew(t, tallies, ledger)
     elif modes.pool:
         vz = -vz
     if modes.pool:
@@ -190,7 +190,7 @@ def _emit(t, molecules, events, kinds, cells, calendar, box, walls, tallies, led
     enter(
         i, t, x, y, z, vx, vy, vz, spin, molecules, events, kinds, cells, calendar, box, walls, ledger, modes
     )  # fmt: skip
-    _renew(t, tallies, ledger)
+    renew(t, tallies, ledger)
     if speed > ledger.bound[0]:
         ledger.bound[0] = speed
         _next_meeting(t, molecules, box, walls, tallies, ledger, modes)
@@ -206,7 +206,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         """Draw the times of the liquid at time ``now``, when molecules may be as fast as ``speed`` [length/time]."""
         ledger.bound[0] = speed
         _next_meeting(now, molecules, box, walls, tallies, ledger, modes)
-        _renew(now, tallies, ledger)
+        renew(now, tallies, ledger)
 
     @kernel(entry=True)
     def advance(molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, until, most):
@@ -252,7 +252,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
                     return status, done
             else:
                 rain_out(ledger)
-                _renew(due, tallies, ledger)
+                renew(due, tallies, ledger)
         return BUSY, done
 
     return begin, advance

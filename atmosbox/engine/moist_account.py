@@ -68,7 +68,11 @@ class MoistAccount(Parcel):
         self._vapours = int(np.sum(kind == vapour))
         cube = float(np.mean(self._diameter**3)) if len(kind) else 0.0
         sides = self._sides - np.where(self._periodic, 0.0, substance.diameter)
-        area = liquid.area if isinstance(liquid, Mist) else float(sides[0] * sides[1])
+        area = 1.0  # that of drops changes
+        if isinstance(liquid, Mist):
+            area = liquid.area
+        elif isinstance(liquid, Pool):
+            area = float(sides[0] * sides[1])
         present = len(kind) - int(liquid.number)
         rotation = float(substance.rotation) if self._rotates else 0.0
         ledger = new_ledger(liquid, area, len(kind), present, vapour, cube)
@@ -152,6 +156,6 @@ class MoistAccount(Parcel):
         edges = self._ledger.bin_width * np.arange(len(self._ledger.spectrum) + 1.0)
         return edges, np.array(self._ledger.spectrum)
 
-    def memory(self) -> int:
-        """Return the bytes that molecules, the sorting of them and the ledger take."""
-        return super().memory() + int(self._ledger.absent.nbytes + self._ledger.spectrum.nbytes)
+    def _ledger_memory(self) -> int:
+        """Return the bytes that the ledger takes."""
+        return int(self._ledger.absent.nbytes + self._ledger.spectrum.nbytes)

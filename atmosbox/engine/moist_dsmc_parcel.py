@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine.dsmc import specialise
 from atmosbox.engine.dsmc_parcel import DsmcParcel
 from atmosbox.engine.kind import classify
 from atmosbox.engine.liquid import Liquid, Pool
@@ -55,9 +54,9 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     (True, 1, True)
     """
 
-    _water: Water
-
     engine: ClassVar[str] = "dsmc"
+    _wet = True
+    _water: Water
 
     def __init__(
         self,
@@ -94,16 +93,23 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         rotational = float(np.sum(self._swarm.spin[:n])) if self._rotates else 0.0
         return self._kinetic(), rotational, 0.0
 
+    def memory(self) -> int:
+        """Return the bytes that molecules, cells, the sorting of the ones into the others and the liquid take."""
+        calendar = self._water.calendar
+        arrays = (self._swarm.kind, self._spare_kind, self._water.hole, calendar.time, calendar.winner)
+        return super().memory() + self._ledger_memory() + sum(int(array.nbytes) for array in arrays)
+
     # ------------------------------------------------------------------ how
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         self._refuse_what_no_liquid_bears()
+        self._pool = isinstance(self._liquid, Pool)
         super()._begin(position, velocity, rotational_energy)
         substance = self._liquid.substance
         alike = (self._gas.masses == substance.mass) & (self._gas.rotations == substance.rotation)
         alike &= 2.0 * self._gas.radius == substance.diameter
         self._open_ledger(alike, self._swarm.kind)
-        self._water = new_water(self._ledger, self._room if isinstance(self._liquid, Pool) else 1)
+        self._water = new_water(self._ledger, self._room if self._pool else 1)
         self._spare_kind = np.empty_like(self._swarm.kind)
 
     def _classify(self) -> tuple[Gas, Any]:
@@ -123,22 +129,14 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
             rotations[:] = 0.0
         return Gas(float(masses.min()), float(radii[0]), 0.0, masses, rotations), kind.astype(np.uint8)
 
-    @property
-    def _room(self) -> int:
-        return len(self._mass)
-
     def _effort(self) -> int:
         return self._room
-
-    def _specialise(self) -> Any:
-        return specialise(self._rotates, self._workers > 1, True, isinstance(self._liquid, Pool))
 
     def _lay_out(self, sides: Sequence[float]) -> None:
         super()._lay_out(sides)
         cells = self._grid.number_x * self._grid.number_y * self._grid.number_z
-        waiting = self._room if isinstance(self._liquid, Pool) else 1
         # one block more, for the books of the pool
-        self._desk = new_desk(self._room + BLOCK, cells, self._workers, waiting)
+        self._desk = new_desk(self._room + BLOCK, cells, self._workers, self._room if self._pool else 1)
 
     def _resolve(self, first: int, many: int, ceilings: Array) -> None:
         super()._resolve(first, many, ceilings)

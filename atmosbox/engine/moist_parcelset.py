@@ -90,6 +90,10 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return self.present
 
+    def memory(self) -> int:
+        """Return the bytes that molecules, events, cells, calendar and ledger take."""
+        return super().memory() + self._ledger_memory()
+
     def _proceed(self, until: float) -> int:
         status, _ = self._moist_advance(
             self._molecules, self._events, self._kinds, self._cells, self._calendar,

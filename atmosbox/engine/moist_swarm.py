@@ -36,11 +36,12 @@ from atmosbox.engine.swarm import cells_per_length, find_cell, number_present
 
 __all__ = ["Water", "copy_slot", "emit", "mist_step", "new_water", "next_rain", "place", "strike", "touch"]
 
+
 class Water(NamedTuple):
     """The liquid of a swarm.
 
-    ``ledger`` its account; ``calendar`` when those that wait on a pool came to it; ``hole : (slot,)`` the slots of those
-    that have gone in this step, as many as ``holes[0]`` says; ``random : (1,)`` a state of random numbers.
+    ``ledger`` its account; ``calendar`` when those that wait on a pool came to it; ``hole : (slot,)`` the slots of
+    those that have gone in this step, as many as ``holes[0]`` says; ``random : (1,)`` a state of random numbers.
     """
 
     ledger: Ledger

@@ -110,7 +110,7 @@ def _fetch(swarm, i):
 
 @kernel
 def _weigh(i, j, swarm, gas, mixed):
-    """Return half the reduced mass of a pair [mass], and which share of what they exchange each one's velocity takes."""
+    """Return half the reduced mass of a pair [mass], and the shares of both in a change of their relative velocity."""
     if mixed:
         one, other = gas.masses[swarm.kind[i]], gas.masses[swarm.kind[j]]
         share = other / (one + other)

@@ -50,6 +50,8 @@ class ParcelSet(Parcel):
 
     _present: slice | NDArray[np.bool_] = slice(None)
     """Which molecules are in the box: all of them."""
+    _first_drop: int = 0
+    """The first kind that is a drop, 0 if none is."""
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
@@ -258,6 +260,7 @@ class ParcelSet(Parcel):
             piston=bool(moving),
             phases=not isinstance(self._present, slice),
             pool=bool(self._walls.law[4] == POOL),
+            drops=self._first_drop,
         )
         place, self._advance, self._replan, self._overlap = specialise(self._modes)
         self._events = aligned_records(n, EVENT)

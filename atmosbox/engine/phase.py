@@ -14,14 +14,14 @@ from atmosbox.engine.cells import append, overlapped, remove, slot_at
 from atmosbox.engine.plan import plan, size_and_radius
 from atmosbox.engine.random import uniform
 
-__all__ = ["FREE", "NO_ROOM", "TAKEN", "enter", "look_for_room", "withdraw"]
+__all__ = ["FREE", "NO_ROOM", "TAKEN", "enter", "look_for_room", "room_at", "take_out", "withdraw"]
 
 FREE, TAKEN, NO_ROOM = 0, 1, 2
 
 
 @kernel
-def withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes):
-    """Take molecule i out of the box."""
+def take_out(i, molecules, events, kinds, cells, calendar, modes):
+    """Take a molecule or a drop out of its cells, and of time."""
     if modes.contacts:
         size, _ = size_and_radius(i, molecules, kinds, modes)
         first_x, span_x = overlapped(np.int64(events[i].slot_x), size, 0, cells, modes)
@@ -42,6 +42,12 @@ def withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes):
         kinds.rotational_energy[i] = 0.0
     events[i].contact_time = math.inf
     schedule(calendar, i, math.inf)
+
+
+@kernel
+def withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes):
+    """Take molecule i out of the box: it is absent until it evaporates."""
+    take_out(i, molecules, events, kinds, cells, calendar, modes)
     ledger.absent[ledger.top[0]] = i
     ledger.top[0] += 1
 
@@ -53,7 +59,7 @@ def _place(low, high, state):
 
 
 @kernel
-def _room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes):
+def room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes):
     """Tell whether molecule i may stand at a place, and note there its slots: ``FREE``, ``TAKEN`` or ``NO_ROOM``.
 
     ``NO_ROOM`` is a row of molecules that must grow first.
@@ -120,7 +126,7 @@ def look_for_room(i, t, ceiling, molecules, events, kinds, cells, box, tallies, 
         x = _place(low_x, high_x, tallies.random)
         y = _place(low_y, high_y, tallies.random)
         z = low_z if modes.pool else _place(low_z, high_z, tallies.random)
-        found = _room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes)
+        found = room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes)
         if found != TAKEN:
             break
     return found, x, y, z

@@ -32,7 +32,7 @@ def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.floa
 
     Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
     """
-    m = molecules
+    m = molecules[: len(mass)]  # behind them there may be drops
     kinetic = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
     baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
     usual = start_energy + 2.0 * float(mass.sum()) * parcel.piston_velocity**2

@@ -70,7 +70,8 @@ class Modes(NamedTuple):
     """What a scene requires.
 
     Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
-    cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid.
+    cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid; the
+    first kind that is a drop, 0 if none is.
     """
 
     contacts: bool
@@ -82,6 +83,7 @@ class Modes(NamedTuple):
     piston: bool
     phases: bool = False
     pool: bool = False
+    drops: int = 0
 
 
 class Box(NamedTuple):
