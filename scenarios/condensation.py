@@ -137,7 +137,7 @@ def _memory(settings: Settings, *, ideal: bool) -> float:
     latent = law.BINDING_TEMPERATURE / si.temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
     find, cool = (4.0 * side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))
     held = share * latent**2 / 3.0 * cool * (1.0 / settings.area + 1.0 / 6.0)
-    return (find / settings.area + held) * scale.time
+    return float((find / settings.area + held) * scale.time)
 
 
 def _short(lengths: float) -> float:

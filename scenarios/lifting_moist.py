@@ -25,7 +25,7 @@ from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.panels import Panel
 from atmosbox.rising import MoistAscent, lifted_headlines, lifted_panels, lifted_theory, rise
-from atmosbox.scene import Setup
+from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 
 if TYPE_CHECKING:
@@ -34,6 +34,14 @@ if TYPE_CHECKING:
 title = "Lifting moist air"
 FRAMES = 60
 LOOKS = 10
+
+
+ladder = (
+    Series("exact", "ascent", (50, 100, 200, 400)),
+    Series("exact", "molecules", (3000, 10_000), {"ascent": 400}),
+    Series("dsmc", "ascent", (400, 1000, 3000), {"molecules": 50_000, "area": 30}),
+)
+"""What is worth comparing: haste warms, few molecules blur."""
 
 
 class Settings(SceneSettings):

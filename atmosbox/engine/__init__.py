@@ -28,6 +28,7 @@ Read it in this order:
 `kind`       molecules that are alike
 `stall`      when time can go no further
 `parcelset`  the box, advanced exactly
+`substance`  what condenses, and as what
 `liquid`     water that has condensed: a ledger, and its laws
 `phase`      a molecule leaves the box, or comes into it
 `moist_account`  what a box with liquid in it holds

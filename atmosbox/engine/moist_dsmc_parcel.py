@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox.engine.dsmc_parcel import DsmcParcel
 from atmosbox.engine.kind import classify
-from atmosbox.engine.liquid import Liquid, Pool
+from atmosbox.engine.liquid import Liquid, Mist, Pool
 from atmosbox.engine.moist_account import MoistAccount
 from atmosbox.engine.moist_swarm import Water, new_water
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
@@ -36,7 +36,8 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     Raises
     ------
     RefusedError
-        If a liquid is asked for in gravity, or a pool on a floor that is no smooth wall; if molecules differ in size.
+        If a liquid is asked for in gravity, or a pool on a floor that is no smooth wall; if molecules differ in size,
+        or the liquid is neither a mist nor a pool.
 
     Notes
     -----
@@ -102,6 +103,8 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     # ------------------------------------------------------------------ how
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        if not isinstance(self._liquid, Mist | Pool):
+            raise RefusedError("the liquid of dsmc is a Mist or a Pool: drops that can be hit need the engine exact")
         self._refuse_what_no_liquid_bears()
         self._pool = isinstance(self._liquid, Pool)
         super()._begin(position, velocity, rotational_energy)

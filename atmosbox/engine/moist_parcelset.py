@@ -40,7 +40,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     >>> from atmosbox.engine.liquid import Mist, Substance
     >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> box = MoistParcelSet([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0))
-    >>> box.advance(50.0)
+    >>> box.advance(300.0)
     >>> box.evaporated > 0, box.number + box.liquid, box.ledger() < 1e-12
     (True, 1, True)
     """

@@ -28,11 +28,13 @@ def fill_holes(last, swarm, left, water, rotates):
     --------
     The first and the third of four have gone: the fourth takes the place of the first.
 
+    >>> import numpy as np
+    >>> from atmosbox.engine.moist_swarm import Water
     >>> from atmosbox.engine.swarm import Swarm
-    >>> columns = [np.arange(4.0) for _ in range(7)] + [np.arange(4) for _ in range(4)]
-    >>> left, water = np.array([-1.0, 0.0, -1.0, 0.0]), Water(None, None, np.array([0, 2]), np.array([2]), None)
-    >>> fill_holes(4, Swarm(*columns), left, water, True)
-    >>> columns[0][:2], left
+    >>> swarm = Swarm(*(np.arange(4.0) for _ in range(7)), *(np.arange(4) for _ in range(4)))
+    >>> left, gone = np.array([-1.0, 0.0, -1.0, 0.0]), (np.array([0, 2]), np.array([2]))
+    >>> fill_holes(4, swarm, left, Water(None, None, *gone, None), True)
+    >>> swarm.x[:2], left
     (array([3., 1.]), array([0., 0., 0., 0.]))
     """
     for k in range(water.holes[0]):

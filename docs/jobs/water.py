@@ -17,7 +17,7 @@ from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 RUNS: dict[float, dict[str, float]] = {
     -10.0: {"pressure": 100.0, "duration": 200.0},
     0.0: {"pressure": 150.0, "duration": 150.0},
-    10.0: {"pressure": 300.0, "duration": 108.0},
+    10.0: {"pressure": 300.0, "duration": 125.0},
     20.0: {"pressure": 500.0, "duration": 82.0},
     30.0: {"duration": 60.0},
     40.0: {"duration": 54.0},
@@ -42,14 +42,8 @@ def saturation(found: Findings) -> None:
     import metpy
 
     rows = []
-    for celsius, (molecules, duration) in RUNS.items():
-        settings = {
-            "temperature": celsius,
-            "molecules": molecules,
-            "duration": duration,
-            "area": 6.0,
-            "humidity": 120.0,
-        }
+    for celsius, own in RUNS.items():
+        settings = {"temperature": celsius, "molecules": 3000, "area": 12.0, **own}
         outcome = runner.execute(runner.prepare("condensation", settings))
         stated = next(each for each in outcome.headlines if each.name == "mean_relative_humidity")
         pressure = next(each for each in outcome.headlines if each.name == "mean_water_vapor_partial_pressure")
@@ -150,6 +144,9 @@ def few_molecules(found: Findings) -> None:
     thermal = (3 * theory.LIQUID_HEAT_CAPACITY + NUCLEI) * BOLTZMANN * 293.15
     ratio = float(theory.microcanonical_flux(thermal, 3, NUCLEI)) / naive
     found.number("rate", f"{ratio:.2f}")
+    capacity = 2 * theory.LIQUID_HEAT_CAPACITY + NUCLEI
+    left = thermal / BOLTZMANN - theory.BINDING_TEMPERATURE
+    found.number("colder", f"{293.15 - left / capacity:.0f} K")
     found.number("exchanges", f"{box.evaporated:,}")
     if not math.isfinite(ratio):
         found.failures.append("the rate of three molecules is not finite")

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from atmosbox.engine import HeatBath, Periodic, Piston, RefusedError, Specular, StalledError
 from atmosbox.engine._jit import COMPILED
 from atmosbox.engine.dsmc_parcel import DsmcParcel
-from atmosbox.engine.liquid import AIR_MET, Mist, Pool, Substance
+from atmosbox.engine.liquid import AIR_MET, Drops, Mist, Pool, Substance
 from atmosbox.engine.moist_dsmc_parcel import MoistDsmcParcel
 from atmosbox.statistics import block_average
 
@@ -449,6 +449,12 @@ def test_what_no_moist_box_can_have_is_refused(kind, options, says):
         MoistDsmcParcel(
             [[2, 2, 2], [3, 2, 2]], [[1, 0, 0], [0, 0, 0]], length=(6, 6, 6), liquid=kind(water(), number=1), **options
         )
+
+
+def test_drops_that_can_be_hit_are_refused():
+    drops = Drops(water(), position=((3.0, 3.0, 3.0),))
+    with pytest.raises(RefusedError, match="drops that can be hit need the engine exact"):
+        MoistDsmcParcel([[2, 2, 2]], [[1, 0, 0]], length=(6, 6, 6), liquid=drops)
 
 
 def test_more_kinds_than_can_be_counted_are_refused():

@@ -1,0 +1,484 @@
+"""Drops keep the books event by event, stay in the box, merge, and do the same however a run is cut.
+
+The boxes below need seven sets of kernels in all: each new set costs seconds of compilation.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from atmosbox.engine import drop_parcelset
+from atmosbox.engine._jit import COMPILED
+from atmosbox.engine.drop_parcelset import DropParcelSet
+from atmosbox.engine.liquid import AIR_MET, Drops, Mist, Substance
+from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine.scatter import random_positions
+from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+
+many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+
+SMOOTH = (Specular(),) * 6
+TURNING = (Periodic(),) * 6
+WARM = (HeatBath(1.0),) * 6
+LIFT = (*TURNING[:4], Specular(), Piston())
+PHI, MASS, DIAMETER = 8.0, 0.62, 0.5
+CENTRES = ((2.0, 2.0, 2.0), (5.0, 2.0, 6.0), (3.5, 6.0, 4.0))
+
+
+def water(saturation=0.1, **changes):
+    """Return water of a saturation pressure at kT = 1."""
+    facts = {"mass": MASS, "diameter": DIAMETER, "binding_energy": PHI, "heat_capacity": 9.0} | changes
+    return Substance(**facts, volatility=saturation * math.exp(facts["binding_energy"]))
+
+
+def nuclei(number=30, centres=CENTRES, substance=None, **changes):
+    """Return drops with something in them."""
+    facts = {"nuclei": 30.0, "nucleus": 0.5, "nucleus_mass": 4.0, "molecule_radius": 0.3, "sticking": 0.8} | changes
+    return Drops(substance or water(), number=number, position=centres, **facts)
+
+
+@dataclass
+class Pulse:
+    """A driver that moves the piston up and down."""
+
+    interval: float = 0.75
+    speeds: tuple = (0.3, -0.45, 0.0, -0.15, 0.3)
+
+    def velocity(self, parcel):
+        return self.speeds[round(parcel.time / self.interval) % len(self.speeds)]
+
+
+def apart(a, b, sides, periodic):
+    """Return the distances of some places from others, to the nearest image."""
+    away = np.asarray(a)[:, None] - np.asarray(b)[None, :]
+    away -= np.where(periodic, np.array(sides) * np.rint(away / np.array(sides)), 0.0)
+    return np.sqrt(np.sum(away**2, axis=2))
+
+
+def damp(drops, air=20, vapour=10, *, sides=(8.0, 8.0, 8.0), walls=SMOOTH, kT=1.0, seed=9, **options):
+    """Return a box of air and vapour at random places, with drops in it."""
+    rng = np.random.default_rng(seed)
+    substance, periodic = drops.substance, [isinstance(wall, Periodic) for wall in walls[::2]]
+    mass = np.r_[np.full(vapour, substance.mass), np.ones(air)]
+    diameter = np.r_[np.full(vapour, substance.diameter), np.full(air, 0.6)]
+    rotation = np.r_[np.full(vapour, substance.rotation), np.full(air, 2.0)]
+    share = math.ceil(drops.number / len(drops.position))
+    radius = 1e-9 + (drops.nucleus**3 + share * drops.molecule_radius**3) ** (1.0 / 3.0)
+    position = np.zeros((0, 3))
+    while len(position) < air + vapour:
+        d = diameter[len(position)]
+        place = 0.5 * d + rng.uniform(size=(1, 3)) * (np.array(sides) - d)
+        touching = 0.5 * (d + diameter[: len(position)])
+        if (apart(place, drops.position, sides, periodic) > 0.5 * d + radius).all() and (
+            apart(place, position, sides, periodic) > touching
+        ).all():
+            position = np.vstack([position, place])
+    facts = {
+        "mass": mass,
+        "diameter": diameter,
+        "rotation": rotation,
+        "rotational_energy": kT * rng.standard_gamma(0.5 * rotation),
+        "length": sides,
+        "walls": walls,
+        "seed": seed,
+    } | options
+    position = facts.pop("position", position)
+    velocity = facts.pop("velocity", rng.standard_normal((air + vapour, 3)) * np.sqrt(kT / mass)[:, None])
+    return DropParcelSet(position, velocity, liquid=drops, **facts)
+
+
+def box(name, drops=None, **changes):
+    """Return a box by the name of what is special of it."""
+    walls = {"smooth": SMOOTH, "between heat baths": WARM, "periodic": TURNING, "under a piston": LIFT}[name]
+    options = {"driver": Pulse()} if name == "under a piston" else {}
+    return damp(drops or nuclei(), walls=walls, **options | changes)
+
+
+by_name = pytest.mark.parametrize("name", ["smooth", "between heat baths", "periodic", "under a piston"])
+
+
+def flying(parcel):
+    """Return masses and velocities of the drops there are."""
+    alive = parcel._drops.alive == 1
+    m = parcel._fields[parcel._drops.record[alive]]
+    return parcel._kinds.table["mass"][parcel._first_drop :][alive], np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
+
+
+def momentum(parcel):
+    """Return the momentum of molecules and drops."""
+    mass, velocity = flying(parcel)
+    return parcel.mass @ parcel.snapshot().velocity + mass @ velocity
+
+
+def happened(parcel):
+    """Return how many came, left, met a drop and left again, and how often two drops became one."""
+    return np.array([parcel.condensed, parcel.evaporated, parcel._ledger.count[AIR_MET], parcel.merged])
+
+
+def deepest_overlap(parcel):
+    """Return how deep two molecules overlap, and how deep a molecule stands in a drop or drops overlap [length]."""
+    x, (centre, radius, _) = parcel.snapshot().position, parcel.drops()
+    facts = parcel.length, parcel.periodic
+    r = 0.5 * parcel.diameter
+    between = r[:, None] + r[None, :] - apart(x, x, *facts)
+    np.fill_diagonal(between, -math.inf)
+    drops = radius[:, None] + radius[None, :] - apart(centre, centre, *facts)
+    np.fill_diagonal(drops, -math.inf)
+    inside = r[:, None] + radius[None, :] - apart(x, centre, *facts)
+    return between.max(initial=-math.inf), max(inside.max(initial=-math.inf), drops.max(initial=-math.inf))
+
+
+def is_lawful(parcel, waters, drops):
+    """Assert what must hold of every box at every time, ``drops`` being what there was in it at the start."""
+    now, (centre, radius, held) = parcel.snapshot(), parcel.drops()
+    assert np.isfinite(now.position).all()
+    assert np.isfinite(now.velocity).all()
+    assert (now.rotational_energy >= 0.0).all()
+    assert parcel.escaped() == 0
+    assert parcel.liquid + parcel.vapour == waters
+    assert held.sum() == parcel.liquid
+    assert (held >= 0).all()
+    assert len(now.position) == parcel.number == len(parcel.mass)
+    assert len(centre) == len(drops.position) - parcel.merged >= 1
+    # what rounding leaves when the last molecule takes all
+    assert parcel.liquid_energy >= -1e-11
+    assert parcel.ledger() < 1e-10
+    # size and mass follow what they hold, and nothing is lost where two become one
+    assert np.sum(radius**3) == pytest.approx(
+        len(drops.position) * drops.nucleus**3 + parcel.liquid * drops.molecule_radius**3, rel=1e-12
+    )
+    assert flying(parcel)[0].sum() == pytest.approx(
+        len(drops.position) * drops.nucleus_mass + parcel.liquid * drops.substance.mass, rel=1e-12
+    )
+    walled = ~np.array(parcel.periodic)
+    low, high = radius[:, None] - 1e-9, parcel.length - radius[:, None] + 1e-9
+    assert ((centre >= low) & (centre <= high))[:, walled].all()
+    between, inside = deepest_overlap(parcel)
+    assert between < 1e-9
+    if not parcel.merged:
+        assert inside < 1e-9
+        cores, balls = drops.nucleus**3, drops.molecule_radius**3
+        np.testing.assert_allclose(radius**3, cores + held * balls, rtol=1e-12)
+        np.testing.assert_allclose(flying(parcel)[0], drops.nucleus_mass + held * drops.substance.mass, rtol=1e-12)
+
+
+def state(parcel):
+    """Return everything that can be read off a parcel, as bytes."""
+    now, ledger, drops = parcel.snapshot(), parcel._ledger, parcel.drops()
+    arrays = [now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial]
+    arrays += [ledger.energy, ledger.count, ledger.spectrum, ledger.absent[: ledger.top[0]], parcel._tallies.random]
+    numbers = (parcel.time, parcel.ceiling, parcel.work, parcel.contacts, parcel.number, parcel.liquid, parcel.merged)
+    return [array.tobytes() for array in (*arrays, *drops, *flying(parcel))], numbers, parcel.wall_hits.tolist()
+
+
+# ------------------------------------------------------------------ their books, event by event
+
+
+@pytest.fixture
+def by_single_events(monkeypatch):
+    """Let a box hand back control after every event."""
+    monkeypatch.setattr(drop_parcelset, "_CHUNK", 1)
+
+
+@many_events
+@by_name
+def test_energy_water_and_momentum_close_at_every_event(name, by_single_events):
+    parcel, drops = box(name), nuclei()
+    start = sum(parcel.energy()) + parcel.condensed_energy
+    moving = momentum(parcel)
+    seen = [happened(parcel)]
+
+    def check(time):
+        now = happened(parcel)
+        if (now == seen[-1]).all():
+            return
+        assert np.sum(now - seen[-1]) == 1
+        seen.append(now)
+        mass, velocity = flying(parcel)
+        kinetic, rotational, potential = parcel.energy()
+        inside = kinetic + rotational + parcel.liquid_energy + PHI * parcel.vapour
+        inside += 0.5 * float(mass @ np.sum(velocity**2, axis=1))
+        assert potential == 0.0
+        assert inside - parcel.wall_heat.sum() - parcel.work == pytest.approx(start, rel=1e-10)
+        assert parcel.number == 20 + parcel.vapour
+        if name == "periodic":
+            np.testing.assert_allclose(momentum(parcel), moving, atol=1e-10)
+        is_lawful(parcel, 40, drops)
+
+    end = 0.0
+    while (seen[-1] < [8, 8, 8, 1]).any():
+        end += 5.0
+        assert end < 2000.0
+        parcel.advance(end, watch=check)
+    assert len(seen) - 1 == seen[-1].sum()
+    if name == "under a piston":
+        assert parcel.work != 0.0
+
+
+@many_events
+@by_name
+def test_a_drop_that_was_hit_flies_off_and_turns_at_walls(name):
+    # one molecule of vapour hits it along x (along z under the piston) and stays; one of air rests in a corner
+    axis = 2 if name == "under a piston" else 0
+    drops = nuclei(0, ((4.0, 4.0, 4.0),), water(1e-30), sticking=1.0)
+    position = np.array([[4.0, 4.0, 4.0], [0.5, 0.5, 0.5]])
+    position[0, axis] = 1.0
+    velocity = np.zeros((2, 3))
+    velocity[0, axis] = 3.0
+    parcel = box(name, drops=drops, air=1, vapour=1, position=position, velocity=velocity, kT=0.0)
+    energy, before = sum(parcel.energy()) + parcel.condensed_energy, momentum(parcel)
+    parcel.advance(3.0)
+    assert (parcel.condensed, parcel.number) == (1, 1)
+    mass, flight = flying(parcel)
+    assert mass == pytest.approx(4.0 + MASS, rel=1e-14)
+    np.testing.assert_allclose(momentum(parcel), before, atol=1e-12)
+    assert flight[0, axis] == pytest.approx(3.0 * MASS / (4.0 + MASS), rel=1e-12)
+    parcel.advance(60.0)
+    kinetic = parcel.condensed_energy - parcel.liquid_energy
+    gained = parcel.wall_heat.sum() + parcel.work
+    assert sum(parcel.energy()) + parcel.condensed_energy - gained == pytest.approx(energy, rel=1e-12)
+    if name == "periodic":
+        assert parcel.wall_hits.sum() == 0
+        np.testing.assert_allclose(momentum(parcel), before, atol=1e-12)
+    else:
+        assert parcel.wall_hits.sum() >= 2
+    if name == "smooth":
+        assert kinetic == pytest.approx(0.5 * float(mass[0]) * flight[0, axis] ** 2, rel=1e-12)
+        assert parcel.wall_impulse[0] == pytest.approx(2.0 * before[0] * parcel.wall_hits[0], rel=1e-12)
+    assert (parcel.work != 0.0) == (name == "under a piston")
+    assert (parcel.wall_heat.sum() != 0.0) == (name == "between heat baths")
+    is_lawful(parcel, 1, drops)
+
+
+@many_events
+def test_drops_that_grow_at_walls_and_in_corners_stay_inside(by_single_events):
+    radius = 0.5
+    centres = ((radius, radius, radius), (8.0 - radius, 4.0, 4.0), (4.0, 4.0, 8.0 - radius))
+    drops = nuclei(0, centres, water(1e-3), nuclei=200.0, sticking=1.0)
+    parcel = damp(drops, 5, 40, seed=4)
+    seen = []
+
+    def check(time):
+        if parcel.condensed > len(seen):
+            seen.append(time)
+            is_lawful(parcel, 40, drops)
+
+    parcel.advance(60.0, watch=check)
+    assert len(seen) > 20
+
+
+@many_events
+def test_drops_that_grow_under_a_falling_piston_stay_below_it(by_single_events):
+    drops = nuclei(0, ((4.0, 4.0, 7.4), (4.0, 2.0, 1.0)), water(1e-3), nuclei=200.0, sticking=1.0)
+    parcel = damp(drops, 5, 20, walls=(*TURNING[:4], Specular(), Piston(-0.05)), seed=4)
+    grown = []
+
+    def check(time):
+        grown.append(parcel.condensed)
+        is_lawful(parcel, 20, drops)
+
+    parcel.advance(40.0, watch=check)
+    assert max(grown) > 10
+    assert parcel.work > 0.0
+
+
+# ------------------------------------------------------------------ two become one
+
+
+def about_to_merge(walls=SMOOTH, air=300, seed=5):
+    """Return two large drops in many small molecules, one driven at the other by what has hit it."""
+    drops = nuclei(
+        60, ((3.0, 4.0, 4.0), (5.2, 4.0, 4.0)), water(1e-12), nucleus=0.5, nucleus_mass=1.0, molecule_radius=0.3
+    )
+    return drops, damp(drops, air, 10, seed=seed, walls=walls)
+
+
+@many_events
+@pytest.mark.parametrize("walls", [SMOOTH, TURNING], ids=["walled", "periodic"])
+def test_a_drop_that_has_swallowed_another_stands_in_its_cells_and_is_hit_by_all(walls):
+    drops, parcel = about_to_merge(walls)
+    before = momentum(parcel)
+    while not parcel.merged:
+        parcel.advance(parcel.time + 0.05)
+        assert parcel.time < 400.0
+    (centre,), (radius,), (held,) = parcel.drops()
+    assert held == parcel.liquid
+    assert 4.0 / 3.0 * math.pi * radius**3 == pytest.approx(
+        4.0 / 3.0 * math.pi * (2 * 0.5**3 + held * 0.3**3), rel=1e-12
+    )
+    # those that stood where it is larger now fly out, and from then on nobody comes in
+    parcel.advance(parcel.time + 30.0)
+    for k in range(400):
+        parcel.advance(parcel.time + 0.1)
+        assert deepest_overlap(parcel)[1] < 1e-9, k
+    swallowed = parcel._drops.record[parcel._drops.alive == 0]
+    assert np.isinf(parcel._fields["clock"][swallowed]).all()
+    rows = parcel._cells.row.reshape(-1, parcel._cells.stride)
+    assert not any(swallowed[0] in row[1 : 1 + row[0]] for row in rows)
+    if walls is TURNING:
+        np.testing.assert_allclose(momentum(parcel), before, atol=1e-9)
+    is_lawful(parcel, 70, drops)
+
+
+@many_events
+@by_name
+def test_in_the_end_there_is_one_drop_and_those_it_swallowed_never_come_back(name):
+    parcel, drops = box(name), nuclei()
+    numbers, gone = [3], np.zeros(3, bool)
+    while len(parcel.drops()[0]) > 1:
+        parcel.advance(parcel.time + 5.0)
+        assert parcel.time < 5000.0
+        numbers.append(len(parcel.drops()[0]))
+        now = parcel._drops.alive == 0
+        assert (now | ~gone).all()
+        gone = now
+        assert (parcel._drops.held[gone] == 0).all()
+    parcel.advance(parcel.time + 300.0)
+    assert (np.diff(numbers) <= 0).all()
+    assert (len(parcel.drops()[0]), parcel.merged) == (1, 2)
+    is_lawful(parcel, 40, drops)
+
+
+# ------------------------------------------------------------------ hardly anything
+
+
+@many_events
+@settings(max_examples=60)
+@given(
+    centres=st.sampled_from([CENTRES[:1], CENTRES[:2], CENTRES]),
+    number=st.integers(0, 3),
+    vapour=st.integers(0, 3),
+    air=st.integers(0, 5),
+    heat=st.sampled_from([0.0, 30.0]),
+    ball=st.sampled_from([0.0, 0.3]),
+    core=st.sampled_from([0.1, 4.0]),
+    sticking=st.sampled_from([0.3, 1.0]),
+    seed=st.integers(0, 10_000),
+    walls=st.sampled_from([SMOOTH, WARM]),
+)
+def test_a_box_may_hold_hardly_any_water_and_air(
+    centres, number, vapour, air, heat, ball, core, sticking, seed, walls
+):
+    assume(number + vapour + air > 0)
+    substance = water(0.05, binding_energy=2.0)
+    facts = {"nuclei": heat, "molecule_radius": ball, "nucleus_mass": core, "sticking": sticking}
+    drops = nuclei(number, centres, substance, **facts)
+    parcel = damp(drops, air, vapour, seed=seed, walls=walls)
+    for time in (0.3, 3.0, 30.0, 300.0):
+        parcel.advance(time)
+        is_lawful(parcel, number + vapour, drops)
+
+
+@many_events
+def test_a_bare_nucleus_catches_and_loses():
+    drops = nuclei(0, CENTRES[:1], water(0.05, binding_energy=2.0), nuclei=0.0, sticking=1.0)
+    parcel = damp(drops, 0, 2)
+    seen = set()
+    for k in range(1, 2000):
+        parcel.advance(0.5 * k)
+        seen.add(parcel.liquid)
+        assert parcel.drops()[2].tolist() == [parcel.liquid]
+    assert seen == {0, 1, 2}
+    is_lawful(parcel, 2, drops)
+
+
+@many_events
+def test_drops_that_boil_leave_their_nuclei():
+    drops = nuclei(20, substance=water(1e4))
+    parcel = damp(drops, 20, 0, walls=WARM)
+    while parcel.liquid and parcel.time < 300.0:
+        parcel.advance(parcel.time + 1.0)
+    assert (parcel.liquid, parcel.vapour, parcel.number) == (0, 20, 40)
+    assert (parcel.drops()[2] == 0).all()
+    is_lawful(parcel, 20, drops)
+
+
+# ------------------------------------------------------------------ how it is looked at and cut
+
+
+@many_events
+@by_name
+def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name, monkeypatch):
+    few = {"air": 4, "vapour": 3}
+    whole = box(name, **few)
+    epoch = whole._epoch_length
+    end = 2.3 * epoch
+    whole.advance(end)
+    random = np.random.default_rng(6)
+    cuts = [
+        np.linspace(0.0, end, 8)[1:],
+        [epoch, 2.0 * epoch, end],
+        [*np.sort(random.uniform(0.0, end, 200)), end],
+        [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
+    ]
+    assert whole._walls.epoch[0] == 2.0 * epoch
+    assert whole.condensed > 10
+    for times, chunk in zip(cuts, (200_000, 1, 17, 1024), strict=True):
+        monkeypatch.setattr(drop_parcelset, "_CHUNK", chunk)
+        parcel = box(name, **few)
+        for time in times:
+            parcel.advance(time)
+            parcel.drops(), parcel.ledger(), parcel.energy(), parcel.merged, repr(parcel)
+        assert state(parcel) == state(whole)
+
+
+# ------------------------------------------------------------------ what it tells and refuses
+
+
+def test_drops_tell_what_they_hold():
+    parcel = damp(nuclei(31), 5, 5)
+    centre, radius, held = parcel.drops()
+    assert held.tolist() == [11, 10, 10]
+    assert radius**3 == pytest.approx(0.5**3 + held * 0.3**3, rel=1e-14)
+    assert centre.tolist() == [list(place) for place in CENTRES]
+    assert (parcel.number, parcel.vapour, parcel.liquid, parcel.merged) == (10, 5, 31, 0)
+    assert parcel.condensed_energy == pytest.approx(31 * 9.0 + 30.0 + 5 * PHI, rel=1e-14)
+    assert len(parcel.snapshot().position) == 10
+
+
+def one(drops, **options):
+    facts = {"length": (8, 8, 8), "mass": MASS, "diameter": DIAMETER, "rotation": 3.0}
+    molecules = options.pop("position", [[7, 7, 7]]), options.pop("velocity", [[1, 0, 0]])
+    return DropParcelSet(*molecules, liquid=drops, **facts | options)
+
+
+@pytest.mark.parametrize(
+    ("centres", "options", "says"),
+    [
+        (((4.0, 4.0, 4.0), (4.5, 4.0, 4.0)), {}, "overlap at the start"),
+        (((4.0, 4.0, 4.0), (4.5, 4.0, 4.0)), {"position": [], "velocity": []}, "overlap at the start"),
+        (((4.0, 4.0, 4.0), (4.0, 4.0, 4.0)), {}, "overlap at the start"),
+        (((6.5, 7.0, 7.0),), {}, "overlap at the start"),
+        (((0.3, 4.0, 4.0),), {}, "drop 0 stands outside"),
+        (((4.0, 4.0, 4.0), (4.0, 9.0, 4.0)), {}, "drop 1 stands outside"),
+        (((4.0, 4.0, math.nan),), {}, "three finite numbers"),
+        (((4.0, 4.0),), {}, "three finite numbers"),
+        (((0.6, 0.6, 0.6),), {"length": (1.2, 9, 9), "position": [[0.6, 7, 7]]}, "make the box larger"),
+        (((4.0, 4.0, 4.0),), {"diameter": 0.0}, "without a diameter"),
+        (((4.0, 4.0, 4.0),), {"gravity": 1.0}, "no gravity"),
+        (((4.0, 4.0, 4.0),), {"planar": True}, "three dimensions"),
+    ],
+)
+def test_what_no_box_with_drops_can_have_is_refused(centres, options, says):
+    with pytest.raises(RefusedError, match=says):
+        one(nuclei(3, centres), **options)
+
+
+def test_what_are_no_drops_is_refused():
+    with pytest.raises(RefusedError, match="drops need nuclei"):
+        Drops(water())
+    with pytest.raises(RefusedError, match="do not rain"):
+        nuclei(rain=0.1)
+    for name in ("nucleus", "nucleus_mass"):
+        with pytest.raises(RefusedError, match="must be above 0"):
+            nuclei(**{name: 0.0})
+    with pytest.raises(RefusedError, match="radius of a molecule"):
+        nuclei(molecule_radius=-0.1)
+    with pytest.raises(RefusedError, match="give it Drops"):
+        one(Mist(water()))
+    with pytest.raises(RefusedError, match="without a diameter"):
+        one(nuclei(3, substance=water(diameter=0.0)))
