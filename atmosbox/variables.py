@@ -112,6 +112,7 @@ VARIABLES: dict[str, Variable] = {
          "cloud_liquid_water_mixing_ratio"),
         ("rain_mixing_ratio", "kg kg-1", "mass of water that has rained out so far per mass of dry air"),
         ("liquid_temperature", "K", "temperature of the liquid water"),
+        ("drop_area", "m2", "area of all drops on which molecules hit them"),
         ("condensation_rate", "s-1", "number of molecules that condense per time"),
         ("evaporation_rate", "s-1", "number of molecules that evaporate per time"),
         cell_methods=_MEAN,
@@ -121,8 +122,10 @@ VARIABLES: dict[str, Variable] = {
         ("vapor_molecule_count", "1", "number of molecules of vapour"),
         ("liquid_molecule_count", "1", "number of molecules in the liquid"),
         ("rained_molecule_count", "1", "number of molecules that have left as rain"),
+        ("drop_count", "1", "number of drops"),
         cell_methods=_POINT, dtype="i8",
     ),
+    **_declared(_TIME, ("largest_drop_radius", "m", "radius of the largest drop"), cell_methods=_POINT),
     **_declared(
         _TIME,
         ("condensed_energy", "J", "energy of liquid and rain, and of what the vapour is above the liquid"),

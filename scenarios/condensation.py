@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.liquid import Mist
+from atmosbox.engine.liquid import Drops, Liquid, Mist
 from atmosbox.engine.start import random_positions
 from atmosbox.engine.walls import HeatBath
 from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
-from atmosbox.instruments import Air, Water
+from atmosbox.instruments import Air, DropSizes, Water
 from atmosbox.moisture import moist_air, vapour_molecules, water
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Setup
@@ -46,6 +46,12 @@ NUCLEI = 100.0
 """Heat capacity of the nuclei, in k, that droplets form on; at most half a percent of that of the air."""
 
 
+MOLECULE = 0.52
+"""Radius of the ball that a molecule fills in liquid water, over the diameter of one of air: 0.193 nm to 0.37 nm."""
+CORE = 20.0
+"""Mass of the nucleus of a drop, in molecules of air."""
+
+
 class Settings(SceneSettings):
     """What a user may set."""
 
@@ -53,7 +59,9 @@ class Settings(SceneSettings):
     temperature: float = setting(20.0, "degC", "temperature of the walls", low=-60.0, high=95.0)
     pressure: float = setting(1000.0, "hPa", "pressure of air and vapour at the start", low=1.0, high=50_000.0)
     humidity: float = setting(150.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
-    area: float = setting(2.0, "1", "area of all droplets, in faces of the box", low=0.01, high=100.0)
+    area: float = setting(2.0, "1", "area of the mist, in faces of the box", low=0.01, high=100.0)
+    drops: int = setting(0, "1", "number of nuclei of drops that can be seen; 0 for a mist", low=0, high=50)
+    drop_size: float = setting(8.0, "1", "how many times wider the drops are than real ones", low=1.0, high=20.0)
     duration: float = setting(40.0, "ns", "how long to watch", low=0.01, high=1e5)
 
     def check(self) -> None:
@@ -90,9 +98,25 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     saturated = float(law.saturation_vapor_pressure(si.temperature))
     vapour = vapour_molecules(n, si.humidity * saturated, si.pressure)
     gas = moist_air(n, vapour, rng)
-    nuclei = min(NUCLEI, 0.005 * 3.5 * n)
+    drops = settings.drops
+    ball = settings.drop_size * MOLECULE
+    wide = np.concatenate([np.full(drops, 2.0 * ball), np.ones(n)])
+    place = random_positions(length, wide, rng)
+    heat = min(NUCLEI, 0.005 * 3.5 * n)
+    liquid: Liquid = Mist(water(scale), kT=1.0, nuclei=heat, area=settings.area * side**2)
+    if drops:
+        nuclei = tuple((float(x), float(y), float(z)) for x, y, z in place[:drops])
+        liquid = Drops(
+            water(scale),
+            kT=1.0,
+            nuclei=heat,
+            position=nuclei,
+            nucleus=ball,
+            nucleus_mass=CORE,
+            molecule_radius=ball,
+        )
     parcel = engine.make(
-        random_positions(length, np.ones(n), rng),
+        place[drops:],
         gas.velocity,
         length=length,
         walls=(HeatBath(1.0),) * 6,
@@ -100,7 +124,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         rotation=gas.rotation,
         rotational_energy=gas.rotational_energy,
         seed=settings.seed,
-        liquid=Mist(water(scale), kT=1.0, nuclei=nuclei, area=settings.area * side**2),
+        liquid=liquid,
     )
     full = n * saturated / si.pressure
     return Setup(
@@ -108,18 +132,33 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         scale,
         si.duration / scale.time,
         FRAMES,
-        (Air(), Water()),
+        (Air(), Water(), DropSizes()) if drops else (Air(), Water()),
         samples=4,
         settle=SETTLE,
         facts={
             "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
             "weight of a molecule": "1: every molecule stands for itself",
-            "exaggeration": "none in the gas; the droplets have far more area than so little water could",
+            "exaggeration": f"none in the gas; the drops are {settings.drop_size:g} times as wide as real ones"
+            if drops
+            else "none in the gas; the droplets have far more area than so little water could",
             "vapour at the start": f"{vapour} molecules; {full:.0f} saturate the air",
             "time to condense": f"{_memory(settings, ideal=engine.ideal) * 1e9:.2g} ns",
             "noise of the hygrometer": f"{100.0 / math.sqrt(full):.2g} % at every look",
         },
     )
+
+
+def _faces(settings: Settings, *, ideal: bool) -> float:
+    """Return the area of the liquid in faces of the box; of drops, that which they have in the end if none merge."""
+    if not settings.drops:
+        return settings.area
+    _, _, side, _ = _start(settings, ideal=ideal)
+    saturated = float(law.saturation_vapor_pressure(settings.si.temperature))
+    waters = vapour_molecules(settings.molecules, settings.si.humidity * saturated, settings.si.pressure)
+    held = max(waters - settings.molecules * saturated / settings.si.pressure, 0.0) / settings.drops
+    reach = settings.drop_size * MOLECULE * (1.0 + held) ** (1.0 / 3.0) + 0.5
+    faces: float = settings.drops * 4.0 * math.pi * (reach / side) ** 2
+    return faces
 
 
 def _memory(settings: Settings, *, ideal: bool) -> float:
@@ -136,8 +175,9 @@ def _memory(settings: Settings, *, ideal: bool) -> float:
     share = float(law.saturation_vapor_pressure(si.temperature)) / si.pressure
     latent = law.BINDING_TEMPERATURE / si.temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
     find, cool = (4.0 * side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))
-    held = share * latent**2 / 3.0 * cool * (1.0 / settings.area + 1.0 / 6.0)
-    return float((find / settings.area + held) * scale.time)
+    faces = _faces(settings, ideal=ideal)
+    held = share * latent**2 / 3.0 * cool * (1.0 / faces + 1.0 / 6.0)
+    return float((find / faces + held) * scale.time)
 
 
 def _short(lengths: float) -> float:
@@ -159,17 +199,18 @@ def _expected(settings: Settings, *, ideal: bool) -> tuple[float, float, float]:
     full = saturated * room / (BOLTZMANN * si.temperature)
     share = law.isothermal_vapor_number(water_molecules, si.temperature, room).mean / full
     flux = float(law.hertz_knudsen_flux(si.temperature))
-    return share * saturated, share, share * flux * settings.area * (side * scale.length) ** 2
+    return share * saturated, share, share * flux * _faces(settings, ideal=ideal) * (side * scale.length) ** 2
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return saturation, and the rate at which its vapour meets the liquid."""
     frames = np.ones(dataset.sizes["elapsed_time"])
     pressure, share, rate = _expected(settings, ideal=used(dataset).ideal)
+    flux = share * float(law.hertz_knudsen_flux(settings.si.temperature))
     return {
         "water_vapor_partial_pressure_theory": pressure * frames,
         "relative_humidity_theory": share * frames,
-        "condensation_rate_theory": rate * frames,
+        "condensation_rate_theory": rate * frames if not settings.drops else flux * dataset.drop_area.values,
         "air_temperature_theory": settings.si.temperature * frames,
     }
 
@@ -204,13 +245,13 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     found = []
     for name, measured, unit, shown, label, expected in rows:
         mean = block_average(measured.values, BLOCKS)
-        error = max(short * float(mean.standard_error), alone * float(expected[0]) / share if share else 0.0)
+        error = max(short * float(mean.standard_error), alone * float(expected.mean()) / share if share else 0.0)
         found.append(
             Headline(
                 f"mean_{name}",
                 float(mean.mean),
                 error,
-                float(expected[0]),
+                float(expected.mean()),
                 0.0,
                 nothing,
                 unit,
@@ -224,6 +265,15 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return vapour pressure, the two rates and the water against time."""
     time = "elapsed_time"
+    grown = Panel(
+        "line",
+        "The drops grow and merge",
+        (Line(time, "largest_drop_radius", "the largest drop"),),
+        x_label="time",
+        y_label="radius",
+        y_unit="nm",
+        x_scale="log",
+    )
     return (
         Panel(
             "line",
@@ -267,4 +317,5 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             averages=PARTS,
             headlines=("mean_relative_humidity",),
         ),
+        *((grown,) if settings.drops else ()),
     )

@@ -7,6 +7,7 @@ units, by the names that `diagnostics` declares.
 
 from atmosbox.instruments.air import Air
 from atmosbox.instruments.disc import Discs
+from atmosbox.instruments.drop import DropSizes
 from atmosbox.instruments.instrument import Instrument, Readings
 from atmosbox.instruments.layer import Layers
 from atmosbox.instruments.leaving import Leaving
@@ -19,6 +20,7 @@ from atmosbox.instruments.water import Water
 __all__ = [
     "Air",
     "Discs",
+    "DropSizes",
     "Environment",
     "Instrument",
     "Layers",
