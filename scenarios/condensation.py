@@ -40,6 +40,8 @@ SETTLE = 40
 PARTS = 24
 """Into how many equal parts of the logarithmic axis of time its curves are averaged."""
 BLOCKS = 20
+MEMORIES = 4.0
+"""After how many memories a surplus is forgotten."""
 FEW = 400
 """How many molecules must have condensed for an error to be read from blocks alone."""
 NUCLEI = 100.0
@@ -221,15 +223,17 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     The humidity is that at the temperature of the walls. Over that of the air at each look it would come out too large:
     so few molecules scatter in temperature, and one over e_s is convex.
     """
-    late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    ideal = used(dataset).ideal
+    memory = _memory(settings, ideal=ideal)
+    # what is too much at the start must have condensed
+    gone = math.ceil(MEMORIES * memory / settings.si.duration * FRAMES) if settings.si.humidity > 1.0 else 0
+    late = dataset.isel(elapsed_time=slice(max(SETTLE, gone), None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
     nothing = "none: the model has no other error than chance"
     vapour = late.water_vapor_partial_pressure
     saturation = float(law.saturation_vapor_pressure(settings.si.temperature))
-    ideal = used(dataset).ideal
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
-    memory = _memory(settings, ideal=ideal)
     short = _short(lasted / BLOCKS / memory)
     _, share, rate = _expected(settings, ideal=ideal)
     # if only few came and went, blocks tell little of the error: that of a Poisson number with this memory

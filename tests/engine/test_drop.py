@@ -15,8 +15,7 @@ from atmosbox.engine import drop_parcelset
 from atmosbox.engine._jit import COMPILED
 from atmosbox.engine.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid import AIR_MET, Drops, Mist, Substance
-from atmosbox.engine.refusal import RefusedError
-from atmosbox.engine.scatter import random_positions
+from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -237,7 +236,7 @@ def test_a_drop_that_was_hit_flies_off_and_turns_at_walls(name):
     assert mass == pytest.approx(4.0 + MASS, rel=1e-14)
     np.testing.assert_allclose(momentum(parcel), before, atol=1e-12)
     assert flight[0, axis] == pytest.approx(3.0 * MASS / (4.0 + MASS), rel=1e-12)
-    parcel.advance(60.0)
+    parcel.advance(300.0)
     kinetic = parcel.condensed_energy - parcel.liquid_energy
     gained = parcel.wall_heat.sum() + parcel.work
     assert sum(parcel.energy()) + parcel.condensed_energy - gained == pytest.approx(energy, rel=1e-12)
@@ -281,40 +280,47 @@ def test_drops_that_grow_under_a_falling_piston_stay_below_it(by_single_events):
         grown.append(parcel.condensed)
         is_lawful(parcel, 20, drops)
 
-    parcel.advance(40.0, watch=check)
+    parcel.advance(80.0, watch=check)
     assert max(grown) > 10
     assert parcel.work > 0.0
+
+
+@many_events
+def test_a_piston_that_would_crush_a_drop_is_stopped():
+    drops = nuclei(10, ((4.0, 4.0, 2.0),), water(1e-3))
+    parcel = damp(drops, 5, 10, walls=(*TURNING[:4], Specular(), Piston(-0.2)), seed=4)
+    with pytest.raises(StalledError, match="the piston has come down"):
+        parcel.advance(60.0)
+    (radius,) = parcel.drops()[1]
+    assert parcel.ceiling > 2.0 * radius - 1e-6
+    assert parcel.ledger() < 1e-9
 
 
 # ------------------------------------------------------------------ two become one
 
 
-def about_to_merge(walls=SMOOTH, air=300, seed=5):
-    """Return two large drops in many small molecules, one driven at the other by what has hit it."""
-    drops = nuclei(
-        60, ((3.0, 4.0, 4.0), (5.2, 4.0, 4.0)), water(1e-12), nucleus=0.5, nucleus_mass=1.0, molecule_radius=0.3
-    )
-    return drops, damp(drops, air, 10, seed=seed, walls=walls)
-
-
 @many_events
 @pytest.mark.parametrize("walls", [SMOOTH, TURNING], ids=["walled", "periodic"])
 def test_a_drop_that_has_swallowed_another_stands_in_its_cells_and_is_hit_by_all(walls):
-    drops, parcel = about_to_merge(walls)
+    # it stands where the mass of both was, a radius away, among so many molecules that there are many cells
+    centres = ((3.0, 4.0, 4.0), (5.2, 4.0, 4.0))
+    drops = nuclei(60, centres, water(1e-12), nucleus_mass=1.0)
+    parcel = damp(drops, 200, 10, seed=5, walls=walls)
     before = momentum(parcel)
     while not parcel.merged:
         parcel.advance(parcel.time + 0.05)
         assert parcel.time < 400.0
-    (centre,), (radius,), (held,) = parcel.drops()
+    _, (radius,), (held,) = parcel.drops()
     assert held == parcel.liquid
-    assert 4.0 / 3.0 * math.pi * radius**3 == pytest.approx(
-        4.0 / 3.0 * math.pi * (2 * 0.5**3 + held * 0.3**3), rel=1e-12
-    )
+    assert radius**3 == pytest.approx(2 * 0.5**3 + held * 0.3**3, rel=1e-12)
     # those that stood where it is larger now fly out, and from then on nobody comes in
-    parcel.advance(parcel.time + 30.0)
-    for k in range(400):
+    parcel.advance(parcel.time + 20.0)
+    assert parcel._cells.number_x > 2
+    for _ in range(200):
         parcel.advance(parcel.time + 0.1)
-        assert deepest_overlap(parcel)[1] < 1e-9, k
+        centre, radius, _ = parcel.drops()
+        away = apart(parcel.snapshot().position, centre, parcel.length, parcel.periodic)[:, 0]
+        assert (away > radius + 0.5 * parcel.diameter - 1e-9).all()
     swallowed = parcel._drops.record[parcel._drops.alive == 0]
     assert np.isinf(parcel._fields["clock"][swallowed]).all()
     rows = parcel._cells.row.reshape(-1, parcel._cells.stride)
@@ -360,9 +366,7 @@ def test_in_the_end_there_is_one_drop_and_those_it_swallowed_never_come_back(nam
     seed=st.integers(0, 10_000),
     walls=st.sampled_from([SMOOTH, WARM]),
 )
-def test_a_box_may_hold_hardly_any_water_and_air(
-    centres, number, vapour, air, heat, ball, core, sticking, seed, walls
-):
+def test_a_box_may_hold_hardly_any_water_and_air(centres, number, vapour, air, heat, ball, core, sticking, seed, walls):
     assume(number + vapour + air > 0)
     substance = water(0.05, binding_energy=2.0)
     facts = {"nuclei": heat, "molecule_radius": ball, "nucleus_mass": core, "sticking": sticking}
@@ -406,18 +410,18 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name, monkeypatch)
     few = {"air": 4, "vapour": 3}
     whole = box(name, **few)
     epoch = whole._epoch_length
-    end = 2.3 * epoch
+    end = 1.3 * epoch
     whole.advance(end)
     random = np.random.default_rng(6)
     cuts = [
         np.linspace(0.0, end, 8)[1:],
-        [epoch, 2.0 * epoch, end],
+        [epoch, end],
         [*np.sort(random.uniform(0.0, end, 200)), end],
         [0.0, 0.75, 0.75, 1.5, math.nextafter(epoch, 0.0), math.nextafter(epoch, math.inf), end, end],
     ]
-    assert whole._walls.epoch[0] == 2.0 * epoch
+    assert whole._walls.epoch[0] == epoch
     assert whole.condensed > 10
-    for times, chunk in zip(cuts, (200_000, 1, 17, 1024), strict=True):
+    for times, chunk in zip(cuts, (200_000, 50, 17, 1024), strict=True):
         monkeypatch.setattr(drop_parcelset, "_CHUNK", chunk)
         parcel = box(name, **few)
         for time in times:

@@ -1,0 +1,258 @@
+"""Drops and vapour come to the balance of statistical mechanics, where every arrangement without overlaps is as likely.
+
+Means allow 4 standard errors from 40 blocks: a false alarm once in 4 000 for a fresh seed, never for these. The
+molecules are so small that they hardly ever meet each other; what they exchange they exchange through drops.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import special
+
+from atmosbox.engine._jit import COMPILED
+from atmosbox.engine.drop_parcelset import DropParcelSet
+from atmosbox.engine.liquid import Drops, Substance
+from atmosbox.engine.walls import HeatBath, Specular
+from atmosbox.statistics import block_average
+
+pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+
+SMALL, MASS, AIR_MASS, PHI, C_L = 0.02, 0.62, 1.0, 3.0, 5.0
+AIR, BLOCKS, PINNED = 2, 40, 1e12
+MIDDLE, PAIR = ((0.5, 0.5, 0.5),), ((0.25, 0.5, 0.5), (0.75, 0.5, 0.5))
+CORNERS = np.array([[0.1, 0.1, 0.1], [0.9, 0.9, 0.1], [0.1, 0.9, 0.9], [0.9, 0.1, 0.9]])
+
+
+def water(saturated):
+    """Return water of a saturation pressure at kT = 1."""
+    return Substance(MASS, SMALL, PHI, C_L, saturated * math.exp(PHI), rotation=3.0)
+
+
+def box(drops, seed, kT=1.0, **options):
+    """Return a box of two molecules of air, with drops in it."""
+    rng = np.random.default_rng(seed)
+    return DropParcelSet(
+        CORNERS[:AIR],
+        rng.standard_normal((AIR, 3)) * math.sqrt(kT / AIR_MASS),
+        length=(1.0, 1.0, 1.0),
+        mass=AIR_MASS,
+        diameter=SMALL,
+        rotation=2.0,
+        rotational_energy=kT * rng.standard_gamma(1.0, AIR),
+        liquid=drops,
+        seed=seed,
+        **options,
+    )
+
+
+def log_room(drops, molecules):
+    """Return the logarithm of the room that molecules of vapour and of air have, for n = 0, 1, ... in the liquid.
+
+    Each of them has the box less the ball that a drop keeps its centre out of.
+    """
+    n = np.arange(molecules + 1)
+    volume = np.full(molecules + 1, (1.0 - SMALL) ** 3)
+    for _ in drops.position:
+        reach = np.cbrt(drops.nucleus**3 + n * drops.molecule_radius**3) + 0.5 * SMALL
+        volume -= 4.0 / 3.0 * math.pi * reach**3
+    return (molecules - n + AIR) * np.log(volume)
+
+
+def log_ways(drops, molecules):
+    """Return the logarithm of the number of ways to share n molecules out among drops: all are as likely.
+
+    A molecule leaves in proportion to the surface that it leaves behind, which is the one that it comes back to. So
+    whatever the sizes are, nothing prefers one of the ways.
+    """
+    n, others = np.arange(molecules + 1), len(drops.position) - 1
+    return np.log(special.comb(n + others, others))
+
+
+def normal(log_weight):
+    weight = np.exp(log_weight - log_weight.max())
+    return weight / weight.sum()
+
+
+def microcanonical(total, molecules, drops):
+    """Return the probability of n molecules in the liquid, n = 0, 1, ..., and their mean energy.
+
+    It is that of a mist, z^v / v! M^(C + F / 2 - 1) / Gamma(C + F / 2) with M = E - phi v, times room and ways.
+    """
+    n = np.arange(molecules + 1)
+    v = molecules - n
+    capacity = C_L * n + drops.nuclei
+    shape = capacity + 3.0 * v + 2.5 * AIR
+    left = total - PHI * v
+    assert (left > 0.0).all()
+    log_weight = v * math.log(drops.substance.volatility) - special.gammaln(v + 1.0)
+    log_weight += (shape - 1.0) * np.log(left) - special.gammaln(shape)
+    log_weight += log_room(drops, molecules) + log_ways(drops, molecules)
+    return normal(log_weight), left * capacity / shape
+
+
+def canonical(molecules, drops, e_s):
+    """Return the probability of n molecules in the liquid between heat baths of kT = 1."""
+    v = molecules - np.arange(molecules + 1)
+    log_weight = v * math.log(e_s) - special.gammaln(v + 1.0)
+    return normal(log_weight + log_room(drops, molecules) + log_ways(drops, molecules))
+
+
+def sampled(parcel, step, samples, read):
+    """Return what is read at even times."""
+    parcel.advance(50.0)
+    rows = []
+    for k in range(samples):
+        parcel.advance(50.0 + (k + 1) * step)
+        rows.append(read(parcel))
+    assert parcel.ledger() < 1e-10
+    assert min(parcel.condensed, parcel.evaporated) > 1000
+    return np.array(rows, float)
+
+
+def agrees(values, exact, within):
+    """Assert that means are what they should be, and are known well enough to tell."""
+    mean, error = block_average(values, BLOCKS)
+    assert (error < within).all()
+    assert (np.abs(mean - exact) <= 4.0 * error).all(), (mean, exact, error)
+
+
+# ------------------------------------------------------------------ an isolated box
+
+
+@pytest.mark.parametrize(
+    ("nuclei", "sticking", "ball"),
+    [(10.0, 1.0, 0.0), (0.0, 1.0, 0.0), (10.0, 0.3, 0.0), (10.0, 1.0, 0.2), (0.0, 0.5, 0.2)],
+)
+def test_an_isolated_box_with_a_drop_visits_all_states_alike(nuclei, sticking, ball):
+    # a ball of 0.2 makes the drop half as wide again with three of them: it then leaves a tenth less room
+    molecules = 3
+    drops = Drops(
+        water(2.0),
+        number=molecules,
+        kT=1.6,
+        nuclei=nuclei,
+        sticking=sticking,
+        position=MIDDLE,
+        nucleus=0.2,
+        nucleus_mass=PINNED,
+        molecule_radius=ball,
+    )
+    parcel = box(drops, 3, kT=1.6)
+    chance, energy = microcanonical(sum(parcel.energy()) + parcel.condensed_energy, molecules, drops)
+    rows = sampled(parcel, 4.0, 20_000, lambda box: (box.liquid, box.liquid_energy))
+    here = rows[:, :1] == np.arange(molecules + 1)
+    agrees(here, chance, 0.009)
+    agrees(here * (rows[:, 1:] - energy), 0.0, 0.04)
+
+
+def test_two_drops_share_their_molecules_in_every_way_alike():
+    molecules = 3
+    facts = {"nucleus": 0.12, "nucleus_mass": PINNED, "molecule_radius": 0.0}
+    drops = Drops(water(1.0), number=molecules, kT=1.6, nuclei=10.0, position=PAIR, **facts)
+    parcel = box(drops, 3, kT=1.6)
+    chance, _ = microcanonical(sum(parcel.energy()) + parcel.condensed_energy, molecules, drops)
+    held = sampled(parcel, 4.0, 30_000, lambda box: box.drops()[2])
+    total = held.sum(axis=1)
+    ways, exact = [], []
+    for n in range(molecules + 1):
+        for first in range(n + 1):
+            ways.append((total == n) & (held[:, 0] == first))
+            exact.append(chance[n] / (n + 1))
+    agrees(np.array(ways).T, np.array(exact), 0.007)
+    assert parcel.merged == 0
+
+
+def test_two_drops_that_grow_leave_less_room_the_more_they_hold():
+    molecules, ball, nucleus = 3, 0.12, 0.1
+    drops = Drops(
+        water(1.0),
+        number=molecules,
+        kT=1.6,
+        nuclei=10.0,
+        position=PAIR,
+        nucleus=nucleus,
+        nucleus_mass=PINNED,
+        molecule_radius=ball,
+    )
+    parcel = box(drops, 7, kT=1.6)
+    total = sum(parcel.energy()) + parcel.condensed_energy
+    held = sampled(parcel, 4.0, 30_000, lambda box: box.drops()[2])
+    ways = [(n, first) for n in range(molecules + 1) for first in range(n + 1)]
+    seen, log_weight = [], []
+    for n, first in ways:
+        v = molecules - n
+        volume = (1.0 - SMALL) ** 3
+        for each in (first, n - first):
+            volume -= 4.0 / 3.0 * math.pi * (np.cbrt(nucleus**3 + each * ball**3) + 0.5 * SMALL) ** 3
+        shape = C_L * n + 10.0 + 3.0 * v + 2.5 * AIR
+        weight = v * math.log(drops.substance.volatility) - special.gammaln(v + 1.0) + (v + AIR) * math.log(volume)
+        log_weight.append(weight + (shape - 1.0) * math.log(total - PHI * v) - special.gammaln(shape))
+        seen.append((held.sum(axis=1) == n) & (held[:, 0] == first))
+    agrees(np.array(seen).T, normal(np.array(log_weight)), 0.007)
+
+
+# ------------------------------------------------------------------ between heat baths
+
+BATHS = (HeatBath(1.0),) * 6
+
+
+@pytest.mark.parametrize(("position", "saturated"), [(MIDDLE, 20.0), (PAIR, 20.0), (MIDDLE, 3.0)])
+def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
+    molecules = round(6 * saturated) - 7
+    facts = {"nucleus": 0.15, "nucleus_mass": PINNED, "molecule_radius": 0.0, "nuclei": 10.0}
+    drops = Drops(water(saturated), number=molecules, position=position, **facts)
+    parcel = box(drops, 6, walls=BATHS)
+    chance = canonical(molecules, drops, drops.substance.saturation_pressure(1.0))
+    vapour = float(chance @ (molecules - np.arange(molecules + 1)))
+    room = (1.0 - SMALL) ** 3 - len(position) * 4.0 / 3.0 * math.pi * (0.15 + 0.5 * SMALL) ** 3
+    if saturated > 10.0 and len(position) == 1:
+        assert vapour / room == pytest.approx(drops.substance.saturation_pressure(1.0), rel=1e-6)
+    rows = sampled(parcel, 4.0, 12_000, lambda box: (box.vapour, box.liquid_kT))
+    agrees(rows, np.array([vapour, 1.0]), 0.015 * np.array([vapour, 1.0]))
+
+
+@pytest.mark.parametrize(("mass", "ball"), [(0.5, 0.0), (0.5, 0.15), (10.0, 0.15)])
+def test_a_light_drop_that_flies_about_is_in_the_same_balance(mass, ball):
+    # it has a room of its own in the box, and hardly more mass than a molecule
+    molecules, nucleus = 4, 0.12
+    drops = Drops(
+        water(2.0),
+        number=molecules,
+        nuclei=10.0,
+        position=MIDDLE,
+        nucleus=nucleus,
+        nucleus_mass=mass,
+        molecule_radius=ball,
+    )
+    parcel = box(drops, 8, walls=BATHS)
+    n = np.arange(molecules + 1)
+    own = 3.0 * np.log(1.0 - 2.0 * np.cbrt(nucleus**3 + n * ball**3))
+    chance = normal(np.log(canonical(molecules, drops, drops.substance.saturation_pressure(1.0))) + own)
+
+    def read(parcel):
+        drop = parcel._fields[parcel._drops.record[0]]
+        flight = 0.5 * parcel._kinds.table["mass"][parcel._first_drop] * sum(drop["v" + axis] ** 2 for axis in "xyz")
+        return (*(parcel.liquid == n), flight, parcel.liquid_kT)
+
+    rows = sampled(parcel, 4.0, 20_000, read)
+    agrees(rows, np.array([*chance, 1.5, 1.0]), 0.03)
+
+
+def test_a_smooth_box_with_a_light_drop_has_one_temperature():
+    # four molecules, the drop and its liquid share the energy as gamma variates of their degrees of freedom
+    facts = {"nucleus": 0.15, "nucleus_mass": 1.0, "molecule_radius": 0.1, "nuclei": 10.0}
+    substance = Substance(MASS, SMALL, 60.0, C_L, 1e-9, rotation=3.0)
+    drops = Drops(substance, number=2, position=MIDDLE, **facts)
+    parcel = box(drops, 5, walls=(Specular(),) * 6)
+    total = sum(parcel.energy()) + parcel.condensed_energy
+    parcel.advance(50.0)
+    rows = []
+    for k in range(12_000):
+        parcel.advance(54.0 + 4.0 * k)
+        kinetic, rotational, _ = parcel.energy()
+        flight = parcel.condensed_energy - parcel.liquid_energy
+        rows.append(np.array([kinetic, rotational, parcel.liquid_energy, flight]) / total)
+    freedom = np.array([1.5 * AIR, AIR, 10.0 + 2.0 * C_L, 1.5])
+    assert (parcel.liquid, parcel.evaporated) == (2, 0)
+    agrees(np.array(rows), freedom / freedom.sum(), 0.003)
