@@ -43,7 +43,9 @@ LAYERS = {
     "instruments": Layer("engine units statistics theory", "numpy"),
     "moisture": Layer("engine units theory", "numpy"),
     "rising": Layer(
-        "engine engines headline instruments moisture panels scene statistics units theory", "numpy", lazily="xarray"
+        "engine engines headline instruments moisture panels scene statistics units theory",
+        "numpy",
+        lazily="xarray",
     ),
     "sounding": Layer("errors conversion units", "numpy", lazily="xarray metpy"),
     "scene": Layer("units", lazily="engine instruments"),

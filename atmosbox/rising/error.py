@@ -13,7 +13,18 @@ from atmosbox import theory as law
 from atmosbox.rising.ascent import RAIN, MoistAscent
 from atmosbox.rising.size import CLOSING, size_of_parcel
 
-__all__ = ["blur", "haste", "haze", "lag", "rain_scatter", "tolerance", "walk", "warmth_of"]
+__all__ = [
+    "blur",
+    "comparable",
+    "haste",
+    "haze",
+    "lag",
+    "least_cloud",
+    "rain_scatter",
+    "tolerance",
+    "walk",
+    "warmth_of",
+]
 
 Array = NDArray[np.float64]
 
@@ -97,6 +108,22 @@ def haze(ascent: MoistAscent, humidity: float, liquid: float, temperature: float
     a = max(mean / scatter, -30.0)
     more = scatter * math.sqrt(2.0 / math.pi) * math.exp(-0.5 * a * a) / math.erfc(-a / math.sqrt(2.0))
     return warmth_of(law.WATER_MASS_RATIO * (min(mean, 0.0) + more) / air, temperature)
+
+
+def least_cloud(ascent: MoistAscent) -> float:
+    """Return how much liquid a cloud must hold before it rains, so that no chance surplus does [kg kg-1].
+
+    Three times by how much the liquid scatters: what a cluster loses as rain does not come back.
+    """
+    if not ascent.vapour:
+        return 0.0
+    t = float(ascent.planned_at(ascent.top_pressure).temperature[0])
+    return law.WATER_MASS_RATIO * 3.0 * _scatter(ascent, t) / (ascent.molecules - ascent.vapour)
+
+
+def comparable(ascent: MoistAscent) -> bool:
+    """Tell whether theory, which knows of no chance, says how much it rains."""
+    return not ascent.rains or ascent.most_liquid >= least_cloud(ascent)
 
 
 def _meeting(ascent: MoistAscent, pressure: float) -> float:

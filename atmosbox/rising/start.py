@@ -15,7 +15,7 @@ from atmosbox.engines import EngineChoice
 from atmosbox.instruments import Air, Environment, MoistLift, Water
 from atmosbox.moisture import moist_air, water
 from atmosbox.rising.ascent import RAIN, MoistAscent
-from atmosbox.rising.error import haste, walk
+from atmosbox.rising.error import haste, least_cloud, walk
 from atmosbox.rising.size import CLOSING, size_of_parcel
 from atmosbox.scene import Setup
 from atmosbox.units import DRY_AIR
@@ -117,6 +117,11 @@ def rise(
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
             "ascent": f"in {duration * scale.time * 1e9:.3g} ns",
+            **(
+                {"rain": f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"}
+                if ascent.rains
+                else {}
+            ),
             "error by the finite speed": f"up to {warmth:.2g} K",
         },
     )

@@ -150,7 +150,7 @@ def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -
                 f"temperature_at_{level / 100.0:.0f}_hpa",
                 expected + float(misfit[near].mean()),
                 float(np.hypot(scatter[middle], expected * error.walk(ascent, np.array([level]))[0])),
-                expected,
+                expected if error.comparable(ascent) else None,
                 error.tolerance(ascent, level, ideal=ideal),
                 "the ascent is not infinitely slow, spheres take up room, and vapour must find liquid",
                 "K",

@@ -18,7 +18,7 @@ SEEDS = range(1, 5)
 LENGTHS = (50, 100, 200, 400)
 NUMBERS = (1000, 3000, 10_000)
 TICKS = (300, 400, 500, 700, 850, 1000)
-RAIN: Mapping[str, Any] = {"rain": True, "cloud_water": 0.0}
+RAIN: Mapping[str, Any] = {"rain": True}
 _MEMORY: dict[tuple[Any, ...], runner.Outcome] = {}
 
 

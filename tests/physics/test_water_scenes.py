@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minute
 SHORT = {
     "condensation": {"molecules": 2000, "duration": 8.0},
     "lifting-moist": {"molecules": 3000, "ascent": 150},
-    "mountains": {"molecules": 3000, "travel": 200},
+    "mountains": {"molecules": 3000, "travel": 200, "cloud_water": 3.0},
 }
 DRY = {"condensation": {"humidity": 0.0}, "lifting-moist": {"dewpoint": -100.0}, "mountains": {"dewpoint": -80.0}}
 COLD = {
@@ -149,11 +149,18 @@ def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
 
 
 def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not():
-    ends = {rain: found(run("mountains", rain=rain))["arrival_temperature"] for rain in (True, False)}
+    more = {"molecules": 6000, "cloud_water": 2.0}
+    ends = {rain: found(run("mountains", rain=rain, **more))["arrival_temperature"] for rain in (True, False)}
     assert ends[False].theory == pytest.approx(298.15, abs=0.01)
-    assert ends[True].theory - ends[False].theory > 4.0
+    assert ends[True].theory - ends[False].theory > 2.0
     gap = ends[True].value - ends[False].value
     assert gap > 4.0 * math.hypot(ends[True].standard_error, ends[False].standard_error)
+
+
+def test_rain_out_of_chance_clusters_is_not_compared_with_a_theory_without_chance():
+    few, enough = (run("mountains", cloud_water=water, travel=60) for water in (1.0, 3.0))
+    assert {each.theory for each in few.headlines} == {None}
+    assert all(each.theory is not None for each in enough.headlines)
 
 
 def test_vapour_may_be_nearly_all_of_the_gas_but_not_more_than_it():
