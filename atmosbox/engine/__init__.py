@@ -34,6 +34,7 @@ Read it in this order:
 `moist_account`  what a box with liquid in it holds
 `moist`      from event to event, with liquid in the box
 `moist_parcelset`  the box of moist air, advanced exactly
+`drop_shape` drops as bodies
 `drop`       drops that can be seen, from event to event
 `drop_parcelset`  the box with such drops in it
 `marching`   the box, advanced step by step

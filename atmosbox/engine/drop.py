@@ -12,17 +12,29 @@ lose one as often as one of n - 1 catches one: the balance is detailed again.
 import functools
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from atmosbox.engine._jit import kernel
 from atmosbox.engine.calendar import next_event
+from atmosbox.engine.drop_shape import (
+    DropRecords,
+    about,
+    ceiling_at,
+    nearest,
+    placed,
+    radius_of,
+    resize,
+    surface_left,
+    within,
+    write,
+)
 from atmosbox.engine.encounter import position_at
-from atmosbox.engine.exact import BUSY, CROWDED, DONE, MET, ROW_FULL, STALLED, proceed
+from atmosbox.engine.exact import BUSY, DONE, MET, ROW_FULL, STALLED, proceed
 from atmosbox.engine.liquid import AIR_MET, THERMAL, condense, evaporate, exchange, leave
 from atmosbox.engine.moist import renew
-from atmosbox.engine.phase import NO_ROOM, TAKEN, enter, room_at, take_out, withdraw
+from atmosbox.engine.phase import NO_ROOM, TAKEN, enter, has_room, move_to, room_at, take_out, withdraw
 from atmosbox.engine.plan import plan
 from atmosbox.engine.random import uniform
 from atmosbox.engine.state import Modes
@@ -32,104 +44,32 @@ __all__ = ["DropRecords", "specialise"]
 _LEAVES = 1
 
 
-class DropRecords(NamedTuple):
-    """What is known of the drops beside their flight.
-
-    ``record``, ``held : (drop,)`` their numbers among the molecules, and how many molecules each holds; ``cube``,
-    ``core : (drop,)`` cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)`` whether it has
-    not been swallowed; ``merged : (1,)`` how often that happened; then cube of the radius, mass and radius in flight of
-    one molecule.
-    """
-
-    record: Any
-    held: Any
-    cube: Any
-    core: Any
-    alive: Any
-    merged: Any
-    molecule_cube: float
-    molecule_mass: float
-    molecule_radius: float
-
-
-@kernel
-def _radius(drops, k, held):
-    """Return the radius of drop k if it held so many molecules [length]."""
-    return (drops.cube[k] + held * drops.molecule_cube) ** (1.0 / 3.0)
-
-
-@kernel
-def _resize(drops, k, kinds, modes):
-    """Let drop k be as large and as heavy as what it holds."""
-    kind = kinds.table[modes.drops + k]
-    kind.radius = _radius(drops, k, drops.held[k])
-    kind.mass = drops.core[k] + drops.held[k] * drops.molecule_mass
-
-
-@kernel
-def _surface_left(drops, k):
-    """Return the surface from which a molecule leaves drop k, at the distance of its centre [length^2]."""
-    if drops.alive[k] == 0 or drops.held[k] < 1:
-        return 0.0
-    reach = _radius(drops, k, drops.held[k] - 1) + drops.molecule_radius
-    return 4.0 * math.pi * reach * reach
-
-
 @kernel
 def _renew(t, drops, tallies, ledger):
     """Sum the surface anew, and draw when the next molecule leaves."""
     surface = 0.0
     for k in range(drops.record.size):
-        surface += _surface_left(drops, k)
+        surface += surface_left(drops, k)
     ledger.surface[0] = surface
     renew(t, tallies, ledger)
 
 
 @kernel
-def _write(molecule, t, x, y, z, vx, vy, vz):
-    molecule.x = x
-    molecule.y = y
-    molecule.z = z
-    molecule.vx = vx
-    molecule.vy = vy
-    molecule.vz = vz
-    molecule.clock = t
-    molecule.count += 1
-
-
-@kernel
-def _nearest(r, length, inverse):
-    """Return a distance along an axis, to the nearest image if the axis is periodic."""
-    return r - length * np.rint(r * inverse) if inverse != 0.0 else r
-
-
-@kernel
-def _about(nx, ny, nz, state):
-    """Return a direction by the cosine law about a normal."""
-    rise = math.sqrt(uniform(state))
-    across = math.sqrt(max(1.0 - rise * rise, 0.0))
-    angle = 2.0 * math.pi * uniform(state)
-    # two axes at right angles to the normal: Duff and others 2017, jcgt.org/published/0006/01/01
-    sign = 1.0 if nz >= 0.0 else -1.0
-    a = -1.0 / (sign + nz)
-    b = nx * ny * a
-    c, s = across * math.cos(angle), across * math.sin(angle)
-    return (
-        c * (1.0 + sign * nx * nx * a) + s * b + rise * nx,
-        c * sign * b + s * (sign + ny * ny * a) + rise * ny,
-        -c * sign * nx - s * ny + rise * nz,
-    )
-
-
-@kernel
-def _within(u, radius, length, inverse):
-    """Return a coordinate of a drop, moved inwards if it has grown into a wall."""
-    return u if inverse != 0.0 else min(max(u, radius), max(length - radius, radius))
+def _may_grow(i, j, k, t, x, y, z, molecules, events, kinds, cells, box, walls, drops, modes):
+    """Tell whether drop k has room for one molecule more: neither a wall nor anybody but molecule i stands there."""
+    radius = radius_of(drops, k, drops.held[k] + 1)
+    if box.inverse_x == 0.0 and not radius <= x <= box.length_x - radius:
+        return False
+    if box.inverse_y == 0.0 and not radius <= y <= box.length_y - radius:
+        return False
+    if box.inverse_z == 0.0 and not radius <= z <= ceiling_at(t, box, walls, modes) - radius:
+        return False
+    return has_room(i, j, t, x, y, z, radius, molecules, events, kinds, cells, box, modes)
 
 
 @kernel
 def _merge(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes):
-    """Let the smaller of two drops be swallowed by the larger one; return the number of that one."""
+    """Let the smaller of two drops be swallowed by the larger one; return a status and the number of that one."""
     a = np.int64(molecules[i].kind) - modes.drops
     b = np.int64(molecules[j].kind) - modes.drops
     if kinds.table[modes.drops + b].mass > kinds.table[modes.drops + a].mass:
@@ -141,10 +81,17 @@ def _merge(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops
     other = kinds.table[modes.drops + b].mass
     share = other / (mass + other)
     ux, uy, uz = wx - vx, wy - vy, wz - vz
+    x += share * nearest(px - x, box.length_x, box.inverse_x)
+    y += share * nearest(py - y, box.length_y, box.inverse_y)
+    z += share * nearest(pz - z, box.length_z, box.inverse_z)
+    radius = (drops.cube[a] + drops.cube[b] + (drops.held[a] + drops.held[b]) * drops.molecule_cube) ** (1.0 / 3.0)
+    x = within(x, radius, box.length_x, box.inverse_x)
+    y = within(y, radius, box.length_y, box.inverse_y)
+    z = within(z, radius, ceiling_at(t, box, walls, modes), box.inverse_z)
+    x, y, z, moved = move_to(i, x, y, z, molecules, events, kinds, cells, box, modes)
+    if not moved:
+        return ROW_FULL, i
     ledger.energy[THERMAL] += 0.5 * mass * share * (ux * ux + uy * uy + uz * uz)
-    x += share * _nearest(px - x, box.length_x, box.inverse_x)
-    y += share * _nearest(py - y, box.length_y, box.inverse_y)
-    z += share * _nearest(pz - z, box.length_z, box.inverse_z)
     drops.held[a] += drops.held[b]
     drops.cube[a] += drops.cube[b]
     drops.core[a] += drops.core[b]
@@ -152,14 +99,9 @@ def _merge(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops
     drops.alive[b] = 0
     drops.merged[0] += 1
     take_out(j, molecules, events, kinds, cells, calendar, modes)
-    _resize(drops, a, kinds, modes)
-    radius = kinds.table[modes.drops + a].radius
-    x = _within(x, radius, box.length_x, box.inverse_x)
-    y = _within(y, radius, box.length_y, box.inverse_y)
-    top = walls.piston[0] + walls.piston[1] * (t - walls.piston[2]) if modes.piston else box.length_z
-    z = _within(z, radius, top, box.inverse_z)
-    _write(molecules[i], t, x, y, z, vx + share * ux, vy + share * uy, vz + share * uz)
-    return i
+    resize(drops, a, kinds, modes)
+    write(molecules[i], t, x, y, z, vx + share * ux, vy + share * uy, vz + share * uz)
+    return DONE, i
 
 
 @kernel
@@ -178,39 +120,40 @@ def _hit(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, 
     reduced = heavy * light
     spin = kinds.rotational_energy[i] if modes.rotation else 0.0
     energy = 0.5 * reduced * (ux * ux + uy * uy + uz * uz) + spin
-    if number == ledger.kind and (ledger.sticking >= 1.0 or uniform(tallies.random) < ledger.sticking):
+    sticks = number == ledger.kind and (ledger.sticking >= 1.0 or uniform(tallies.random) < ledger.sticking)
+    if sticks and _may_grow(i, j, k, t, px, py, pz, molecules, events, kinds, cells, box, walls, drops, modes):
         condense(ledger, energy)
         withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes)
         drops.held[k] += 1
-        _resize(drops, k, kinds, modes)
+        resize(drops, k, kinds, modes)
         wx, wy, wz = cx, cy, cz
     else:
         flight, spin = exchange(ledger, energy, rotation, tallies.random)
         ledger.energy[THERMAL] += energy - flight - spin
         ledger.count[AIR_MET] += 1
-        nx = _nearest(x - px, box.length_x, box.inverse_x)
-        ny = _nearest(y - py, box.length_y, box.inverse_y)
-        nz = _nearest(z - pz, box.length_z, box.inverse_z)
+        nx = nearest(x - px, box.length_x, box.inverse_x)
+        ny = nearest(y - py, box.length_y, box.inverse_y)
+        nz = nearest(z - pz, box.length_z, box.inverse_z)
         long = math.sqrt(nx * nx + ny * ny + nz * nz)
-        ex, ey, ez = _about(nx / long, ny / long, nz / long, tallies.random)
+        ex, ey, ez = about(nx / long, ny / long, nz / long, tallies.random)
         speed = math.sqrt(2.0 * flight / reduced)
         vx, vy, vz = cx + (1.0 - light) * speed * ex, cy + (1.0 - light) * speed * ey, cz + (1.0 - light) * speed * ez
         wx, wy, wz = cx - light * speed * ex, cy - light * speed * ey, cz - light * speed * ez
         if modes.rotation:
             kinds.rotational_energy[i] = spin
-        _write(molecules[i], t, x, y, z, vx, vy, vz)
+        write(molecules[i], t, x, y, z, vx, vy, vz)
         plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
-    _write(molecules[j], t, px, py, pz, wx, wy, wz)
+    write(molecules[j], t, px, py, pz, wx, wy, wz)
     _renew(t, drops, tallies, ledger)
 
 
 @kernel
 def _emit(t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes):
-    """Let a molecule leave one of the drops; return a status and the number of the drop."""
+    """Let a molecule leave one of the drops, unless something stands there; return a status and the drop's number."""
     k = 0
     left = uniform(tallies.random) * ledger.surface[0]
     for each in range(drops.record.size):
-        surface = _surface_left(drops, each)
+        surface = surface_left(drops, each)
         if surface > 0.0:
             k = each
             if left < surface:
@@ -219,53 +162,41 @@ def _emit(t, molecules, events, kinds, cells, calendar, box, walls, drops, talli
     i = ledger.absent[ledger.top[0] - 1]
     j = drops.record[k]
     px, py, pz, wx, wy, wz = position_at(molecules[j], t, box, modes)
-    top = walls.piston[0] + walls.piston[1] * (t - walls.piston[2]) if modes.piston else box.length_z
     drops.held[k] -= 1
-    _resize(drops, k, kinds, modes)
+    resize(drops, k, kinds, modes)
     radius = drops.molecule_radius
     reach = (kinds.table[modes.drops + k].radius + radius) * (1.0 + 1e-12)
+    nz = 2.0 * uniform(tallies.random) - 1.0
+    across = math.sqrt(1.0 - nz * nz)
+    angle = 2.0 * math.pi * uniform(tallies.random)
+    nx, ny = across * math.cos(angle), across * math.sin(angle)
+    size = kinds.table[ledger.kind].size_class
+    x, inside_x = placed(px + reach * nx, radius, box.length_x, box.inverse_x, cells.boundary[size, 0, 0])
+    y, inside_y = placed(py + reach * ny, radius, box.length_y, box.inverse_y, cells.boundary[size, 1, 0])
+    top = ceiling_at(t, box, walls, modes)
+    z, inside_z = placed(pz + reach * nz, radius, top, box.inverse_z, cells.boundary[size, 2, 0])
     found = TAKEN
-    x, y, z, nx, ny, nz = px, py, pz, 0.0, 0.0, 1.0
-    for _ in range(1000):
-        nz = 2.0 * uniform(tallies.random) - 1.0
-        across = math.sqrt(1.0 - nz * nz)
-        angle = 2.0 * math.pi * uniform(tallies.random)
-        nx, ny = across * math.cos(angle), across * math.sin(angle)
-        x, y, z = px + reach * nx, py + reach * ny, pz + reach * nz
-        if box.inverse_x != 0.0:
-            low = cells.boundary[kinds.table[ledger.kind].size_class, 0, 0]
-            x -= math.floor((x - low) / box.length_x) * box.length_x
-        elif not radius <= x <= box.length_x - radius:
-            continue
-        if box.inverse_y != 0.0:
-            low = cells.boundary[kinds.table[ledger.kind].size_class, 1, 0]
-            y -= math.floor((y - low) / box.length_y) * box.length_y
-        elif not radius <= y <= box.length_y - radius:
-            continue
-        if box.inverse_z != 0.0:
-            low = cells.boundary[kinds.table[ledger.kind].size_class, 2, 0]
-            z -= math.floor((z - low) / box.length_z) * box.length_z
-        elif not radius <= z <= top - radius:
-            continue
+    if inside_x and inside_y and inside_z:
         found = room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes)
-        if found != TAKEN:
-            break
     if found in (TAKEN, NO_ROOM):
         drops.held[k] += 1
-        _resize(drops, k, kinds, modes)
-        return (CROWDED if found == TAKEN else ROW_FULL), j
+        resize(drops, k, kinds, modes)
+        if found == NO_ROOM:
+            return ROW_FULL, j
+        _renew(t, drops, tallies, ledger)
+        return DONE, j
     mass, heavy = drops.molecule_mass, kinds.table[modes.drops + k].mass
     light = mass / (mass + heavy)
     flight, spin = evaporate(ledger, tallies.random)
     leave(ledger, flight + spin)
     speed = math.sqrt(2.0 * flight / (heavy * light))
-    ex, ey, ez = _about(nx, ny, nz, tallies.random)
+    ex, ey, ez = about(nx, ny, nz, tallies.random)
     a, b = (1.0 - light) * speed, light * speed
     enter(
         i, t, x, y, z, wx + a * ex, wy + a * ey, wz + a * ez, spin,
         molecules, events, kinds, cells, calendar, box, walls, ledger, modes,
     )  # fmt: skip
-    _write(molecules[j], t, px, py, pz, wx - b * ex, wy - b * ey, wz - b * ez)
+    write(molecules[j], t, px, py, pz, wx - b * ex, wy - b * ey, wz - b * ez)
     _renew(t, drops, tallies, ledger)
     return DONE, j
 
@@ -278,7 +209,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     def begin(kinds, drops, tallies, ledger, now):
         """Make each drop as large as it is, and draw at time ``now`` when the next molecule leaves."""
         for k in range(drops.record.size):
-            _resize(drops, k, kinds, modes)
+            resize(drops, k, kinds, modes)
         _renew(now, drops, tallies, ledger)
 
     @kernel(entry=True)
@@ -309,9 +240,11 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
                 i, t = next_event(calendar)
                 j = np.int64(events[i].partner)
                 if min(np.int64(molecules[i].kind), np.int64(molecules[j].kind)) >= modes.drops:
-                    j = _merge(
+                    status, j = _merge(
                         i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes
                     )
+                    if status != DONE:
+                        return status, done
                     _renew(t, drops, tallies, ledger)
                 else:
                     if np.int64(molecules[i].kind) >= modes.drops:

@@ -54,7 +54,6 @@ class ParcelSet(Parcel):
     """The first kind that is a drop, 0 if none is."""
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
-        n = self._number
         self._fill(position, velocity, rotational_energy)
         self._box = new_box(
             self._sides,
@@ -69,7 +68,7 @@ class ParcelSet(Parcel):
         self._cells: Cells
         self._lay_out()
         depth, i, j = self._overlap(self._molecules, self._kinds, self._cells, self._box)
-        if n > 1 and depth > _OVERLAP:
+        if depth > _OVERLAP:
             raise RefusedError(
                 f"molecules {i} and {j} overlap at the start, by {depth:.3g} of their diameter: "
                 "move them apart or make them smaller"

@@ -14,9 +14,21 @@ from atmosbox.engine.cells import append, overlapped, remove, slot_at
 from atmosbox.engine.plan import plan, size_and_radius
 from atmosbox.engine.random import uniform
 
-__all__ = ["FREE", "NO_ROOM", "TAKEN", "enter", "look_for_room", "room_at", "take_out", "withdraw"]
+__all__ = [
+    "FREE",
+    "NO_ROOM",
+    "TAKEN",
+    "enter",
+    "has_room",
+    "look_for_room",
+    "move_to",
+    "room_at",
+    "take_out",
+    "withdraw",
+]
 
 FREE, TAKEN, NO_ROOM = 0, 1, 2
+_LOOK, _STRIKE, _WRITE = range(3)
 
 
 @kernel
@@ -98,6 +110,83 @@ def room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes):
                     if rx * rx + ry * ry + rz * rz < (radius + other_radius) ** 2:
                         return TAKEN
     return NO_ROOM if full else FREE
+
+
+@kernel
+def has_room(i, j, t, x, y, z, radius, molecules, events, kinds, cells, box, modes):
+    """Tell whether nobody but molecule i is nearer to drop j, in its cells, than if that had another radius."""
+    row = cells.row
+    size = np.int64(kinds.table[molecules[j].kind].size_class)
+    first_x, span_x = overlapped(np.int64(events[j].slot_x), size, 0, cells, modes)
+    first_y, span_y = overlapped(np.int64(events[j].slot_y), size, 1, cells, modes)
+    first_z, span_z = overlapped(np.int64(events[j].slot_z), size, 2, cells, modes)
+    for a in range(first_x, first_x + span_x):
+        for b in range(first_y, first_y + span_y):
+            for c in range(first_z, first_z + span_z):
+                cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
+                start = (cell + c % cells.number_z) * cells.stride
+                for q in range(np.int64(row[start])):
+                    other = np.int64(row[start + 1 + q])
+                    if other in (i, j):
+                        continue
+                    molecule = molecules[other]
+                    dt = t - molecule.clock
+                    rx = x - molecule.x - dt * molecule.vx
+                    ry = y - molecule.y - dt * molecule.vy
+                    rz = z - molecule.z - dt * molecule.vz
+                    if modes.periodic:
+                        rx -= box.length_x * np.rint(rx * box.inverse_x)
+                        ry -= box.length_y * np.rint(ry * box.inverse_y)
+                        if not modes.piston:
+                            rz -= box.length_z * np.rint(rz * box.inverse_z)
+                    reach = radius + kinds.table[molecule.kind].radius
+                    if rx * rx + ry * ry + rz * rz < reach * reach:
+                        return False
+    return True
+
+
+@kernel
+def _rows_of(what, i, size, slots, cells, modes):
+    """Strike molecule i from all cells of three slots, or write it there; tell whether one of them is full."""
+    first_x, span_x = overlapped(np.int64(slots[0]), size, 0, cells, modes)
+    first_y, span_y = overlapped(np.int64(slots[1]), size, 1, cells, modes)
+    first_z, span_z = overlapped(np.int64(slots[2]), size, 2, cells, modes)
+    full = False
+    for a in range(first_x, first_x + span_x):
+        for b in range(first_y, first_y + span_y):
+            for c in range(first_z, first_z + span_z):
+                cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
+                start = (cell + c % cells.number_z) * cells.stride
+                if what == _STRIKE:
+                    remove(cells.row, start, i)
+                elif what == _WRITE:
+                    append(cells.row, start, i)
+                full |= np.int64(cells.row[start]) + 1 >= cells.stride
+    return full
+
+
+@kernel
+def move_to(i, x, y, z, molecules, events, kinds, cells, box, modes):
+    """Bring molecule i to the cells of another place; return that place, in a periodic box, and whether it has room."""
+    size, _ = size_and_radius(i, molecules, kinds, modes)
+    if box.inverse_x != 0.0:
+        x -= math.floor((x - cells.boundary[size, 0, 0]) / box.length_x) * box.length_x
+    if box.inverse_y != 0.0:
+        y -= math.floor((y - cells.boundary[size, 1, 0]) / box.length_y) * box.length_y
+    if box.inverse_z != 0.0:
+        z -= math.floor((z - cells.boundary[size, 2, 0]) / box.length_z) * box.length_z
+    old = np.int64(events[i].slot_x), np.int64(events[i].slot_y), np.int64(events[i].slot_z)
+    new = (
+        slot_at(x, size, 0, cells.last_slot_x, cells, modes),
+        slot_at(y, size, 1, cells.last_slot_y, cells, modes),
+        slot_at(z, size, 2, cells.last_slot_z, cells, modes),
+    )
+    if _rows_of(_LOOK, i, size, new, cells, modes):
+        return x, y, z, False
+    _rows_of(_STRIKE, i, size, old, cells, modes)
+    _rows_of(_WRITE, i, size, new, cells, modes)
+    cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = new
+    return x, y, z, True
 
 
 @kernel
