@@ -137,8 +137,11 @@ def _meeting(ascent: MoistAscent, pressure: float) -> float:
 def lag(ascent: MoistAscent, pressure: float) -> float:
     r"""Return how much too cold the cloud is at a pressure because vapour must find liquid first [K].
 
-    Vapour is left over for the time that it takes to meet liquid, while saturation falls at the rate at which the
-    parcel rises. The heat that it has not yet given up is missing, to air and vapour.
+    Vapour is left over for the time :math:`4 V / A \bar c_v` that it takes to meet liquid, while saturation falls at
+    the rate at which the parcel rises. The heat that it has not yet given up is missing, to air and vapour. And what
+    has condensed makes the droplets warmer than the air, until the molecules of air that hit them have taken its heat
+    along, 3 k for each degree: so the droplets let more vapour go, and more is left over, by :math:`x \ell^2/3` times
+    the time :math:`4 V / A \bar c_a`.
     """
     if pressure >= ascent.base:
         return 0.0
@@ -146,10 +149,12 @@ def lag(ascent: MoistAscent, pressure: float) -> float:
     start = ascent.pressure, ascent.temperature, ascent.total_water
     falling = law.parcel_path([pressure, pressure * (1.0 - step)], *start, nuclei_heat=ascent.nuclei_heat)
     per_log = (falling.vapor[0] - falling.vapor[1]) / step
-    late = float(per_log * ascent.travel / ascent.length * _meeting(ascent, pressure))
     t = float(falling.temperature[0])
-    heat = 1.0 + float(falling.vapor[0]) / law.WATER_MASS_RATIO * _latent(t) ** 2 / 3.5
-    return warmth_of(late, t) / heat
+    share = float(falling.vapor[0]) / law.WATER_MASS_RATIO
+    slower = float(law.mean_speed(1.0, law.WATER_MASS_RATIO) / law.mean_speed(1.0, 1.0))
+    warm = 1.0 + share * _latent(t) ** 2 / 3.0 * slower
+    late = float(per_log * ascent.travel / ascent.length * _meeting(ascent, pressure)) * warm
+    return warmth_of(late, t) / (1.0 + share * _latent(t) ** 2 / 3.5)
 
 
 def rain_scatter(ascent: MoistAscent) -> float:
