@@ -144,6 +144,7 @@ def moist():
     names = [name for name in VARIABLES if name.endswith(("humidity", "vapor_pressure", "_rate", "mixing_ratio"))]
     names += ["water_vapor_partial_pressure", "gas_temperature", "liquid_temperature", "condensed_energy"]
     names += [name for name in VARIABLES if name.endswith(("_molecule_count", "energy_probability_density"))]
+    names += [name for name in VARIABLES if "drop_" in name]
     return dataset(filled([*ALWAYS, *names], coords), coords, attributes())
 
 

@@ -188,7 +188,13 @@ def sounding_of(table: Table) -> Sounding:
     levels, filled = _filled(levels)
     pressure, temperature, dewpoint = (levels.columns[name] for name in REQUIRED)
     height = levels.columns.get("height")
-    check_levels(pressure, temperature, dewpoint, height, lambda level: f"{table.file}, {levels.places[level]}")
+
+    def place(level: int) -> str:
+        return f"{table.file}, {levels.places[level]}"
+
+    for quantity, column in levels.columns.items():  # another level may be the lowest now
+        check_plausible(quantity, column, QUANTITIES[quantity].si, place)
+    check_levels(pressure, temperature, dewpoint, height, place)
     name = shown(" ".join(table.name.split())) or table.file
     source = f"{table.file}, {table.kind}"
     return Sounding(pressure, temperature, dewpoint, height, name, source, (*table.remarks, *left_out, *filled))

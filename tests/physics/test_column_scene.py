@@ -11,6 +11,7 @@ import pytest
 
 from atmosbox import engines, runner
 from atmosbox.engine.parcelset import ParcelSet
+from atmosbox.engines import choice
 from atmosbox.statistics import block_average
 
 
@@ -27,7 +28,7 @@ def facts(engine=engines.EXACT, **settings):
 def ideal(monkeypatch):
     """Return an engine that says of itself that its molecules take no room."""
     each = engines.Engine("roomless", "molecules without volume", lambda: ParcelSet, ideal=True)
-    monkeypatch.setattr(engines, "ENGINES", {**engines.ENGINES, each.name: each})
+    monkeypatch.setattr(choice, "ENGINES", {**engines.ENGINES, each.name: each})
     return engines.EngineChoice(each)
 
 
