@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-__all__ = ["Headline"]
+__all__ = ["CHANCE_ALONE", "Headline"]
+
+CHANCE_ALONE = "none: the model has no other error than chance"
+"""Reason of a tolerance of zero."""
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,11 @@ from atmosbox.engine.liquid import Substance
 from atmosbox.engine.start import maxwell_velocities, rotational_energies
 from atmosbox.units import DRY_AIR, WATER, Scale
 
-__all__ = ["MoistAir", "moist_air", "vapour_molecules", "water"]
+__all__ = ["MoistAir", "moist_air", "nuclei_heat_capacity", "vapour_molecules", "water"]
 
 Array = NDArray[np.float64]
+NUCLEI = 100.0
+"""Heat capacity of the nuclei that droplets form on, in k, where there is air enough."""
 
 
 def water(scale: Scale, diameter: float = 1.0) -> Substance:
@@ -59,6 +61,25 @@ def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) ->
     23
     """
     return round(molecules * vapour_pressure / pressure)
+
+
+def nuclei_heat_capacity(air: int) -> float:
+    """Return the heat capacity of the nuclei that droplets form on, in k.
+
+    It steadies the temperature of the first molecules that condense. It is at most half a percent of the heat
+    capacity at constant pressure of the air, 7/2 k per molecule, and so changes an adiabat little.
+
+    Parameters
+    ----------
+    air
+        Number of molecules of air.
+
+    Examples
+    --------
+    >>> nuclei_heat_capacity(1000), nuclei_heat_capacity(10_000)
+    (17.5, 100.0)
+    """
+    return min(NUCLEI, 0.005 * 3.5 * air)
 
 
 @dataclass(frozen=True)

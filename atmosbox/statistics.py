@@ -70,6 +70,25 @@ def block_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
     return BlockAverage(means.mean(axis=0), error)
 
 
+def short_blocks(lengths: float) -> float:
+    r"""Return by what to multiply a standard error that is read from blocks which know of each other.
+
+    Of a memory that fades as :math:`e^{-t/\tau}` a block of length L shows the share
+    :math:`1 - (1 - e^{-L/\tau}) \tau/L` of the variance of the mean.
+
+    Parameters
+    ----------
+    lengths
+        Length of a block over the memory, :math:`L/\tau` [1].
+
+    Examples
+    --------
+    >>> round(short_blocks(2.0), 3), round(short_blocks(100.0), 3)
+    (1.327, 1.005)
+    """
+    return float(1.0 / np.sqrt(1.0 + np.expm1(-lengths) / lengths))
+
+
 def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
     r"""Return how far a measured distribution may stray from the true one by chance.
 

@@ -110,6 +110,15 @@ class Column:
         column = self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter
         return np.asarray(law.hydrostatic_layers(edges, *column, dimensions=self.dimensions))
 
+    def equilibrium_kT(self, dataset: "xr.Dataset", settings: Settings) -> float:
+        """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
+        if settings.floor == "heat-bath":
+            return 1.0
+        energy = float(dataset.kinetic_energy.values[0] + dataset.potential_energy.values[0])
+        each = energy / self.scale.total_energy / settings.molecules
+        column = self.per_area, self.bottom, self.top, self.room
+        return law.column_temperature(each, *column, dimensions=self.dimensions)
+
     def pressure(self, density: np.ndarray, kT: float) -> np.ndarray:
         """Return the pressure of a gas of these molecules [kT/scale height^3]."""
         pressure = law.gas_pressure_discs if self.dimensions == 2 else law.gas_pressure
@@ -167,30 +176,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
 
 
-def _equilibrium_kT(column: Column, dataset: "xr.Dataset", settings: Settings) -> float:
-    """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
-    if settings.floor == "heat-bath":
-        return 1.0
-    n = settings.molecules
-    energy = float(dataset.kinetic_energy.values[0] + dataset.potential_energy.values[0]) / column.scale.total_energy
-    edges = np.linspace(0.0, column.height, 401)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    low, high = 1e-3, 10.0
-    for _ in range(60):
-        kT = 0.5 * (low + high)
-        share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
-        if n * (0.5 * column.dimensions * kT + float(np.sum(share * middle))) > energy:
-            high = kT
-        else:
-            low = kT
-    return kT
-
-
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return the profiles of the barometric law, and of hydrostatics with the room that molecules take, if any."""
     column = Column(settings, used(dataset))
     scale = column.scale
-    kT = _equilibrium_kT(column, dataset, settings)
+    kT = column.equilibrium_kT(dataset, settings)
     edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
     thick = np.diff(edges)
     reached = (np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom)) / thick
@@ -214,20 +204,24 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 40:
         return ()
-    kT = _equilibrium_kT(column, dataset, settings)
+    kT = column.equilibrium_kT(dataset, settings)
     force = late.wall_pressure.values
     weight = block_average(force[:, 4] - force[:, 5])
     temperature = block_average(late.air_temperature.values)
     expected = column.per_area * column.scale.pressure
-    nothing = "none: the model has no other error than chance"
-    found = [
+    edges = np.linspace(0.0, column.height, 401)
+    share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
+    height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
+    per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
+    climbed = block_average(late.potential_energy.values / per_metre)
+    return (
         Headline(
             "weight_of_the_air",
             float(weight.mean),
             float(weight.standard_error),
             expected,
             0.0,
-            nothing,
+            "none: the model has no other error than chance",
             "Pa",
             "hPa",
             "weight of the air, floor less ceiling",
@@ -243,13 +237,6 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             "K",
             "temperature of the column",
         ),
-    ]
-    edges = np.linspace(0.0, column.height, 401)
-    share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
-    height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
-    per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
-    climbed = block_average(late.potential_energy.values / per_metre)
-    found.append(
         Headline(
             "mean_height",
             float(climbed.mean),
@@ -262,7 +249,6 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             "mean height of the molecules",
         ),
     )
-    return tuple(found)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

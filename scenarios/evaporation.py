@@ -20,18 +20,17 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.liquid import Pool
-from atmosbox.engine.start import random_positions
-from atmosbox.engine.walls import Piston, Specular
 from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.errors import SettingError
-from atmosbox.headline import Headline
+from atmosbox.exchange import AirOverPool, energy_of_those_that_leave, history, temperature_of_those_that_left
+from atmosbox.headline import CHANCE_ALONE, Headline
 from atmosbox.instruments import Air, Leaving, Water
-from atmosbox.moisture import moist_air, water
+from atmosbox.moisture import water
 from atmosbox.panels import Line, Panel
-from atmosbox.rising import AirOverPool
+from atmosbox.piston import moist_parcel
 from atmosbox.scene import Setup
 from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average
+from atmosbox.statistics import block_average, short_blocks
 from atmosbox.units import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -45,7 +44,6 @@ PARTS = 36
 HOTTEST = 647.0
 """Temperature above which nothing saturates, as a pool of one molecule may have for a moment [K]."""
 LATE = "the piston moves a little late"
-NOTHING = "none: the model has no other error than chance"
 FEW = 100
 """With fewer molecules than that to come or go, errors are those of chance events, and not read from their scatter."""
 
@@ -110,8 +108,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     start = _start(settings, ideal=engine.ideal)
     scale, n = start.scale, settings.molecules
     rng = np.random.default_rng(settings.seed)
-    gas = moist_air(n, start.vapour, rng)
-    length = tuple(start.sides + 1.0)
     substance = water(scale)
     driver = FollowPressure(
         [0.0],
@@ -120,18 +116,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         relaxation=start.closing / start.free_time,
         excess=start.excess,
     )
-    parcel = engine.make(
-        random_positions(length, np.ones(n), rng),
-        gas.velocity,
-        length=length,
-        walls=(Specular(),) * 5 + (Piston(),),
-        mass=gas.mass,
-        rotation=gas.rotation,
-        rotational_energy=gas.rotational_energy,
-        seed=settings.seed,
-        driver=driver,
-        liquid=Pool(substance, number=settings.pool, kT=1.0),
-    )
+    pool = Pool(substance, number=settings.pool, kT=1.0)
+    parcel = moist_parcel(engine, n, start.vapour, start.sides, driver=driver, liquid=pool, rng=rng, seed=settings.seed)
     duration = si.duration / scale.time
     end, rest = start.end, start.rest
     left = float(end.liquid)
@@ -145,7 +131,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         samples=3,
         settle=min(_settled(start, settings), FRAMES - 1),
         facts={
-            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in length) + " nm at the start, real size",
+            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in start.sides + 1.0)
+            + " nm at the start, real size",
             "weight of a molecule": "1: every molecule stands for itself",
             "exaggeration": "none"
             if settings.diameter == 0.37
@@ -178,17 +165,6 @@ def _settled(start: AirOverPool, settings: Settings) -> int:
     return math.ceil(min(start.settling / frame, float(FRAMES)))
 
 
-def _temperature_of_those_that_left(dataset: "xr.Dataset") -> float:
-    """Return the temperature of the liquid as those knew it that left it [K]; NaN if nobody did.
-
-    A pool that is lost now and then is made of a molecule or two that came from the gas, and has its temperature.
-    """
-    always = bool(np.isfinite(dataset.liquid_temperature.values).all())
-    warm = (dataset.liquid_temperature if always else dataset.gas_temperature).values
-    rate = dataset.evaporation_rate.values
-    return float(np.average(warm, weights=rate)) if rate.any() else math.nan
-
-
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     """Return where all ends, saturation over the pool as it is now, and who leaves and who stays."""
     start = _start(settings, ideal=used(dataset).ideal)
@@ -196,7 +172,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     frames = np.ones(dataset.sizes["elapsed_time"])
     bounds = dataset.energy_bnds.values
     edges = np.append(bounds[:, 0], bounds[-1, 1])
-    warm = _temperature_of_those_that_left(dataset)
+    warm = temperature_of_those_that_left(dataset)
     known = math.isfinite(warm) and warm > 0.0
     nothing = np.full(len(bounds), math.nan)
     liquid = dataset.liquid_temperature.values
@@ -221,7 +197,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     lost, walk = start.loss(until), start.walk(until)
     steep = start.latent / rest.temperature
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
-    short = _short(start, lasted / BLOCKS)
+    short = short_blocks(lasted / BLOCKS / start.memory)
     rate = start.rate(rest.vapor_pressure, rest.temperature)
     met = rate * lasted
 
@@ -247,17 +223,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     for name in ("condensation", "evaporation"):
         alone = math.sqrt(met) / lasted
         found.append(headline(f"{name}_rate", rate, steep * rate, alone, "s-1", "ns-1", name))
-    return (*found, *_leaver(dataset, start))
-
-
-def _short(start: AirOverPool, block: float) -> float:
-    r"""Return by what to multiply errors that are read from blocks so long [s], which remember each other a little.
-
-    Of a memory that fades as :math:`e^{-t/\tau}` a block of length L shows the share
-    :math:`1 - (1 - e^{-L/\tau}) \tau/L` of the variance of the mean.
-    """
-    lengths = block / (0.5 * (start.exchange + start.free_time) * start.scale.time)
-    return 1.0 / math.sqrt(1.0 + math.expm1(-lengths) / lengths)
+    return (*found, *energy_of_those_that_leave(dataset, start, FEW))
 
 
 def _saturation(
@@ -276,96 +242,48 @@ def _saturation(
     together = late.water_vapor_partial_pressure.values / vapour.value - steep * warm
     error = share * max(short * float(block_average(together, BLOCKS).standard_error), chance / vapour.value)
     tolerance = lost * steep * expected
-    reason = NOTHING if wet else LATE
+    reason = CHANCE_ALONE if wet else LATE
     label = "vapour pressure / saturation"
     return Headline("final_humidity", share, error, expected, tolerance, reason, "1", "percent", label)
 
 
-def _leaver(dataset: "xr.Dataset", start: AirOverPool) -> tuple[Headline, ...]:
-    """Return the mean energy of those that leave, if many have left a pool of many."""
-    left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
-    if min(left, start.pool) < FEW or not np.isfinite(dataset.liquid_temperature.values).all():
-        return ()
-    warm = _temperature_of_those_that_left(dataset)
-    middle, width = dataset.energy.values, np.diff(dataset.energy_bnds.values)[:, 0]
-    share = dataset.leaving_energy_probability_density.values * width
-    mean = float(middle @ share)
-    flux = BOLTZMANN * law.LEAVING_FREEDOM * warm
-    return (
-        Headline(
-            "energy_of_those_that_leave",
-            mean,
-            math.sqrt(float((middle - mean) ** 2 @ share) / left),
-            BOLTZMANN * law.BINDING_TEMPERATURE + flux,
-            flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
-            "a pool of few molecules is warmer when it lets one go",
-            "J",
-            "zJ",
-            "energy of those that leave",
-        ),
-    )
-
-
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return temperatures, vapour pressure and the two rates against time, and the energies of those that leave."""
-    time = "elapsed_time"
+    leave = "leaving_energy_probability_density"
     return (
-        Panel(
-            "line",
+        history(
             "The pool cools, and then the air",
-            (
-                Line(time, "gas_temperature", "air"),
-                Line(time, "liquid_temperature", "pool"),
-                Line(time, "gas_temperature_theory", "enthalpy", "theory"),
-            ),
-            x_label="time",
-            y_label="temperature",
-            y_unit="degC",
-            x_scale="log",
-            averages=PARTS,
-            headlines=("mean_liquid_temperature",),
+            {"gas_temperature": "air", "liquid_temperature": "pool"},
+            "temperature",
+            "degC",
+            parts=PARTS,
+            headline="mean_liquid_temperature",
+            theory="enthalpy",
         ),
-        Panel(
-            "line",
+        history(
             "Vapour rises to what the pool can keep up",
-            (
-                Line(time, "water_vapor_partial_pressure", "vapour"),
-                Line(time, "liquid_saturation_vapor_pressure", "saturation"),
-                Line(time, "water_vapor_partial_pressure_theory", "enthalpy", "theory"),
-            ),
-            x_label="time",
-            y_label="vapour pressure",
-            y_unit="hPa",
-            x_scale="log",
-            averages=PARTS,
-            headlines=("final_humidity",),
+            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation"},
+            "vapour pressure",
+            "hPa",
+            parts=PARTS,
+            headline="final_humidity",
+            theory="enthalpy",
         ),
-        Panel(
-            "line",
+        history(
             "It ends where as many come back as leave",
-            (
-                Line(time, "evaporation_rate", "leave"),
-                Line(time, "condensation_rate", "come back"),
-                Line(time, "condensation_rate_theory", "theory", "theory"),
-            ),
-            x_label="time",
-            y_label="molecules per time",
-            y_unit="ns-1",
-            x_scale="log",
-            averages=PARTS,
-            headlines=("mean_evaporation_rate",),
+            {"condensation_rate": "come back", "evaporation_rate": "leave"},
+            "molecules per time",
+            "ns-1",
+            parts=PARTS,
+            headline="mean_evaporation_rate",
+            theory="theory",
         ),
         Panel(
             "histogram",
             "Only those leave that have far more energy",
             (
-                Line(
-                    "energy",
-                    "leaving_energy_probability_density",
-                    "leave",
-                    error="leaving_energy_probability_density_se",
-                ),
-                Line("energy", "leaving_energy_probability_density_theory", "theory", "theory"),
+                Line("energy", leave, "leave", error=f"{leave}_se"),
+                Line("energy", f"{leave}_theory", "theory", "theory"),
                 Line("energy", "staying_energy_probability_density", "stay", "environment"),
             ),
             x_label="energy of a molecule",

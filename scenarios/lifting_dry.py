@@ -23,11 +23,11 @@ from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
 from atmosbox.engine.walls import Piston, Specular
 from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Environment, Lift
 from atmosbox.panels import Line, Panel
-from atmosbox.rising import CLOSING, size_of_parcel
+from atmosbox.piston import CLOSING, size_of_parcel
+from atmosbox.rising import misfit_panel, refuse_descent
 from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
@@ -65,13 +65,7 @@ class Settings(SceneSettings):
 
     def check(self) -> None:
         """Refuse an ascent that does not go up."""
-        if self.top_pressure > 0.98 * self.pressure:
-            raise SettingError(
-                "top_pressure",
-                f"{self.top_pressure:g} hPa",
-                f"is not below the pressure at the ground, {self.pressure:g} hPa",
-                f"give --set top_pressure={0.3 * self.pressure:.0f}hPa",
-            )
+        refuse_descent(self.top_pressure, self.pressure)
 
 
 def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
@@ -257,19 +251,5 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="km",
             headlines=("lapse_rate_of_the_first_kilometre",),
         ),
-        Panel(
-            "profile",
-            "Parcel less adiabat",
-            (
-                Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus="adiabat_temperature"),
-                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory", minus="adiabat_temperature"),
-            ),
-            x_label="misfit",
-            y_label="pressure",
-            x_unit="K",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-            headlines=tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings)),
-        ),
+        misfit_panel(adiabat, tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings))),
     )

@@ -21,10 +21,17 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.panels import Panel
-from atmosbox.rising import MoistAscent, lifted_headlines, lifted_panels, lifted_theory, rise
+from atmosbox.rising import (
+    MoistAscent,
+    lifted_headlines,
+    lifted_panels,
+    lifted_theory,
+    refuse_descent,
+    refuse_supersaturation,
+    rise,
+)
 from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
 
@@ -61,20 +68,8 @@ class Settings(SceneSettings):
 
     def check(self) -> None:
         """Refuse an ascent that does not go up, and a dewpoint above the temperature."""
-        if self.top_pressure > 0.98 * self.pressure:
-            raise SettingError(
-                "top_pressure",
-                f"{self.top_pressure:g} hPa",
-                f"is not below the pressure at the ground, {self.pressure:g} hPa",
-                f"give --set top_pressure={0.3 * self.pressure:.0f}hPa",
-            )
-        if self.dewpoint > self.temperature:
-            raise SettingError(
-                "dewpoint",
-                f"{self.dewpoint:g} degC",
-                f"is above the temperature, {self.temperature:g} degC: such air is in its cloud already",
-                f"give --set dewpoint={self.temperature:g}degC for saturated air",
-            )
+        refuse_descent(self.top_pressure, self.pressure)
+        refuse_supersaturation(self.dewpoint, self.temperature)
 
 
 def _top(settings: Settings) -> float:

@@ -21,10 +21,9 @@ import numpy as np
 from atmosbox import sounding as air
 from atmosbox import theory as law
 from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.errors import SettingError
 from atmosbox.headline import Headline
 from atmosbox.panels import Line, Panel
-from atmosbox.rising import MoistAscent, error, lifted_headlines, lifted_theory, rise
+from atmosbox.rising import MoistAscent, error, lifted_headlines, lifted_theory, misfit_panel, refuse_descent, rise
 from atmosbox.scene import Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import running_mean, successive_error
@@ -55,13 +54,7 @@ class Settings(SceneSettings):
     def check(self) -> None:
         """Refuse a sounding that cannot be read, and an ascent that does not go up."""
         ground = float(_read(self.sounding).pressure[0])
-        if self.si.top_pressure > 0.98 * ground:
-            raise SettingError(
-                "top_pressure",
-                f"{self.top_pressure:g} hPa",
-                f"is not below the lowest level of the sounding, {ground / 100.0:g} hPa",
-                f"give --set top_pressure={0.003 * ground:.0f}hPa",
-            )
+        refuse_descent(self.top_pressure, ground / 100.0, "the lowest level of the sounding")
 
 
 @functools.lru_cache(maxsize=8)
@@ -261,24 +254,5 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_scale="log",
             y_invert=True,
         ),
-        Panel(
-            "profile",
-            "Parcel less adiabat",
-            (
-                Line(
-                    "parcel_temperature",
-                    "parcel_pressure",
-                    "parcel",
-                    error="parcel_temperature_se",
-                    minus="adiabat_temperature",
-                ),
-                Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory", minus="adiabat_temperature"),
-            ),
-            x_label="misfit",
-            y_label="pressure",
-            x_unit="K",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
-        ),
+        misfit_panel("adiabat"),
     )

@@ -19,9 +19,9 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.errors import SettingError
-from atmosbox.headline import Headline
+from atmosbox.headline import CHANCE_ALONE, Headline
 from atmosbox.panels import Line, Panel
-from atmosbox.rising import MoistAscent, error, lifted_theory, rise
+from atmosbox.rising import MoistAscent, error, lifted_theory, refuse_supersaturation, rise
 from atmosbox.scene import Setup
 from atmosbox.settings import SceneSettings, setting
 from atmosbox.statistics import successive_error
@@ -62,13 +62,7 @@ class Settings(SceneSettings):
                 f"is higher than the lower mountain, {lower:g} km",
                 f"give --set valley={lower:g}km or less",
             )
-        if self.dewpoint > self.temperature:
-            raise SettingError(
-                "dewpoint",
-                f"{self.dewpoint:g} degC",
-                f"is above the temperature, {self.temperature:g} degC: such air is in its cloud already",
-                f"give --set dewpoint={self.temperature:g}degC for saturated air",
-            )
+        refuse_supersaturation(self.dewpoint, self.temperature)
 
 
 def _height(settings: Settings, share: float) -> float:
@@ -161,7 +155,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 lost,
                 float(path.rain[-1]) if error.comparable(ascent) else None,
                 0.0,
-                "none: the model has no other error than chance",
+                CHANCE_ALONE,
                 "kg kg-1",
                 "g kg-1",
                 "rain per dry air",

@@ -20,7 +20,7 @@ from atmosbox import theory as law
 from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions
 from atmosbox.engine.walls import HeatBath
 from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.headline import Headline
+from atmosbox.headline import CHANCE_ALONE, Headline
 from atmosbox.instruments import Air, Speeds
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Series, Setup
@@ -174,7 +174,6 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         crowded = float(law.contact_value(law.packing_fraction(density, 1.0))) * share_of_contacts
         expected *= (1.0 - 1.0 / settings.molecules) / crowded
     mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
-    nothing = "none: the model has no other error than chance"
     shape_error = float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2)))
     # all bins move together where the gas is a little warmer than its walls
     warmth_error = 0.5 * mean_speed * float(temperature.standard_error) / si.temperature
@@ -186,7 +185,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             float(temperature.standard_error),
             si.temperature,
             0.0,
-            nothing,
+            CHANCE_ALONE,
             "K",
             "degC",
             "temperature",

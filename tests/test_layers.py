@@ -42,16 +42,18 @@ LAYERS = {
     "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
     "instruments": Layer("engine units statistics theory", "numpy"),
     "moisture": Layer("engine units theory", "numpy"),
+    "piston": Layer("engine moisture units theory", "numpy", lazily="engines"),
+    "exchange": Layer("engine headline moisture panels piston units theory", "numpy", lazily="xarray"),
     "rising": Layer(
-        "engine engines headline instruments moisture panels scene statistics units theory",
+        "engine engines errors headline instruments moisture panels piston scene statistics units theory",
         "numpy",
         lazily="xarray",
     ),
     "sounding": Layer("errors conversion units", "numpy", lazily="xarray metpy"),
     "scene": Layer("units", lazily="engine instruments"),
     "a scenario": Layer(
-        "engine engines errors units theory statistics settings headline panels instruments moisture rising scene"
-        " sounding",
+        "engine engines errors units theory statistics settings headline panels instruments moisture piston exchange"
+        " rising scene sounding",
         "numpy",
         lazily="xarray",
     ),
@@ -210,7 +212,7 @@ def test_every_layer_of_the_table_has_a_file():
         ("atmosbox/theory.py", "import metpy.calc"),
         ("atmosbox/theory.py", "from metpy.calc import lcl"),
         ("atmosbox/theory.py", "from . import engine"),
-        ("atmosbox/panels.py", "import numpy"),
+        ("atmosbox/panels/line.py", "import numpy"),
         ("atmosbox/conversion.py", "import pint"),
         ("atmosbox/declaration.py", "from atmosbox.variables import VARIABLES"),
         ("atmosbox/variables.py", "from atmosbox.diagnostics import dataset"),

@@ -23,6 +23,7 @@ Read it in this order:
 `lattice`    the same, on a lattice
 `start`      how they move at the start
 `account`    what a box has counted, and whether its energy adds up
+`arrangement` what a box may be given, and what may move its piston
 `parcel`     the box: what it is given, holds and tells
 `box`        the box, as the kernels know it
 `kind`       molecules that are alike
@@ -30,6 +31,7 @@ Read it in this order:
 `parcelset`  the box, advanced exactly
 `substance`  what condenses, and as what
 `liquid`     water that has condensed: a ledger, and its laws
+`room`       where there is room for a molecule
 `phase`      a molecule leaves the box, or comes into it
 `moist_account`  what a box with liquid in it holds
 `moist`      from event to event, with liquid in the box

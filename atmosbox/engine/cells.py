@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from atmosbox.engine._jit import POSITIVE, kernel
 from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine.state import Cells, aligned_records
 
-__all__ = ["ROW", "Grid", "append", "choose_grid", "overlapped", "remove", "size_classes", "slot_at"]
+__all__ = ["ROW", "Grid", "append", "choose_grid", "new_cells", "overlapped", "remove", "size_classes", "slot_at"]
 
 _MARGIN = 1.0 + 1e-7
 ROW = 32
@@ -224,6 +225,28 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
         return around
     cell: NDArray[np.int64] = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, n - 1)
     return cell
+
+
+def new_cells(grid: Grid, slot: NDArray[np.uint16], stride: int) -> Cells:
+    """Return the empty cells of a grid, each with room for ``stride`` - 1 molecules.
+
+    ``slot : (molecule, 3)`` is where it is kept in which slot each molecule stands.
+    """
+    rows = aligned_records(math.prod(grid.number) * stride, np.dtype([("i", "u4")]))
+    return Cells(
+        row=np.ascontiguousarray(rows["i"]),
+        stride=stride,
+        boundary=grid.boundary,
+        first=grid.first,
+        span=grid.span,
+        slot=slot,
+        number_x=grid.number[0],
+        number_y=grid.number[1],
+        number_z=grid.number[2],
+        last_slot_x=grid.last_slot[0],
+        last_slot_y=grid.last_slot[1],
+        last_slot_z=grid.last_slot[2],
+    )
 
 
 @kernel

@@ -21,22 +21,21 @@ from atmosbox.engine.calendar import next_event
 from atmosbox.engine.drop_shape import (
     DropRecords,
     about,
-    ceiling_at,
     nearest,
     placed,
     radius_of,
     resize,
     surface_left,
     within,
-    write,
 )
-from atmosbox.engine.encounter import position_at
-from atmosbox.engine.exact import BUSY, DONE, MET, ROW_FULL, STALLED, proceed
+from atmosbox.engine.encounter import position_at, write
+from atmosbox.engine.exact import BUSY, DONE, LOOK, MET, ROW_FULL, STALLED, piled_up, proceed
 from atmosbox.engine.liquid import AIR_MET, THERMAL, condense, evaporate, exchange, leave
-from atmosbox.engine.moist import renew
-from atmosbox.engine.phase import NO_ROOM, TAKEN, enter, has_room, move_to, room_at, take_out, withdraw
+from atmosbox.engine.moist import ceiling_at, renew
+from atmosbox.engine.phase import enter, take_out, withdraw
 from atmosbox.engine.plan import plan
 from atmosbox.engine.random import uniform
+from atmosbox.engine.room import NO_ROOM, TAKEN, has_room, move_to, room_at
 from atmosbox.engine.state import Modes
 
 __all__ = ["DropRecords", "specialise"]
@@ -62,7 +61,7 @@ def _may_grow(i, j, k, t, x, y, z, molecules, events, kinds, cells, box, walls, 
         return False
     if box.inverse_y == 0.0 and not radius <= y <= box.length_y - radius:
         return False
-    if box.inverse_z == 0.0 and not radius <= z <= ceiling_at(t, box, walls, modes) - radius:
+    if box.inverse_z == 0.0 and not radius <= z <= ceiling_at(t, box, walls, modes)[0] - radius:
         return False
     return has_room(i, j, t, x, y, z, radius, molecules, events, kinds, cells, box, modes)
 
@@ -87,7 +86,7 @@ def _merge(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops
     radius = (drops.cube[a] + drops.cube[b] + (drops.held[a] + drops.held[b]) * drops.molecule_cube) ** (1.0 / 3.0)
     x = within(x, radius, box.length_x, box.inverse_x)
     y = within(y, radius, box.length_y, box.inverse_y)
-    z = within(z, radius, ceiling_at(t, box, walls, modes), box.inverse_z)
+    z = within(z, radius, ceiling_at(t, box, walls, modes)[0], box.inverse_z)
     x, y, z, moved = move_to(i, x, y, z, molecules, events, kinds, cells, box, modes)
     if not moved:
         return ROW_FULL, i
@@ -173,7 +172,7 @@ def _emit(t, molecules, events, kinds, cells, calendar, box, walls, drops, talli
     size = kinds.table[ledger.kind].size_class
     x, inside_x = placed(px + reach * nx, radius, box.length_x, box.inverse_x, cells.boundary[size, 0, 0])
     y, inside_y = placed(py + reach * ny, radius, box.length_y, box.inverse_y, cells.boundary[size, 1, 0])
-    top = ceiling_at(t, box, walls, modes)
+    top = ceiling_at(t, box, walls, modes)[0]
     z, inside_z = placed(pz + reach * nz, radius, top, box.inverse_z, cells.boundary[size, 2, 0])
     found = TAKEN
     if inside_x and inside_y and inside_z:
@@ -217,23 +216,17 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         """Resolve events of molecules and drops up to time ``until``; return a status and how many."""
         done = 0
         looked = 0
-        progress = tallies.progress
         while done < most:
             due = ledger.clock[_LEAVES]
             status, some = proceed(
                 molecules, events, kinds, cells, calendar, box, walls, tallies, min(until, due), most - done, modes
             )
             done += some + 1
-            if done - looked >= 1024:
-                i, t = next_event(calendar)
-                t = min(t, due)
-                if t - progress[0] > box.stall:
-                    progress[0] = t
-                    progress[1] = 0.0
-                progress[1] += done - looked
-                looked = done
-                if progress[1] > 100_000 + 64 * molecules.size:
+            if done - looked >= LOOK:
+                _, t = next_event(calendar)
+                if piled_up(min(t, due), done - looked, molecules.size, box, tallies):
                     return STALLED, done
+                looked = done
             j = -1
             t = due
             if status == MET:

@@ -11,14 +11,12 @@ from atmosbox.engine.random import uniform
 __all__ = [
     "DropRecords",
     "about",
-    "ceiling_at",
     "nearest",
     "placed",
     "radius_of",
     "resize",
     "surface_left",
     "within",
-    "write",
 ]
 
 
@@ -70,19 +68,6 @@ def surface_left(drops, k):
 
 
 @kernel
-def write(molecule, t, x, y, z, vx, vy, vz):
-    """Give a molecule or a drop another place and velocity at time t."""
-    molecule.x = x
-    molecule.y = y
-    molecule.z = z
-    molecule.vx = vx
-    molecule.vy = vy
-    molecule.vz = vz
-    molecule.clock = t
-    molecule.count += 1
-
-
-@kernel
 def nearest(r, length, inverse):
     """Return a distance along an axis, to the nearest image if the axis is periodic."""
     return r - length * np.rint(r * inverse) if inverse != 0.0 else r
@@ -110,12 +95,6 @@ def about(nx, ny, nz, state):
 def within(u, radius, length, inverse):
     """Return a coordinate of a drop, moved inwards if it has grown into a wall."""
     return u if inverse != 0.0 else min(max(u, radius), max(length - radius, radius))
-
-
-@kernel
-def ceiling_at(t, box, walls, modes):
-    """Return the height of the ceiling [length]."""
-    return walls.piston[0] + walls.piston[1] * (t - walls.piston[2]) if modes.piston else box.length_z
 
 
 @kernel

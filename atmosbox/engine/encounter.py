@@ -9,7 +9,7 @@ from atmosbox.engine.contact import resolve_contact, share_energy
 from atmosbox.engine.random import uniform
 from atmosbox.engine.walls import resolve_wall_hit
 
-__all__ = ["hit", "meet", "position_at"]
+__all__ = ["hit", "meet", "position_at", "write"]
 
 
 @kernel
@@ -28,7 +28,8 @@ def position_at(molecule, t, box, modes):
 
 
 @kernel
-def _write(molecule, x, y, z, vx, vy, vz, t):
+def write(molecule, t, x, y, z, vx, vy, vz):
+    """Give a molecule another place and velocity at time t; what was predicted of it is stale."""
     molecule.x = x
     molecule.y = y
     molecule.z = z
@@ -86,8 +87,8 @@ def meet(i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes):
     back = mass / other_mass if modes.mixed else 1.0
     layer = min(max(int((z - 0.5 * rz) * tallies.layer_scale), 0), tallies.virial.size - 1)
     tallies.virial[layer] += mass * (rx * dx + ry * dy + rz * dz)
-    _write(molecules[i], x, y, z, vx + dx, vy + dy, vz + dz, t)
-    _write(molecules[j], px, py, pz, wx - back * dx, wy - back * dy, wz - back * dz, t)
+    write(molecules[i], t, x, y, z, vx + dx, vy + dy, vz + dz)
+    write(molecules[j], t, px, py, pz, wx - back * dx, wy - back * dy, wz - back * dz)
     return vx + dx, vy + dy, vz + dz, px, py, pz, wx - back * dx, wy - back * dy, wz - back * dz
 
 
@@ -142,5 +143,5 @@ def hit(i, wall, t, x, y, z, vx, vy, vz, molecules, kinds, box, walls, tallies, 
         tallies.work[wall] += gained
     else:
         tallies.heat[wall] += gained
-    _write(molecules[i], x, y, z, vx, vy, vz, t)
+    write(molecules[i], t, x, y, z, vx, vy, vz)
     return x, y, z, vx, vy, vz

@@ -25,13 +25,15 @@ from atmosbox.engine.encounter import hit, meet, position_at
 from atmosbox.engine.plan import CEILING, CONTACT, next_move, plan, size_and_radius
 from atmosbox.engine.state import Modes
 
-__all__ = ["BUSY", "CROWDED", "DONE", "MET", "ROW_FULL", "STALLED", "proceed", "specialise"]
+__all__ = ["BUSY", "CROWDED", "DONE", "LOOK", "MET", "ROW_FULL", "STALLED", "piled_up", "proceed", "specialise"]
 
 DONE, BUSY, ROW_FULL, STALLED, MET, CROWDED = range(6)
 """Status: up to the time asked for; not yet; a row must grow; a pile-up; the next event is a molecule that meets
 liquid; one that evaporates finds no place."""
 
 _MANY = 4_000
+LOOK = 1024
+"""After how many events it is asked whether they pile up."""
 FLOOR = 4
 
 
@@ -71,6 +73,17 @@ def _warm_up(calendar, cells, molecules, events, modes):
 
 
 @kernel
+def piled_up(t, events, molecules, box, tallies):
+    """Note so many events up to time t; tell whether there are too many in next to no time."""
+    progress = tallies.progress
+    if t - progress[0] > box.stall:
+        progress[0] = t
+        progress[1] = 0.0
+    progress[1] += events
+    return progress[1] > 100_000 + 64 * molecules
+
+
+@kernel
 def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most, modes):
     """Resolve events up to time ``until``, at most ``most`` of them; return a status and how many.
 
@@ -79,7 +92,6 @@ def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, unti
     """
     done = 0
     status = BUSY
-    progress = tallies.progress
     many = molecules.size >= _MANY
     contacts = entered = left = stale = wall_hits = 0
     while done < most:
@@ -87,14 +99,9 @@ def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, unti
         if not t <= until:
             status = DONE
             break
-        if done & 1023 == 1023:
-            if t - progress[0] > box.stall:
-                progress[0] = t
-                progress[1] = 0.0
-            progress[1] += 1024.0
-            if progress[1] > 100_000 + 64 * molecules.size:
-                status = STALLED
-                break
+        if done & (LOOK - 1) == LOOK - 1 and piled_up(t, LOOK, molecules.size, box, tallies):
+            status = STALLED
+            break
         if many:
             _warm_up(calendar, cells, molecules, events, modes)
         event = events[i]

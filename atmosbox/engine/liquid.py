@@ -48,6 +48,7 @@ __all__ = [
     "Pool",
     "Substance",
     "condense",
+    "direction",
     "evaporate",
     "evaporation_rate",
     "exchange",
@@ -185,6 +186,15 @@ def evaporation_rate(ledger):
 def wait(rate, state):
     """Return how long an event of this rate [1/time] lets itself be waited for [time]."""
     return -math.log(uniform(state)) / rate if rate > 0.0 else math.inf
+
+
+@kernel
+def direction(pool, state):
+    """Return where a molecule leaves the liquid to: by the cosine law upwards from a pool, anywhere from a droplet."""
+    rise = math.sqrt(uniform(state)) if pool else 2.0 * uniform(state) - 1.0
+    across = math.sqrt(max(1.0 - rise * rise, 0.0))
+    angle = 2.0 * math.pi * uniform(state)
+    return across * math.cos(angle), across * math.sin(angle), rise
 
 
 @kernel

@@ -16,13 +16,14 @@ import numpy as np
 
 from atmosbox.engine._jit import kernel
 from atmosbox.engine.calendar import next_event
-from atmosbox.engine.encounter import position_at
-from atmosbox.engine.exact import BUSY, CROWDED, DONE, MET, ROW_FULL, STALLED, proceed
+from atmosbox.engine.encounter import position_at, write
+from atmosbox.engine.exact import BUSY, CROWDED, DONE, LOOK, MET, ROW_FULL, STALLED, piled_up, proceed
 from atmosbox.engine.liquid import (
     AIR_MET,
     LIQUID,
     THERMAL,
     condense,
+    direction,
     evaporate,
     evaporation_rate,
     exchange,
@@ -30,18 +31,19 @@ from atmosbox.engine.liquid import (
     rain_out,
     wait,
 )
-from atmosbox.engine.phase import FREE, TAKEN, enter, look_for_room, withdraw
+from atmosbox.engine.phase import enter, withdraw
 from atmosbox.engine.plan import plan
 from atmosbox.engine.random import uniform
+from atmosbox.engine.room import FREE, TAKEN, look_for_room
 from atmosbox.engine.state import Modes
 
-__all__ = ["renew", "specialise"]
+__all__ = ["ceiling_at", "renew", "specialise"]
 
 _MAY_MEET, _LEAVES, _RAINS = range(3)
 
 
 @kernel
-def _ceiling(t, box, walls, modes):
+def ceiling_at(t, box, walls, modes):
     """Return how high the box is [length] and how fast its ceiling moves [length/time]."""
     if modes.piston:
         return walls.piston[0] + walls.piston[1] * (t - walls.piston[2]), walls.piston[1]
@@ -55,7 +57,7 @@ def _volume(t, diameter, box, walls, ledger, number, modes):
     At any surface molecules crowd as at a wall, Z times as densely as in open space: that is what a pressure of n k T Z
     means (Carnahan and Starling 1969, doi:10.1063/1.1672048). Z is that of spheres of one size.
     """
-    height, _ = _ceiling(t, box, walls, modes)
+    height, _ = ceiling_at(t, box, walls, modes)
     volume = box.length_x - (diameter if box.inverse_x == 0.0 else 0.0)
     volume *= box.length_y - (diameter if box.inverse_y == 0.0 else 0.0)
     volume *= height - (diameter if box.inverse_z == 0.0 else 0.0)
@@ -83,15 +85,6 @@ def _next_meeting(t, molecules, box, walls, tallies, ledger, modes):
 
 
 @kernel
-def _direction(pool, state):
-    """Return a direction: by the cosine law upwards from a floor, any from a droplet."""
-    rise = math.sqrt(uniform(state)) if pool else 2.0 * uniform(state) - 1.0
-    across = math.sqrt(max(1.0 - rise * rise, 0.0))
-    angle = 2.0 * math.pi * uniform(state)
-    return across * math.cos(angle), across * math.sin(angle), rise
-
-
-@kernel
 def _touch(
     i, t, x, y, z, vx, vy, vz, flow, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes
 ):
@@ -114,7 +107,7 @@ def _touch(
     speed = math.sqrt(2.0 / mass)
     relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
     flight, new_spin = exchange(ledger, relative, rotation, tallies.random)
-    ex, ey, ez = _direction(modes.pool, tallies.random)
+    ex, ey, ez = direction(modes.pool, tallies.random)
     speed *= math.sqrt(flight)
     wx, wy, wz = speed * ex, speed * ey, speed * ez + flow
     given = 0.5 * mass * (wx * wx + wy * wy + wz * wz) + new_spin - energy
@@ -130,15 +123,7 @@ def _touch(
     if modes.pool:
         tallies.impulse[4] += mass * vz
         z = kind.radius
-    molecule = molecules[i]
-    molecule.x = x
-    molecule.y = y
-    molecule.z = z
-    molecule.vx = vx
-    molecule.vy = vy
-    molecule.vz = vz
-    molecule.clock = t
-    molecule.count += 1
+    write(molecules[i], t, x, y, z, vx, vy, vz)
     plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
 
 
@@ -150,7 +135,7 @@ def _may_meet(t, molecules, events, kinds, cells, calendar, box, walls, tallies,
     if math.isinf(molecules[i].clock):
         return
     x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
-    height, rise = _ceiling(t, box, walls, modes)
+    height, rise = ceiling_at(t, box, walls, modes)
     flow = rise * z / height
     speed = math.sqrt(vx * vx + vy * vy + (vz - flow) * (vz - flow))
     diameter = 2.0 * kinds.table[molecules[i].kind].radius
@@ -169,7 +154,7 @@ def _may_meet(t, molecules, events, kinds, cells, calendar, box, walls, tallies,
 def _emit(t, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes):
     """Let a molecule leave the liquid; return a status."""
     i = ledger.absent[ledger.top[0] - 1]
-    height, rise = _ceiling(t, box, walls, modes)
+    height, rise = ceiling_at(t, box, walls, modes)
     found, x, y, z = look_for_room(i, t, height, molecules, events, kinds, cells, box, tallies, modes)
     if found != FREE:
         return CROWDED if found == TAKEN else ROW_FULL
@@ -177,7 +162,7 @@ def _emit(t, molecules, events, kinds, cells, calendar, box, walls, tallies, led
     flow = 0.0 if modes.pool else rise * z / height
     flight, spin = evaporate(ledger, tallies.random)
     speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = _direction(modes.pool, tallies.random)
+    ex, ey, ez = direction(modes.pool, tallies.random)
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if flow != 0.0 and energy + ledger.binding_energy > ledger.energy[THERMAL]:
@@ -214,23 +199,17 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         done = 0
         looked = 0
         clock = ledger.clock
-        progress = tallies.progress
         while done < most:
             due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
             status, some = proceed(
                 molecules, events, kinds, cells, calendar, box, walls, tallies, min(until, due), most - done, modes
             )
             done += some + 1
-            if done - looked >= 1024:
-                i, t = next_event(calendar)
-                t = min(t, due)
-                if t - progress[0] > box.stall:
-                    progress[0] = t
-                    progress[1] = 0.0
-                progress[1] += done - looked
-                looked = done
-                if progress[1] > 100_000 + 64 * molecules.size:
+            if done - looked >= LOOK:
+                _, t = next_event(calendar)
+                if piled_up(min(t, due), done - looked, molecules.size, box, tallies):
                     return STALLED, done
+                looked = done
             if modes.pool and status == MET:
                 i, t = next_event(calendar)
                 x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)

@@ -23,6 +23,7 @@ from atmosbox.engine.liquid import (
     THERMAL,
     Ledger,
     condense,
+    direction,
     evaporate,
     evaporation_rate,
     exchange,
@@ -78,15 +79,6 @@ def strike(p, swarm, ledger):
 
 
 @kernel
-def _direction(pool, state):
-    """Return a direction: by the cosine law upwards from a pool, any from a droplet."""
-    rise = math.sqrt(uniform(state)) if pool else 2.0 * uniform(state) - 1.0
-    across = math.sqrt(max(1.0 - rise * rise, 0.0))
-    angle = 2.0 * math.pi * uniform(state)
-    return across * math.cos(angle), across * math.sin(angle), rise
-
-
-@kernel
 def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
     """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
 
@@ -102,7 +94,7 @@ def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
         return True
     relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
     flight, new_spin = exchange(ledger, relative, gas.rotations[kind], state)
-    ex, ey, ez = _direction(pool, state)
+    ex, ey, ez = direction(pool, state)
     speed = math.sqrt(2.0 * flight / mass)
     wx, wy, wz = speed * ex, speed * ey, speed * ez + flow
     given = 0.5 * mass * (wx * wx + wy * wy + wz * wz) + new_spin - energy
@@ -123,7 +115,7 @@ def emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, pool):
     mass = gas.masses[ledger.kind]
     flight, spin = evaporate(ledger, state)
     speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = _direction(pool, state)
+    ex, ey, ez = direction(pool, state)
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if flow != 0.0 and energy + ledger.binding_energy > ledger.energy[THERMAL]:

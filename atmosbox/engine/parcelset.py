@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.box import new_box
 from atmosbox.engine.calendar import new_calendar
-from atmosbox.engine.cells import ROW, choose_grid
+from atmosbox.engine.cells import ROW, choose_grid, new_cells
 from atmosbox.engine.exact import BUSY, CROWDED, ROW_FULL, STALLED, specialise
 from atmosbox.engine.inputs import number
 from atmosbox.engine.kind import classify
@@ -268,21 +268,7 @@ class ParcelSet(Parcel):
             slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
         stride = ROW
         while True:
-            cells = math.prod(grid.number)
-            self._cells = Cells(
-                row=np.ascontiguousarray(aligned_records(cells * stride, np.dtype([("i", "u4")]))["i"]),
-                stride=stride,
-                boundary=grid.boundary,
-                first=grid.first,
-                span=grid.span,
-                slot=slot,
-                number_x=grid.number[0],
-                number_y=grid.number[1],
-                number_z=grid.number[2],
-                last_slot_x=grid.last_slot[0],
-                last_slot_y=grid.last_slot[1],
-                last_slot_z=grid.last_slot[2],
-            )
+            self._cells = new_cells(grid, slot, stride)
             self._calendar = new_calendar(n)
             status = place(
                 self._molecules,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.moisture import vapour_molecules
+from atmosbox.moisture import nuclei_heat_capacity, vapour_molecules
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 
 __all__ = ["RAIN", "MoistAscent"]
@@ -19,8 +19,6 @@ RAIN = 0.05
 
 Few molecules are liquid, and how many scatters: were it faster, each chance surplus would rain before it is gone.
 """
-NUCLEI = 100.0
-"""Heat capacity of the nuclei, in k, that droplets form on; at most half a percent of that of the air."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ class MoistAscent:
     @property
     def nuclei(self) -> float:
         """Heat capacity of the nuclei, in k."""
-        return min(NUCLEI, 0.005 * 3.5 * (self.molecules - self.vapour))
+        return nuclei_heat_capacity(self.molecules - self.vapour)
 
     @property
     def nuclei_heat(self) -> float:

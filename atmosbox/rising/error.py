@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
+from atmosbox.piston import CLOSING, size_of_parcel
 from atmosbox.rising.ascent import RAIN, MoistAscent
-from atmosbox.rising.size import CLOSING, size_of_parcel
 
 __all__ = [
     "blur",

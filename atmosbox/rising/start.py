@@ -9,22 +9,18 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.liquid import Mist
-from atmosbox.engine.start import random_positions
-from atmosbox.engine.walls import Piston, Specular
 from atmosbox.engines import EngineChoice
 from atmosbox.instruments import Air, Environment, MoistLift, Water
-from atmosbox.moisture import moist_air, water
+from atmosbox.moisture import water
+from atmosbox.piston import CLOSING, moist_parcel, size_of_parcel
 from atmosbox.rising.ascent import RAIN, MoistAscent
 from atmosbox.rising.error import haste, least_cloud, walk
-from atmosbox.rising.size import CLOSING, size_of_parcel
 from atmosbox.scene import Setup
 from atmosbox.units import DRY_AIR
 
 __all__ = ["rise"]
 
 Array = NDArray[np.float64]
-
-
 Profile = Callable[[float], float]
 
 
@@ -61,7 +57,6 @@ def rise(
     mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
     if engine.ideal:  # nobody is crowded towards anybody
         mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
-    gas = moist_air(n, ascent.vapour, rng)
     duration = ascent.length * mean_free_time
     shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
     driver = FollowPressure(
@@ -71,26 +66,15 @@ def rise(
         relaxation=CLOSING,
         excess=excess,
     )
-    length = tuple(sides + 1.0)
-    parcel = engine.make(
-        random_positions(length, np.ones(n), rng),
-        gas.velocity,
-        length=length,
-        walls=(Specular(),) * 5 + (Piston(),),
-        mass=gas.mass,
-        rotation=gas.rotation,
-        rotational_energy=gas.rotational_energy,
-        seed=seed,
-        driver=driver,
-        liquid=Mist(
-            water(scale),
-            kT=1.0,
-            nuclei=ascent.nuclei,
-            rain=RAIN / mean_free_time if ascent.rains else 0.0,
-            keeps=ascent.keeps,
-            area=ascent.area * float(sides[0] * sides[1]),
-        ),
+    mist = Mist(
+        water(scale),
+        kT=1.0,
+        nuclei=ascent.nuclei,
+        rain=RAIN / mean_free_time if ascent.rains else 0.0,
+        keeps=ascent.keeps,
+        area=ascent.area * float(sides[0] * sides[1]),
     )
+    parcel = moist_parcel(engine, n, ascent.vapour, sides, driver=driver, liquid=mist, rng=rng, seed=seed)
     lasted = duration * scale.time
     environment = Environment(
         height=lambda time: height(min(time / lasted, 1.0)),
@@ -111,7 +95,8 @@ def rise(
         (Air(), Water(), MoistLift(driver, environment, curve, lambda p: walk(ascent, p))),
         samples=looks,
         facts={
-            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in length) + " nm at the start, real size",
+            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)
+            + " nm at the start, real size",
             "weight of a molecule": "1: every molecule stands for itself",
             "exaggeration": f"molecules {ascent.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",

@@ -17,7 +17,7 @@ from atmosbox.statistics import successive_error
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["lifted_headlines", "lifted_panels", "lifted_theory"]
+__all__ = ["lifted_headlines", "lifted_panels", "lifted_theory", "misfit_panel"]
 
 Array = NDArray[np.float64]
 BLOCK = 5
@@ -71,27 +71,35 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
             y_scale="log",
             y_invert=True,
         ),
-        Panel(
-            "profile",
-            "Parcel less adiabat",
-            (
-                Line(
-                    "parcel_temperature",
-                    "parcel_pressure",
-                    "parcel",
-                    error="parcel_temperature_se",
-                    minus="adiabat_temperature",
-                ),
-                Line("adiabat_temperature", "parcel_pressure", adiabat, "theory", minus="adiabat_temperature"),
-            ),
-            x_label="misfit",
-            x_unit="K",
-            headlines=tuple(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]),
-            y_label="pressure",
-            y_unit="hPa",
-            y_scale="log",
-            y_invert=True,
+        misfit_panel(adiabat, tuple(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2])),
+    )
+
+
+def misfit_panel(adiabat: str, headlines: tuple[str, ...] = ()) -> Panel:
+    """Return temperature less that of the adiabat, with the error bar, against pressure.
+
+    Parameters
+    ----------
+    adiabat
+        What the adiabat is called.
+    headlines
+        Names of the numbers that are written into it.
+    """
+    parcel, theory = "parcel_temperature", "adiabat_temperature"
+    return Panel(
+        "profile",
+        "Parcel less adiabat",
+        (
+            Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus=theory),
+            Line(theory, "parcel_pressure", adiabat, "theory", minus=theory),
         ),
+        x_label="misfit",
+        x_unit="K",
+        y_label="pressure",
+        y_unit="hPa",
+        y_scale="log",
+        y_invert=True,
+        headlines=headlines,
     )
 
 

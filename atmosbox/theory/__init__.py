@@ -16,6 +16,7 @@ speed               how fast are they
 wall                what hits a wall and what leaves it; the heat between two walls in a very thin gas
 noise               how much does an honest measurement scatter
 barometric          how does a gas thin out with height
+column_temperature  how warm a column comes to rest that no heat enters
 hydrostatic         the same for spheres and discs that take up room
 lifting             what becomes of a parcel that is lifted, squeezed or held at its temperature
 ascent              what its haste, and the room of its molecules, add to that
@@ -57,6 +58,7 @@ from atmosbox.theory.collision import (
     mean_free_path,
     mean_free_time,
 )
+from atmosbox.theory.column_temperature import column_temperature
 from atmosbox.theory.disc import (
     FREEZING_PACKING_FRACTION_DISCS,
     compressibility_factor_discs,
@@ -186,6 +188,7 @@ __all__ = [
     "column_floor_ratio",
     "column_heat_capacity",
     "column_mean_height",
+    "column_temperature",
     "column_top_ratio",
     "column_weight",
     "compressibility_factor",

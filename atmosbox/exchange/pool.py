@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.engine.lift import stiffness
 from atmosbox.moisture import vapour_molecules
-from atmosbox.rising.size import size_of_parcel
+from atmosbox.piston import size_of_parcel
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 
 __all__ = ["AirOverPool"]
@@ -78,6 +78,11 @@ class AirOverPool:
         diffusing = 12.0 * height**2 / (math.pi**2 * self.free_time * speed**2)
         self.closing = max(CLOSING * self.free_time, 3.0 * height / math.sqrt(1.4))
         self.settling = 5.0 * max(self.exchange + diffusing, self.closing)
+
+    @property
+    def memory(self) -> float:
+        """How long the number of molecules of vapour remembers a chance surplus [s]."""
+        return 0.5 * (self.exchange + self.free_time) * self.scale.time
 
     @property
     def end(self) -> law.EvaporationEquilibrium:

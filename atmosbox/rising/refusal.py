@@ -1,0 +1,64 @@
+"""What a parcel that is to be lifted may not be."""
+
+from __future__ import annotations
+
+from atmosbox.errors import SettingError
+
+__all__ = ["refuse_descent", "refuse_supersaturation"]
+
+
+def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "the pressure at the ground") -> None:
+    """Refuse an ascent that does not go up.
+
+    Parameters
+    ----------
+    top_pressure, ground_pressure
+        Pressure where it ends and where it begins [hPa].
+    ground
+        What the second is called.
+
+    Raises
+    ------
+    SettingError
+        If the top is less than 2 % below the ground.
+
+    Examples
+    --------
+    >>> refuse_descent(990.0, 1000.0)
+    Traceback (most recent call last):
+        ...
+    atmosbox.errors.SettingError: top_pressure = 990 hPa is not below the pressure at the ground, 1000 hPa:
+    give --set top_pressure=300hPa.
+    """
+    if top_pressure > 0.98 * ground_pressure:
+        raise SettingError(
+            "top_pressure",
+            f"{top_pressure:g} hPa",
+            f"is not below {ground}, {ground_pressure:g} hPa",
+            f"give --set top_pressure={0.3 * ground_pressure:.0f}hPa",
+        )
+
+
+def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
+    """Refuse a dewpoint above the temperature, both in degC.
+
+    Raises
+    ------
+    SettingError
+        If there is more vapour than saturates the air.
+
+    Examples
+    --------
+    >>> refuse_supersaturation(26.0, 25.0)
+    Traceback (most recent call last):
+    ...
+    atmosbox.errors.SettingError: dewpoint = 26 degC is above the temperature, 25 degC:
+    such air is in its cloud already: give --set dewpoint=25degC for saturated air.
+    """
+    if dewpoint > temperature:
+        raise SettingError(
+            "dewpoint",
+            f"{dewpoint:g} degC",
+            f"is above the temperature, {temperature:g} degC: such air is in its cloud already",
+            f"give --set dewpoint={temperature:g}degC for saturated air",
+        )

@@ -1,0 +1,72 @@
+"""How warm a column comes to rest that no heat enters: where its energy goes, into motion and into height."""
+
+import numpy as np
+
+from atmosbox.theory.hydrostatic import hydrostatic_layers
+
+__all__ = ["column_temperature"]
+
+_LAYERS = 400
+
+
+def column_temperature(
+    energy: float,
+    molecules_per_area: float,
+    bottom: float,
+    top: float,
+    diameter: float = 0.0,
+    *,
+    mass: float = 1.0,
+    gravity: float = 1.0,
+    dimensions: int = 3,
+) -> float:
+    r"""Return the temperature kT at which molecules have so much energy each, :math:`\tfrac{d}{2} kT + m g \bar z`.
+
+    The mean height rises with temperature, so there is one.
+
+    Parameters
+    ----------
+    energy
+        Kinetic and potential energy per molecule [energy].
+    molecules_per_area
+        As in :func:`hydrostatic_layers` [length^-2; in a plane, length^-1].
+    bottom, top
+        Lowest and highest place of a molecule's centre [length].
+    diameter
+        Diameter of a molecule [length]; zero for an ideal gas.
+    mass, gravity
+        Mass of a molecule [mass] and acceleration of gravity [length time^-2].
+    dimensions
+        3, or 2 for discs in a plane.
+
+    Returns
+    -------
+    float
+        Temperature as an energy [energy].
+
+    Raises
+    ------
+    ValueError
+        If the column would freeze at its floor, or is so dense that even half of the temperature of points is too warm.
+
+    Examples
+    --------
+    In a column without end half of the energy of points, 5/2 kT each, would be 3/2 motion and 1 height:
+
+    >>> round(column_temperature(2.5, 1.0, 0.0, 60.0), 3)
+    0.999
+    """
+    from scipy.optimize import brentq
+
+    edges = np.linspace(bottom, top, _LAYERS + 1)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+
+    def missing(kT: float) -> float:
+        column = molecules_per_area, bottom, top, kT, mass, gravity, diameter
+        share = hydrostatic_layers(edges, *column, dimensions=dimensions) * np.diff(edges) / molecules_per_area
+        return 0.5 * dimensions * kT + mass * gravity * float(np.sum(share * middle)) - energy
+
+    # all of it may be motion; in a high column of points one kT a molecule is height, of spheres a little more
+    most = 2.0 * energy / dimensions
+    kT: float = brentq(missing, 0.5 * most * dimensions / (dimensions + 2.0), most, xtol=1e-14 * energy)
+    return kT
