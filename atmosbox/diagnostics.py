@@ -168,7 +168,7 @@ def dataset(
     given = {dim: names for dim, names in _LABELS.items() if sizes.get(dim) == len(names)} | dict(coords)
     axes = {name: _coordinate(name, values, time_unit) for name, values in given.items()}
     for dim in sizes:
-        if dim not in axes and dim != "molecule":
+        if dim not in axes and dim not in ("molecule", "drop"):
             raise KeyError(f"the dimension {dim!r} has no coordinate")
     for name in axes:
         if f"{name}_bnds" in axes:

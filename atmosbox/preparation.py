@@ -112,7 +112,7 @@ def prepare(
         checked = module.Settings.from_user({**picked.sets, **own})
         engine = picked.way.engine
     chosen = choose(EXACT if engine is None else engine)
-    if chosen.name != EXACT.name and "engine" not in inspect.signature(module.build).parameters:
+    if chosen != EXACT and "engine" not in inspect.signature(module.build).parameters:
         raise SettingError(
             "engine", str(chosen), f"is not for the scene {os.fspath(scene)}, whose build takes no engine",
             f"give --engine {EXACT}, or let its build take one: build(settings, engine)",

@@ -11,6 +11,7 @@ from atmosbox.units import Scale
 if TYPE_CHECKING:
     from atmosbox.engine.parcel import Parcel
     from atmosbox.instruments import Instrument
+    from atmosbox.knob import Knob
 
 __all__ = ["Series", "Setup"]
 
@@ -39,6 +40,10 @@ class Setup:
         Unit of the elapsed time in the file: ``s``, ``ns`` or ``ps``.
     facts
         Lines of the model card that depend on the settings: the scale, the noise to expect.
+    knobs
+        What may be turned while the box runs, in ``atmosbox live``.
+    ends
+        Whether the run comes to an end of its own, as an ascent at its top; else it could go on for ever.
 
     Raises
     ------
@@ -62,6 +67,8 @@ class Setup:
     settle: int = 0
     time_unit: str = "ns"
     facts: Mapping[str, str] = field(default_factory=dict)
+    knobs: tuple[Knob, ...] = ()
+    ends: bool = False
 
     def __post_init__(self) -> None:
         if self.frames < 1 or self.samples < 1 or not 0 <= self.settle < self.frames or not self.duration > 0.0:
@@ -71,6 +78,10 @@ class Setup:
     def frame(self) -> float:
         """Length of a frame [reduced time]."""
         return self.duration / self.frames
+
+    def moment(self, frame: int, look: int) -> float:
+        """Return when the molecules are looked at [reduced time]: the looks of a frame count from 1, frames from 0."""
+        return (frame + 1) * self.frame if look == self.samples else (frame + look / self.samples) * self.frame
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,10 @@ VARIABLES: dict[str, Variable] = {
         cell_methods=_POINT, comment=_SUM, dtype="i8",
     ),
     **_declared(_TIME, ("work_by_piston", "J", "work done on the molecules by the piston"),
+                ("work_by_gravity", "J", "energy given to the molecules by changes of gravity"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
+    **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, which was changed by hand"),
+                cell_methods=_POINT),
     **_declared((*_TIME, "wall"), ("heat_from_wall", "J", "heat given to the molecules by the wall"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
     **_declared((*_TIME, "wall"), ("wall_pressure", "Pa", "pressure of the air on the wall", "air_pressure"),
@@ -193,6 +196,16 @@ VARIABLES: dict[str, Variable] = {
                 cell_methods=_POINT, dtype="f4"),
     **_declared(_MOLECULE, ("species", "", "species of the molecule"),
                 dtype="i1", flags=("dry_air", "water")),
+    **_declared(_MOLECULE, ("molecule_mass", "kg", "mass of the molecule"), ledger=True),
+    **_declared(_MOLECULE, ("molecule_diameter", "m", "diameter with which the molecule collides"), ledger=True),
+    # The box around them, and the drops in it; those that have merged into others have no position
+    **_declared((*_TIME, "axis"), ("box_side", "m", "length of the box at this time"),
+                cell_methods=_POINT, ledger=True),
+    **_declared(("wall",), ("wall_law", "", "what the wall does to a molecule that hits it"),
+                dtype="i1", flags=("specular", "periodic", "heat_bath", "piston", "pool")),
+    **_declared((*_TIME, "drop", "axis"), ("drop_position", "m", "position of the middle of the drop"),
+                cell_methods=_POINT),
+    **_declared((*_TIME, "drop"), ("drop_radius", "m", "radius of the drop"), cell_methods=_POINT),
 }  # fmt: skip
 """Every variable of a file by its name."""
 

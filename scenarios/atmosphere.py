@@ -25,6 +25,7 @@ from atmosbox.engine.walls import HeatBath, Periodic, Specular
 from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Layers
+from atmosbox.knob import gravity, wall_temperature
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
@@ -105,15 +106,15 @@ class Column:
         self.bottom = 0.5 * self.diameter
         self.top = self.height - self.bottom
 
-    def density(self, edges: np.ndarray, kT: float, diameter: float) -> np.ndarray:
+    def density(self, edges: np.ndarray, kT: float, diameter: float, gravity: float = 1.0) -> np.ndarray:
         """Return the mean number density of layers in equilibrium [1/scale height^3]."""
-        column = self.per_area, self.bottom, self.top, kT, 1.0, 1.0, diameter
+        column = self.per_area, self.bottom, self.top, kT, 1.0, gravity, diameter
         return np.asarray(law.hydrostatic_layers(edges, *column, dimensions=self.dimensions))
 
     def equilibrium_kT(self, dataset: "xr.Dataset", settings: Settings) -> float:
         """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
         if settings.floor == "heat-bath":
-            return 1.0
+            return float(dataset.wall_temperature.values[-1, 4]) / self.scale.temperature
         energy = float(dataset.kinetic_energy.values[0] + dataset.potential_energy.values[0])
         each = energy / self.scale.total_energy / settings.molecules
         column = self.per_area, self.bottom, self.top, self.room
@@ -173,6 +174,12 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K at every look",
         },
+        knobs=(
+            wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
+            gravity(parcel, scale, settings, low=0.0, high=30.0),
+        )
+        if settings.floor == "heat-bath"
+        else (),
     )
 
 
@@ -184,8 +191,9 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
     thick = np.diff(edges)
     reached = (np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom)) / thick
-    density = column.density(edges, kT, column.room)
-    ideal = column.density(edges, kT, 0.0)
+    pull = float(dataset.gravity.values[-1]) / scale.acceleration if "gravity" in dataset else 1.0
+    density = column.density(edges, kT, column.room, pull)
+    ideal = column.density(edges, kT, 0.0, pull)
     pressure = column.pressure(density / reached, kT) * reached
     return {
         "number_density_theory": density * scale.number_density,

@@ -2,8 +2,8 @@
 
 Moist air of real density between walls of one temperature, with more vapour in it than it can hold. Two
 things are counted: the molecules of vapour that meet liquid and stay, and those that leave it. The first rate
-falls while vapour is used up, the second does not care, and where they meet the air is saturated: the vapour
-pressure is then e_s(T), the relative humidity 100 %. No rule says so.
+falls while vapour is used up, the second depends on the temperature of the liquid alone, and where they meet
+the air is saturated: the vapour pressure is then e_s(T), the relative humidity 100 %. No rule says so.
 
 Modelled: hard molecules of air and water at real density; droplets too fine to draw, of one temperature and a
 given area, that every molecule of vapour sticks to which meets them; a binding energy and two heat capacities,
@@ -25,6 +25,7 @@ from atmosbox.errors import SettingError
 from atmosbox.exchange import MoistBox, history
 from atmosbox.headline import CHANCE_ALONE, Headline
 from atmosbox.instruments import Air, DropSizes, Water
+from atmosbox.knob import wall_temperature
 from atmosbox.moisture import moist_air, nuclei_heat_capacity, water
 from atmosbox.panels import Panel
 from atmosbox.scene import Setup
@@ -59,7 +60,7 @@ class Settings(SceneSettings):
     humidity: float = setting(150.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
     area: float = setting(2.0, "1", "area of the mist, in faces of the box", low=0.01, high=100.0)
     drops: int = setting(0, "1", "number of nuclei of drops that can be seen; 0 for a mist", low=0, high=50)
-    drop_size: float = setting(8.0, "1", "how many times wider the drops are than real ones", low=1.0, high=20.0)
+    drop_size: float = setting(6.0, "1", "how many times wider the drops are than real ones", low=1.0, high=20.0)
     duration: float = setting(40.0, "ns", "how long to watch", low=0.01, high=1e5)
 
     def check(self) -> None:
@@ -136,6 +137,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "time to condense": f"{memory * 1e9:.2g} ns",
             "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % at every look",
         },
+        knobs=(wall_temperature(parcel, scale, settings, low=-20.0, high=60.0),),
     )
 
 
@@ -150,15 +152,22 @@ def _faces(settings: Settings, start: MoistBox) -> float:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return saturation, and the rate at which its vapour meets the liquid."""
-    frames = np.ones(dataset.sizes["elapsed_time"])
+    """Return saturation at the walls' warmth, and the rate at which its vapour meets the liquid."""
     start = _start(settings, ideal=used(dataset).ideal)
-    area = dataset.drop_area.values if settings.drops else settings.area * start.face * frames
+    walls = dataset.wall_temperature.values[:, 0]
+    warmths, which = np.unique(walls, return_inverse=True)
+    share = np.array([start.share_at(float(warmth)) for warmth in warmths])[which]
+    flux = np.array([start.flux_at(float(warmth)) for warmth in warmths])[which]
+    area = dataset.drop_area.values if settings.drops else np.full(walls.size, settings.area * start.face)
+    if settings.drops:
+        held, drops = dataset.liquid_molecule_count.values, dataset.drop_count.values
+        share = share * start.over_drops(held, drops, settings.drop_size * MOLECULE)
+        flux = flux * (held + 1.0) / (held + drops)  # not all have one to give
     return {
-        "water_vapor_partial_pressure_theory": start.share * start.saturated * frames,
-        "relative_humidity_theory": start.share * frames,
-        "condensation_rate_theory": start.flux * area,
-        "air_temperature_theory": settings.si.temperature * frames,
+        "water_vapor_partial_pressure_theory": share * np.asarray(law.saturation_vapor_pressure(walls)),
+        "relative_humidity_theory": share,
+        "condensation_rate_theory": flux * area,
+        "air_temperature_theory": walls,
     }
 
 

@@ -25,6 +25,7 @@ from atmosbox.engine.walls import Piston, Specular
 from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.headline import Headline
 from atmosbox.instruments import Air, Environment, Lift
+from atmosbox.knob import altitude
 from atmosbox.panels import Line, Panel
 from atmosbox.piston import CLOSING, size_of_parcel
 from atmosbox.rising import misfit_panel, refuse_descent
@@ -145,6 +146,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
             "error by the finite speed": f"{warmth:.2g} K at the top",
         },
+        knobs=(altitude(parcel, driver, lambda share: environment.height(share * duration * scale.time)),),
+        ends=True,
     )
 
 

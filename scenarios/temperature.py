@@ -22,6 +22,7 @@ from atmosbox.engine.walls import HeatBath
 from atmosbox.engines import EXACT, EngineChoice, used
 from atmosbox.headline import CHANCE_ALONE, Headline
 from atmosbox.instruments import Air, Speeds
+from atmosbox.knob import wall_temperature
 from atmosbox.panels import Line, Panel
 from atmosbox.scene import Series, Setup
 from atmosbox.settings import SceneSettings, setting
@@ -131,21 +132,21 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "mean free path": f"{free_path * scale.length * 1e9:.3g} nm",
             "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K at every look",
         },
+        knobs=(wall_temperature(parcel, scale, settings, low=-200.0, high=500.0),),
     )
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return Maxwell's curve, the pressure n k T Z and the noise of a small thermometer."""
-    si = settings.si
+    """Return Maxwell's curve, the pressure n k T Z and the noise of a small thermometer, all at the walls' warmth."""
     scale, density, _, factor = _start(settings, ideal=used(dataset).ideal)
-    frames = np.ones(dataset.sizes["elapsed_time"])
+    walls = dataset.wall_temperature.values[:, 0]
     pressure = density * factor * scale.pressure
     return {
-        "air_temperature_theory": si.temperature * frames,
-        "air_temperature_noise": float(law.temperature_noise(settings.molecules, 3, si.temperature)) * frames,
-        "air_pressure_theory": pressure * frames,
+        "air_temperature_theory": walls,
+        "air_temperature_noise": np.asarray(law.temperature_noise(settings.molecules, 3, walls)),
+        "air_pressure_theory": pressure * walls / scale.temperature,
         "speed_probability_density_theory": law.maxwell_speed_density(
-            dataset.speed.values, BOLTZMANN * si.temperature, DRY_AIR.molecule_mass
+            dataset.speed.values, BOLTZMANN * float(walls[-1]), DRY_AIR.molecule_mass
         ),
     }
 

@@ -12,7 +12,9 @@ Timings are never tests; they live in ``benchmarks/``. Every warning is an error
 """
 
 import os
+import shutil
 
+import pytest
 from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "agg")
@@ -34,3 +36,41 @@ def pytest_collection_modifyitems(config, items):
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in left_out]
+
+
+BROWSER_FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--enable-unsafe-swiftshader",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+]
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+def name_of_browser():
+    """Return the browser that `ATMOSBOX_BROWSER` names, else one of this computer, None if it has none."""
+    wanted = os.environ.get("ATMOSBOX_BROWSER")
+    return wanted or next((found for name in BROWSERS if (found := shutil.which(name))), None)
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """A Chromium without a window, for all tests.
+
+    Without a browser they are skipped; where `ATMOSBOX_BROWSER` names one, as `.ci/run` does, it must be there.
+    """
+    path = name_of_browser()
+    if path is None:
+        pytest.skip("no browser: install chromium (apt-get install chromium), or name one in ATMOSBOX_BROWSER")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=path, args=BROWSER_FLAGS)
+        yield chromium
+        chromium.close()

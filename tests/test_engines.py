@@ -20,7 +20,7 @@ def test_an_engine_is_what_it_says_and_knows_its_options(name):
     parcel = engine.parcel()
     assert issubclass(parcel, Parcel)
     assert parcel.engine == name
-    known = inspect.signature(parcel.__init__).parameters
+    known = {**inspect.signature(Parcel.__init__).parameters, **inspect.signature(parcel.__init__).parameters}
     for option in engine.parameters:
         assert option.name in known
         if option.name not in ("scheme", "cell"):  # what suits the box, and what stands in place of another
@@ -28,7 +28,14 @@ def test_an_engine_is_what_it_says_and_knows_its_options(name):
 
 
 @pytest.mark.parametrize(
-    "text", ["exact", "stepped:delta=0.02,motion=euler", "dsmc:dt=0.5,threads=2", "classic:closing_only=off"]
+    "text",
+    [
+        "exact",
+        "exact:collisions=off",
+        "stepped:delta=0.02,motion=euler",
+        "dsmc:dt=0.5,threads=2",
+        "classic:closing_only=off",
+    ],
 )
 def test_a_choice_is_spelled_as_it_is_read(text):
     assert str(choose(text)) == text
@@ -41,7 +48,7 @@ def test_a_choice_is_spelled_as_it_is_read(text):
         ("exakt", "give --engine exact"),
         ("", "give --engine exact"),
         ("stepped:", "give --engine stepped"),
-        ("exact:delta=1", "which has no options"),
+        ("exact:delta=1", "give --engine exact:collisions=on"),
         ("stepped:delt=1", "give --engine stepped:delta=0.05"),
         ("stepped:delta", "give --engine stepped:delta=0.05"),
         ("stepped:delta=soon", "give --engine stepped:delta="),
@@ -82,8 +89,16 @@ def test_a_scene_without_engines_runs_on_the_exact_one_alone(tmp_path):
         encoding="utf-8",
     )
     assert runner.prepare(scene, {}).engine is EXACT
-    with pytest.raises(SettingError, match="takes no engine"):
-        runner.prepare(scene, {}, engine="stepped")
+    for engine in ("stepped", "exact:collisions=off"):
+        with pytest.raises(SettingError, match="takes no engine"):
+            runner.prepare(scene, {}, engine=engine)
+
+
+def test_without_collisions_nobody_meets_and_theory_counts_no_room():
+    made = runner.run("temperature", molecules=50, duration="1 ns", engine="exact:collisions=off")
+    assert not made.collision_count.values.any()
+    assert made.wall_hit_count.values[-1] > 0
+    assert used(made).ideal is True
 
 
 def test_an_engine_that_cannot_do_a_scene_says_why(tmp_path, monkeypatch):

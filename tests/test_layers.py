@@ -42,30 +42,51 @@ LAYERS = {
     "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
     "instruments": Layer("engine units statistics theory", "numpy"),
     "moisture": Layer("engine units theory", "numpy"),
+    "knob": Layer("conversion", "numpy", lazily="engine settings units"),
     "piston": Layer("engine moisture units theory", "numpy", lazily="engines"),
     "exchange": Layer("engine headline moisture panels piston units theory", "numpy", lazily="xarray"),
     "rising": Layer(
-        "engine engines errors headline instruments moisture panels piston scene statistics units theory",
+        "engine engines errors headline instruments knob moisture panels piston scene statistics units theory",
         "numpy",
         lazily="xarray",
     ),
     "sounding": Layer("errors conversion units", "numpy", lazily="xarray metpy"),
-    "scene": Layer("units", lazily="engine instruments"),
+    "scene": Layer("units", lazily="engine instruments knob"),
     "a scenario": Layer(
-        "engine engines errors units theory statistics settings headline panels instruments moisture piston exchange"
-        " rising scene sounding",
+        "engine engines errors units theory statistics settings headline panels instruments knob moisture piston"
+        " exchange rising scene sounding",
         "numpy",
         lazily="xarray",
     ),
     "scenarios": Layer("errors"),
     "preparation": Layer("version accuracy engine engines errors parameter settings scene scenarios"),
     "verification": Layer("accuracy engines errors headline", "numpy", lazily="xarray runner"),
-    "recording": Layer("diagnostics headline instruments preparation scene verification", "numpy", lazily="xarray"),
+    "recording": Layer(
+        "diagnostics headline instruments preparation scene verification", "numpy", lazily="engine xarray"
+    ),
     "runner": Layer(
         "engine errors headline panels preparation recording verification", lazily="xarray provenance output checkpoint"
     ),
     "extremes": Layer("engine engines errors theory statistics", "numpy"),
     "tradeoff": Layer("engines errors provenance runner scene scenarios", "numpy xarray"),
+    "sheet": Layer(
+        "version conversion errors headline parameter runner scenarios", "numpy", lazily="reportlab matplotlib"
+    ),
+    "live": Layer(
+        "version checkpoint engine engines errors instruments knob output page panels parameter preparation provenance"
+        " quantity recording scene units variables",
+        "numpy websockets",
+        lazily="xarray",
+    ),
+    "page": Layer("errors panels variables units provenance", "numpy", lazily="plot output scenarios xarray"),
+    "film": Layer("errors panels plot units", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
+    "compare": Layer("conversion errors parameter plot provenance quantity scenarios", "numpy", lazily="xarray"),
+    "sweep": Layer(
+        "version checkpoint conversion declaration engines errors output parameter preparation provenance quantity"
+        " runner scenarios",
+        "numpy xarray",
+        lazily="distributed",
+    ),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
     "__main__": Layer("cli"),
     "version": Layer(lazily="runner xarray"),

@@ -4,6 +4,8 @@ import pytest
 
 from atmosbox.variables import VARIABLES, variable
 
+DIMENSIONS = {"elapsed_time", "height", "speed", "energy", "wall", "molecule", "drop", "axis"}
+
 
 @pytest.mark.parametrize("name", VARIABLES)
 def test_every_declared_variable_has_words_and_a_unit(name):
@@ -15,7 +17,7 @@ def test_every_declared_variable_has_words_and_a_unit(name):
 
 @pytest.mark.parametrize("name", VARIABLES)
 def test_the_dimensions_of_every_variable_are_declared(name):
-    assert set(VARIABLES[name].dims) <= {"elapsed_time", "height", "speed", "energy", "wall", "molecule", "axis"}
+    assert set(VARIABLES[name].dims) <= DIMENSIONS
 
 
 def test_every_standard_name_is_in_the_table_of_cf():

@@ -24,6 +24,7 @@ Read it in this order:
 `start`      how they move at the start
 `account`    what a box has counted, and whether its energy adds up
 `arrangement` what a box may be given, and what may move its piston
+`adjustment` what may be changed while time passes
 `parcel`     the box: what it is given, holds and tells
 `box`        the box, as the kernels know it
 `kind`       molecules that are alike
@@ -62,6 +63,7 @@ Read it in this order:
 `dsmc_parcel`  the box, advanced by direct simulation Monte Carlo
 `moist_dsmc_parcel`  the box of moist air, advanced so
 `measure`    what is read off it
+`course`     how far along its planned way a parcel is
 `lift`       a piston that follows a pressure
 `_jit`       the one door to numba
 

@@ -38,6 +38,7 @@ class Account(ABC):
     _rotates: bool
     _periodic: tuple[bool, bool, bool]
     _start_energy: float
+    _gravity_work: float = 0.0
 
     @property
     @abstractmethod
@@ -103,6 +104,11 @@ class Account(ABC):
         return float(self._tallies.work.sum())
 
     @property
+    def gravity_work(self) -> float:
+        """Energy that changes of gravity have given to the molecules since the start [energy]."""
+        return self._gravity_work
+
+    @property
     def virial(self) -> Array:
         """Sum of r . dp over contacts since the start, by layer [energy]."""
         return np.array(self._tallies.virial)
@@ -119,11 +125,11 @@ class Account(ABC):
         """Return by how much the energy ledger fails to close, relative to the energy that there is or has passed.
 
         Kinetic + rotational + potential energy and that of a liquid = what there was at the start + heat from the
-        walls + work of the piston + what an approximate scheme has made by itself.
+        walls + work of the piston + what changes of gravity gave + what an approximate scheme has made by itself.
         """
         total = sum(self.energy()) + self.condensed_energy
-        given = float(self._tallies.heat.sum()) + self.work + self.numerical_heat
-        passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work)
+        given = float(self._tallies.heat.sum()) + self.work + self.gravity_work + self.numerical_heat
+        passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work) + abs(self.gravity_work)
         scale = max(abs(total), abs(self._start_energy), passed)
         return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
 
@@ -153,5 +159,5 @@ class Account(ABC):
 
         Meant for boxes without gravity, where it costs nothing however many molecules there are.
         """
-        given = float(self._tallies.heat.sum()) + self.work + self.numerical_heat
+        given = float(self._tallies.heat.sum()) + self.work + self.gravity_work + self.numerical_heat
         return self._start_energy + given - self.condensed_energy

@@ -39,3 +39,4 @@ class Arrangement(TypedDict, total=False):
     layers: int
     seed: int
     driver: Driver | None
+    collisions: bool

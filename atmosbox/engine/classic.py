@@ -117,9 +117,9 @@ class ClassicParcel(MarchingParcel):
         self._score = Score(numerical_heat=np.zeros(1), count=np.zeros(3, np.int64))
         self._strips = self._cut()
         self._time_step = self._dt if self._dt is not None else self._delta * self._passage(velocity)
-        self._step_chosen()
+        self._renew()
 
-    def _step_chosen(self) -> None:
+    def _renew(self) -> None:
         inverse = [1.0 / side if turn else 0.0 for side, turn in zip(self._sides, self._periodic, strict=True)]
         self._frame = Frame(
             length=self._sides,

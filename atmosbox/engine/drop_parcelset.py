@@ -48,6 +48,8 @@ class DropParcelSet(MoistParcelSet):
             raise RefusedError("this box is for drops: give it Drops")
         if not (self._diameter > 0.0).all() or not liquid.substance.diameter > 0.0:
             raise RefusedError("drops cannot be hit by molecules without a diameter: give all of them one")
+        if not self._collisions:
+            raise RefusedError("drops are there to be hit: leave collisions on")
         substance, more = liquid.substance, int(liquid.number)
         number = len(liquid.position)
         held = np.full(number, more // number, np.int64)

@@ -151,7 +151,7 @@ class DsmcParcel(MarchingParcel):
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
         self._gas, kind = self._classify()
-        self._cross_section = math.pi * (2.0 * self._gas.radius) ** 2
+        self._cross_section = math.pi * (2.0 * self._gas.radius) ** 2 if self._collisions else 0.0
         self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
         self._box = new_box(
             self._sides,
@@ -267,8 +267,8 @@ class DsmcParcel(MarchingParcel):
         usual = _FASTEST * self._thermal_speed()
         np.maximum(self._grid.fastest * _FORGET, usual, out=self._grid.fastest)
 
-    def _step_chosen(self) -> None:
-        pass  # every step reads its length anew
+    def _renew(self) -> None:
+        self._box = self._box._replace(gravity=self._gravity)  # every step reads its length anew
 
     def _open_sides(self) -> list[float]:
         """Return the sides of the space that centres can reach now [length]."""

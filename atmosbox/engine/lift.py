@@ -22,6 +22,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from atmosbox.engine.course import Course
 from atmosbox.engine.parcel import Parcel
 from atmosbox.engine.refusal import RefusedError
 
@@ -51,6 +52,11 @@ class FollowPressure:
         In how many tau a gap of pressure is closed.
     excess
         First guess of (Z - 1) / n [length^3], until it is measured.
+
+    Attributes
+    ----------
+    course
+        How far along the schedule the parcel is: as far as time, unless it is led by hand.
 
     Raises
     ------
@@ -90,10 +96,11 @@ class FollowPressure:
         self._memory = 100.0 * mean_free_time
         self._virial = 0.0
         self._excess = excess
+        self.course = Course(float(self._time[-1]))
 
     def log_pressure(self, time: float) -> float:
         """Return the logarithm of the pressure to follow at a time [time]."""
-        return float(np.interp(time, self._time, self._log))
+        return float(np.interp(self.course.moment(time), self._time, self._log))
 
     def pressure(self, parcel: Parcel) -> float:
         """Return the pressure of the parcel [energy/length^3]."""

@@ -16,6 +16,7 @@ __all__ = ["MarchingParcel"]
 
 _WORK = 400_000
 _SLACK = 1e-9
+_HOTTER = 16.0
 
 
 class MarchingParcel(Parcel):
@@ -27,6 +28,7 @@ class MarchingParcel(Parcel):
 
     _time_step = math.nan
     _step = 0
+    _usual_kT = 0.0
 
     @property
     def time_step(self) -> float:
@@ -51,7 +53,7 @@ class MarchingParcel(Parcel):
             raise RefusedError("a time step is chosen before the first step, for an interval above 0")
         if self._effort():
             self._time_step = interval / math.ceil(interval / self._time_step * (1.0 - _SLACK))
-            self._step_chosen()
+            self._renew()
 
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
         """Let time pass, step by step, as far as whole steps go: see `Parcel.advance`."""
@@ -89,11 +91,29 @@ class MarchingParcel(Parcel):
         """Advance by so many steps, with the piston at one velocity."""
 
     @abstractmethod
-    def _step_chosen(self) -> None:
-        """Take note that the length of a step has changed, before the first."""
+    def _renew(self) -> None:
+        """Take note that the length of a step has changed, before the first, or that gravity has."""
 
     def _piston_turned(self) -> None:
         """Need nothing: every step reads the piston anew."""
+
+    def _field_changes(self, gravity: float) -> None:
+        mass = float(self._mass.sum()) if self._number else 0.0
+        speed = math.sqrt(2.0 * self.energy()[0] / (3.0 * mass)) if mass else math.inf
+        if gravity * self._time_step > speed:
+            raise RefusedError(
+                f"gravity = {gravity:.6g} would turn molecules round within a step of {self._time_step:.3g}: give "
+                f"{0.5 * speed / self._time_step:.3g} or less, or begin with it"
+            )
+        self._gravity = gravity
+        self._renew()
+
+    def _bath_changes(self, kT: float) -> None:
+        if kT > _HOTTER * self._usual_kT > 0.0:
+            raise RefusedError(
+                f"kT of a wall = {kT:.6g} is too hot for the step, which was chosen for {self._usual_kT:.6g}: give "
+                f"{_HOTTER * self._usual_kT:.6g} or less, or begin with it"
+            )
 
     def _thermal_speeds(self, velocity: Array) -> Array:
         """Return each molecule's sqrt(kT / m) at the warmest that the box is at its start [length/time].
@@ -113,4 +133,5 @@ class MarchingParcel(Parcel):
             if law == HEAT_BATH:
                 first, last = self._walls.schedule[wall], self._walls.schedule[wall + 1]
                 kT = max(kT, float(self._walls.schedule_kT[first:last].max()))
+        self._usual_kT = kT
         return kT

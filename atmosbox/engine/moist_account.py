@@ -48,6 +48,9 @@ class MoistAccount(Parcel):
                 raise RefusedError("the floor under a pool is the pool itself: make wall z_low Specular")
             self._walls.law[4] = POOL
 
+    def _field_changes(self, gravity: float) -> None:
+        raise RefusedError("a box with liquid has no gravity: leave it at 0")
+
     def _append_liquid(self) -> None:
         """Append what is known of the molecules of the liquid to what is known of those of the gas."""
         substance, more = self._liquid.substance, int(self._liquid.number)

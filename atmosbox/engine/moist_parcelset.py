@@ -70,6 +70,11 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         if speed > float(self._ledger.bound[0]):  # it may wake molecules at rest
             self._draw(speed)
 
+    def _bath_changes(self, kT: float) -> None:
+        speed = math.sqrt(8.0 * kT / self._liquid.substance.mass)
+        if speed > float(self._ledger.bound[0]):
+            self._draw(speed)
+
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write down the molecules of the gas, and behind them those of the liquid, which are not in the box."""
         substance = self._liquid.substance

@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.account import Account, Array, Snapshot
+from atmosbox.engine.account import Array, Snapshot
+from atmosbox.engine.adjustment import Adjustable
 from atmosbox.engine.arrangement import Arrangement, Driver
 from atmosbox.engine.inputs import column, inside, matrix, natural_time, number, sides_of, whole
 from atmosbox.engine.refusal import RefusedError
@@ -18,7 +19,7 @@ from atmosbox.engine.walls import PERIODIC, PISTON, Specular, Wall, new_walls
 __all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
 
 
-class Parcel(Account):
+class Parcel(Adjustable):
     """Molecules in a box: what is common to all engines.
 
     Parameters
@@ -46,6 +47,8 @@ class Parcel(Account):
         Seed of the random numbers.
     driver
         What moves the piston.
+    collisions
+        Whether molecules meet each other; without that they meet walls alone, and take no room from each other.
 
     Raises
     ------
@@ -76,6 +79,7 @@ class Parcel(Account):
         layers: int = 1,
         seed: int = 0,
         driver: Driver | None = None,
+        collisions: bool = True,
     ) -> None:
         x = matrix(position, "position")
         v = matrix(velocity, "velocity")
@@ -109,6 +113,7 @@ class Parcel(Account):
             raise RefusedError(f"interval of the driver = {driver.interval} must be finite and above 0")
         self._planar = bool(planar)
         self._driver = driver
+        self._collisions = bool(collisions)
         x = inside(x, self._diameter, self._sides, self._periodic)
         if planar:  # nothing ever moves along y
             self._periodic = (self._periodic[0], False, self._periodic[2])
@@ -171,10 +176,6 @@ class Parcel(Account):
     @abstractmethod
     def memory(self) -> int:
         """Return the bytes that molecules and all that finds their collisions take."""
-
-    @abstractmethod
-    def _piston_turned(self) -> None:
-        """Take note that the piston moves at another velocity from now on."""
 
     # ------------------------------------------------------------------ what it holds
 
@@ -271,23 +272,9 @@ class Parcel(Account):
     @property
     def ideal(self) -> bool:
         """Whether molecules take no room from each other, so that the pressure is n kT."""
-        return not self._diameter.any()
+        return not (self._collisions and self._diameter.any())
 
     # ------------------------------------------------------------------ what moves it
-
-    def set_piston_velocity(self, velocity: float) -> None:
-        """Let the piston move at another velocity [length/time] from now on.
-
-        Raises
-        ------
-        RefusedError
-            If there is no piston, or the velocity is not finite.
-        """
-        if self._walls.law[5] != PISTON:
-            raise RefusedError("this box has no piston: make wall z_high a Piston")
-        velocity = number(velocity, "velocity of the piston")
-        self._walls.piston[:] = self.ceiling, velocity, self._now
-        self._piston_turned()
 
     def _drive(self) -> None:
         if self._driver is not None:

@@ -140,16 +140,19 @@ class ParcelSet(Parcel):
         if velocity < 0.0:
             lowest += velocity * self._driver.interval if self._driver is not None else -math.inf
         self._replan(
-            self._molecules,
-            self._events,
-            self._kinds,
-            self._cells,
-            self._calendar,
-            self._box,
-            self._walls,
-            self._now,
-            lowest,
-        )
+            self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls,
+            self._now, lowest,
+        )  # fmt: skip
+
+    def _field_changes(self, gravity: float) -> None:
+        _, position, velocity, _ = self.snapshot()
+        for axis, name in enumerate("xyz"):
+            place, side = position[:, axis], self._sides[axis]
+            self._fields[name] = place % side if self._periodic[axis] else place
+            self._fields["v" + name] = velocity[:, axis]
+        self._fields["clock"] = self._now
+        self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
+        self._lay_out()
 
     def _resolve(self, local: float, watch: Callable[[float], None] | None) -> None:
         """Resolve all events up to a local time."""
@@ -237,7 +240,7 @@ class ParcelSet(Parcel):
         self._cells_top = 1.75 * self._filled if moving else self._filled
         kT = self._mean_kT()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
-        contacts = bool(n) and float(self._diameter.max()) > 0.0
+        contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
         grid = choose_grid(
             np.array([self._sides[0], self._sides[1], self._cells_top]),
             self._periodic,

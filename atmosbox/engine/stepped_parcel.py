@@ -218,8 +218,10 @@ class SteppedParcel(MarchingParcel):
         room = self._sides - np.where(self._periodic, 0.0, float(self._diameter.max()))
         judge_step(self._time_step, speed, room, 0.5 * self._smallest)
 
-    def _step_chosen(self) -> None:
-        """Need nothing: every march is told how long a step is."""
+    def _renew(self) -> None:
+        self._box = self._box._replace(gravity=self._gravity)  # every march is told how long a step is
+        self._modes = self._modes._replace(gravity=self._gravity > 0.0)
+        self._kernel = specialise(self._modes, self._threads > 1)
 
     def _march(self, steps: int) -> None:
         allowed = steps

@@ -53,8 +53,8 @@ class EngineChoice:
 
     @property
     def ideal(self) -> bool:
-        """Whether the molecules of the engine take no room from each other."""
-        return self.engine.ideal
+        """Whether the molecules of the engine take no room from each other, as those that never meet."""
+        return self.engine.ideal or self.options.get("collisions") is False
 
     def make(self, position: ArrayLike, velocity: ArrayLike, **box: Any) -> Parcel:
         """Return a parcel of this engine: what a scene calls in place of `atmosbox.engine.ParcelSet`.

@@ -105,6 +105,7 @@ def _switch(name: str, default: bool, help: str) -> Parameter:
     return Parameter(name, "", default, None, None, None, help, "bool")
 
 
+_COLLISIONS = _switch("collisions", True, "whether molecules meet each other, and not walls alone")
 _DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
 
 ENGINES: Mapping[str, Engine] = MappingProxyType(
@@ -115,6 +116,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 "exact",
                 "every contact and every wall hit at its exact time, in order",
                 _exact,
+                (_COLLISIONS,),
                 reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
                 moist=_moist_exact,
             ),
@@ -131,6 +133,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                         "what smooth walls do with a molecule that has gone through them",
                     ),
                     _switch("approaching", True, "whether only pairs that approach collide"),
+                    _COLLISIONS,
                     _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
                 ),
             ),
@@ -142,6 +145,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                     _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
                     _number("occupancy", 10.0, 1.0, 1e4, "mean number of molecules in a cell"),
                     _number("cell", 0.5, 1e-3, 1e3, "side of a cell in mean free paths, in place of an occupancy"),
+                    _COLLISIONS,
                     _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
                 ),
                 ideal=True,
@@ -156,6 +160,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                     _number("delta", 0.1, 1e-6, 1e3, _DELTA),
                     _word("scheme", ("spheres", "lookahead", "strips"), "which scheme, if not what suits the box"),
                     _switch("closing_only", True, "whether pairs that are already parting are let go"),
+                    _COLLISIONS,
                 ),
             ),
         )

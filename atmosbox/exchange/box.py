@@ -6,6 +6,9 @@ import functools
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from atmosbox import theory as law
 from atmosbox.moisture import vapour_molecules
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
@@ -86,14 +89,54 @@ class MoistBox:
     @functools.cached_property
     def share(self) -> float:
         """Mean vapour pressure over that of saturation: a little less than 1, if so few molecules can saturate it."""
+        return self.share_at(self.temperature)
+
+    def share_at(self, temperature: float) -> float:
+        """Return the same when the walls of this box have another temperature [K]: then its water may not suffice."""
         room = (self.side * self.scale.length) ** 3 / self._packing[1]
-        full = self.saturated * room / (BOLTZMANN * self.temperature)
-        return law.isothermal_vapor_number(self.vapour, self.temperature, room).mean / full
+        full = float(law.saturation_vapor_pressure(temperature)) * room / (BOLTZMANN * temperature)
+        return law.isothermal_vapor_number(self.vapour, temperature, room).mean / full
 
     @property
     def flux(self) -> float:
         """How many molecules meet the liquid per area and time once they have settled [1/(m^2 s)]."""
-        return self.share * float(law.hertz_knudsen_flux(self.temperature))
+        return self.flux_at(self.temperature)
+
+    def flux_at(self, temperature: float) -> float:
+        """Return the same when the walls of this box have another temperature [K]."""
+        return self.share_at(temperature) * float(law.hertz_knudsen_flux(temperature))
+
+    def over_drops(self, liquid: ArrayLike, drops: ArrayLike, ball: float) -> NDArray[np.float64]:
+        r"""Return the vapour pressure over drops at rest, over that of saturation.
+
+        A drop that takes up a molecule pushes the gas away from the volume v that the molecule fills, with the room
+        that others' centres keep from it. That work raises the vapour pressure (Poynting),
+
+        .. math:: e = e_s\, e^{n v} \frac{L + 1}{L + D} .
+
+        Real molecules fill too little for that to show: drops s times too wide fill s^3 times too much. The last
+        factor counts the ways to share L molecules out among D drops, some of which have none to give.
+
+        Parameters
+        ----------
+        liquid, drops : (time,)
+            How many molecules L are in how many drops D.
+        ball
+            Radius of the ball that a molecule fills, and of a nucleus [diameter].
+
+        Examples
+        --------
+        >>> air = MoistBox(10_000, 293.15, 1e5, 1.5)
+        >>> [round(float(air.over_drops(300, 1, size * 0.52)), 3) for size in (1, 6, 8)]
+        [1.001, 1.176, 1.467]
+        """
+        liquid, drops = np.asarray(liquid, np.float64), np.asarray(drops, np.float64)
+        radius = ball * np.cbrt(1.0 + liquid / drops)
+        volume = 4.0 / 3.0 * math.pi * ball**3 * (1.0 + 0.5 / radius) ** 2
+        room = self.side**3 - drops * 4.0 / 3.0 * math.pi * (radius + 0.5) ** 3
+        gas = self.molecules - liquid
+        share: NDArray[np.float64] = np.exp(gas / room * volume) * (liquid + 1.0) / (liquid + drops)
+        return share
 
     def memory(self, faces: float) -> float:
         r"""Return how long the number of molecules of vapour remembers a chance surplus [s].

@@ -13,11 +13,12 @@ from atmosbox.instruments.layer import Layers
 from atmosbox.instruments.leaving import Leaving
 from atmosbox.instruments.lift import Environment, Lift
 from atmosbox.instruments.moist_lift import MoistLift
-from atmosbox.instruments.molecule import Molecules
+from atmosbox.instruments.molecule import LAWS, Molecules, wall_laws
 from atmosbox.instruments.speed import Speeds
 from atmosbox.instruments.water import Water
 
 __all__ = [
+    "LAWS",
     "Air",
     "Discs",
     "DropSizes",
@@ -31,4 +32,5 @@ __all__ = [
     "Readings",
     "Speeds",
     "Water",
+    "wall_laws",
 ]

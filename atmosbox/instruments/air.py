@@ -80,6 +80,8 @@ class Air:
             "potential_energy": potential,
             "heat_from_wall": parcel.wall_heat,
             "work_by_piston": parcel.work,
+            "work_by_gravity": parcel.gravity_work,
+            "gravity": parcel.gravity,
             "ledger_residual": parcel.ledger(),
             "numerical_heat": parcel.numerical_heat,
             "collision_count": parcel.contacts,
@@ -102,6 +104,8 @@ class Air:
             "potential_energy": scale.total_energy,
             "heat_from_wall": scale.total_energy,
             "work_by_piston": scale.total_energy,
+            "work_by_gravity": scale.total_energy,
+            "gravity": scale.acceleration,
             "numerical_heat": scale.total_energy,
             "wall_temperature": scale.temperature,
         }
@@ -110,4 +114,6 @@ class Air:
         columns = {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
         if not columns["numerical_heat"].any():  # most schemes make none
             del columns["numerical_heat"]
+        if not columns["work_by_gravity"].any():  # few boxes have it changed by hand
+            del columns["work_by_gravity"], columns["gravity"]
         return Readings(columns)

@@ -111,7 +111,7 @@ class Lift:
         time, kT, pressure, density, volume, ceiling, velocity = np.array(self._rows).T
         heat_capacity = 0.5 * self._freedom + 1.0
         spread = _entropy_spread(time, kT, pressure, density, self._freedom) / heat_capacity
-        seconds = time * scale.time
+        seconds = np.array([self._driver.course.moment(t) for t in time]) * scale.time
         parcel_temperature = kT * scale.temperature
         parcel_pressure = pressure * scale.pressure
         surroundings = self._environment

@@ -80,7 +80,8 @@ class MoistLift:
         parcel_pressure = np.exp(np.log(pressure).mean(axis=1))
         error = np.hypot(successive_error(misfit, lag=3), self._walk(parcel_pressure) * parcel_temperature)
         around = self._environment
-        middle = (time - 0.5 * np.diff(time, prepend=0.0)) * scale.time
+        middle = time - 0.5 * np.diff(time, prepend=0.0)
+        middle = np.array([self._driver.course.moment(t) for t in middle]) * scale.time
         return Readings(
             parcel_temperature=parcel_temperature,
             parcel_temperature_se=error,

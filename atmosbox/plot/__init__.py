@@ -4,9 +4,10 @@ Everything comes from the dataset itself: the panels that its scene asked for (a
 the variables they name, the headline numbers and the provenance. A figure can therefore be drawn wherever the
 file is, without the scene and without the engine, and drawing it twice gives the same bytes.
 
-Read in this order: `unit` (from SI to what a meteorologist reads), `curve` (from a line of a panel to
-numbers), `draw`, `disc` and `skewt` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
-`tilt` and `plate` (one panel) and `layout` (all of them), `file` (PNG, SVG, PDF).
+Read in this order: `unit` (from SI to what a meteorologist reads), `curve` and `plane` (from a file to numbers),
+`stroke`, `draw`, `disc` and `skewt` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
+`tilt` and `plate` (one panel), `place` and `layout` (all of them), `comparison` (several runs in one figure), `file`
+(PNG, SVG, PDF).
 """
 
 from atmosbox.plot.file import FORMATS, save

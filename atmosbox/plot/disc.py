@@ -8,22 +8,20 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import LogNorm, Normalize, to_rgb
+from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from atmosbox.panels import Panel
-from atmosbox.plot.curve import read
+from atmosbox.plot.plane import Discs, colour_scale, discs
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, Theme
 from atmosbox.plot.tick import put_ticks
-from atmosbox.plot.unit import convert, spelled
+from atmosbox.plot.unit import spelled
 
 if TYPE_CHECKING:
     import xarray as xr
 
-# The colours are logarithmic where the fastest discs are so many times as fast as the median.
-_WIDE_SPREAD = 10.0
 # The rim of a heavy disc is at most so wide, in diameters; the box is about so high, in heights of the figure.
 _BROADEST_RIM, _BOX_HEIGHT = 0.12, 0.6
 # A trail goes so many frames back. It is left out where a molecule crosses much of the box between two frames.
@@ -77,131 +75,106 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
     >>> [label for _, label in draw_discs(axes, Panel("discs", "The box"), dataset, THEMES["notes"])]
     ['light half', 'heavy half: 4 × the mass']
     """
-    unit = panel.x_unit or "nm"
-    position, velocity = (
-        read(dataset, name).transpose("elapsed_time", "molecule", "axis") for name in ("disc_position", "disc_velocity")
-    )
-    plane = _plane(position.values)
-    places = convert(position.values[:, :, plane], str(position.attrs.get("units", "m")), unit, name="disc_position")
-    diameter = read(dataset, "disc_diameter")
-    sizes = convert(diameter.values, str(diameter.attrs.get("units", "m")), unit, name="disc_diameter")
-    box = _box(dataset, places, sizes, plane, unit)
-    mass = read(dataset, "disc_mass").values
-    heavy = _heavy_half(mass)
-
-    _draw_trails(axes, places, float(np.min(box[1] - box[0])), theme)
-    speed = np.linalg.norm(velocity.values, axis=2)
-    norm = _colour_scale(speed)
-    discs = EllipseCollection(
-        sizes,
-        sizes,
-        np.zeros_like(sizes),
-        units="xy",
-        offsets=places[-1],
-        offset_transform=axes.transData,
-        cmap=FIELD_COLOURS,
-        norm=norm,
-        edgecolors=DARK,
-        linewidths=np.minimum(_rims(axes, sizes, box), theme.line) * np.where(heavy, 1.0, 1.0 / 3.0),
-        zorder=3.0,
-    )
-    discs.set_array(speed[-1])
-    axes.add_collection(discs)
-
-    axes.set_aspect("equal", adjustable="box", anchor="NW")
-    axes.set_xlim(box[0, 0], box[1, 0])
-    axes.set_ylim(box[0, 1], box[1, 1])
-    axes.spines[:].set(visible=True, linewidth=theme.line * 1.2, color=DARK)
-    log = isinstance(norm, LogNorm)
-    bar = axes.figure.colorbar(discs, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="both" if log else "max")
-    bar.set_label(f"speed ({spelled(str(velocity.attrs.get('units', 'm s-1')))})")
+    found = discs(dataset, panel.x_unit or "nm")
+    trail = trails(found.place, found.box, theme)
+    if trail is not None:
+        axes.add_collection(trail)
+    drawn = put_discs(axes, found, theme)
+    log = isinstance(drawn.norm, LogNorm)
+    bar = axes.figure.colorbar(drawn, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="both" if log else "max")
+    bar.set_label(f"speed ({spelled(found.speed_unit)})")
     if log:
         put_ticks(bar.ax.yaxis, log=True, length=10.0 * theme.text, size=theme.text)
     else:
         bar.locator = MaxNLocator(4)
-    return _entries(heavy, mass, theme)
+    return _entries(found.heavy, found.mass, theme)
 
 
-def axis_names(dataset: xr.Dataset) -> tuple[str, str]:
-    """Return the names of the two axes of a flat scene.
+def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
+    """Draw the discs of the last frame in their box.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The run.
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    found : Discs
+        The discs.
+    theme : Theme
+        How large.
 
     Returns
     -------
-    tuple of str
-        The two axes along which the molecules move.
-
-    Raises
-    ------
-    FileError
-        If the file holds no positions of discs.
+    matplotlib.collections.EllipseCollection
+        The discs, coloured by their speed.
 
     Examples
     --------
-    >>> import xarray as xr
-    >>> places = [[[0.0, 7.0, 1.0], [1.0, 7.0, 0.0]]]
-    >>> axis_names(xr.Dataset({"disc_position": (("elapsed_time", "molecule", "axis"), places)}))
-    ('x', 'z')
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> one = Discs(np.ones((1, 1, 2)), np.ones((1, 1)), np.ones(1), np.ones(1), np.array([[0, 0], [2, 2]]), "m s-1")
+    >>> put_discs(Figure().add_subplot(), one, THEMES["notes"]).get_offsets().tolist()
+    [[1.0, 1.0]]
     """
-    position = read(dataset, "disc_position").transpose("elapsed_time", "molecule", "axis")
-    first, second = _plane(position.values)
-    return "xyz"[first], "xyz"[second]
+    norm = colour_scale(found.speed)
+    drawn = EllipseCollection(
+        found.diameter,
+        found.diameter,
+        np.zeros_like(found.diameter),
+        units="xy",
+        offsets=found.place[-1],
+        offset_transform=axes.transData,
+        cmap=FIELD_COLOURS,
+        norm=norm,
+        edgecolors=DARK,
+        linewidths=np.minimum(_rims(axes, found.diameter, found.box), theme.line)
+        * np.where(found.heavy, 1.0, 1.0 / 3.0),
+        zorder=3.0,
+    )
+    drawn.set_array(found.speed[-1])
+    axes.add_collection(drawn)
+
+    axes.set_aspect("equal", adjustable="box", anchor="NW")
+    axes.set_xlim(found.box[0, 0], found.box[1, 0])
+    axes.set_ylim(found.box[0, 1], found.box[1, 1])
+    axes.spines[:].set(visible=True, linewidth=theme.line * 1.2, color=DARK)
+    return drawn
 
 
-def _plane(position: NDArray[np.float64]) -> list[int]:
-    """Return the two axes along which the positions (time, molecule, axis) spread most, in order."""
-    spread = np.nanmax(position, axis=(0, 1)) - np.nanmin(position, axis=(0, 1))
-    return sorted(int(axis) for axis in np.argsort(-spread, kind="stable")[:2])
+def trails(places: NDArray[np.float64], box: NDArray[np.float64], theme: Theme) -> LineCollection | None:
+    """Return the ways that discs have come in the last frames.
 
+    Parameters
+    ----------
+    places : ndarray, (frame, molecule, 2)
+        Their places up to now.
+    box : ndarray, (2, 2)
+        The lower and the upper corner of the box.
+    theme : Theme
+        How large.
 
-def _box(
-    dataset: xr.Dataset, places: NDArray[np.float64], sizes: NDArray[np.float64], plane: list[int], unit: str
-) -> NDArray[np.float64]:
-    """Return the lower and the upper corner of the box."""
-    if "box_length" in dataset.variables:
-        length = read(dataset, "box_length")
-        ends = convert(length.values, str(length.attrs.get("units", "m")), unit, name="box_length")
-        return np.stack((np.zeros(2), ends[plane] if ends.ndim else np.full(2, ends)))
-    radius = sizes[None, :, None] / 2
-    return np.stack((np.nanmin(places - radius, axis=(0, 1)), np.nanmax(places + radius, axis=(0, 1))))
+    Returns
+    -------
+    matplotlib.collections.LineCollection or None
+        The ways, which fade into the past; None where there are none, or where they jump.
 
-
-def _draw_trails(axes: Axes, places: NDArray[np.float64], box: float, theme: Theme) -> None:
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> trails(np.zeros((1, 5, 2)), np.array([[0.0, 0.0], [1.0, 1.0]]), THEMES["notes"]) is None
+    True
+    """
     frames = min(_TRAIL_FRAMES, _MOST_SEGMENTS // places.shape[1], len(places) - 1)
     if frames < 1:
-        return
+        return None
     path = places[-frames - 1 :]
     steps = np.median(np.linalg.norm(np.diff(path, axis=0), axis=2), axis=0)
-    path = path[:, steps <= _LONGEST_STEP * box]
+    path = path[:, steps <= _LONGEST_STEP * float(np.min(box[1] - box[0]))]
     if not path.size:
-        return
+        return None
     segments = np.stack((path[:-1], path[1:]), axis=2).reshape(-1, 2, 2)
     alpha = np.repeat(np.linspace(0.1, 0.8, frames), path.shape[1])
     colours = np.column_stack((np.tile(to_rgb(FAINT), (alpha.size, 1)), alpha))
-    axes.add_collection(LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0))
-
-
-def _colour_scale(speed: NDArray[np.float64]) -> Normalize:
-    """Return the scale of the colours: from zero, or logarithmic where most discs are far slower than the fastest."""
-    moving = speed[speed > 0.0]
-    if not moving.size:
-        return Normalize(0.0, 1.0)
-    low, middle, high = (float(value) for value in np.percentile(moving, (3, 50, 97)))
-    if high > _WIDE_SPREAD * middle:
-        return LogNorm(low, high)
-    return Normalize(0.0, float(MaxNLocator(4).tick_values(0.0, high)[-1]))
-
-
-def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell which discs are of the heavier half; none if all are alike."""
-    heavy = np.zeros(mass.size, dtype=bool)
-    if mass.size and mass.min() < mass.max():
-        heavy[np.argsort(mass, kind="stable")[mass.size // 2 :]] = True
-    return heavy
+    return LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0)
 
 
 def _rims(axes: Axes, sizes: NDArray[np.float64], box: NDArray[np.float64]) -> NDArray[np.float64]:

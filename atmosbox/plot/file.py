@@ -9,8 +9,10 @@ import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from matplotlib.figure import Figure
+
 from atmosbox.errors import DiskFullError, FileError, SettingError
-from atmosbox.plot import tradeoff
+from atmosbox.plot import sweep, tradeoff
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import find, style
 
@@ -67,34 +69,97 @@ def save(
     Traceback (most recent call last):
     atmosbox.errors.SettingError: format = gif is unknown: give a file name or --format of png, svg or pdf.
     """
-    path, kind = _named(Path(path), format)
+    path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    if path.is_dir():
-        raise FileError(f"{path} is a folder: name the file of the figure, {path / f'figure.{kind}'} for instance.")
-    if not path.parent.is_dir():
-        raise FileError(f"The folder {path.parent} for the figure does not exist: make it first, or name another one.")
-    if path.exists() and not force:
-        raise FileError(f"{path} exists already: add --force to replace it, or name another file.")
-    _write(path, _render(dataset, kind, theme))
+    drawing = _drawn(dataset, theme)
+    title = str(dataset.attrs.get("title", "atmosbox"))
+    parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
+    write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
     return path
 
 
-def _named(path: Path, format: str | None) -> tuple[Path, str]:
-    """Return the file and the format, from what is said of either."""
+def _drawn(dataset: xr.Dataset, theme: str) -> Figure:
+    """Return the figure of a run, or of a measurement of many."""
+    if "rung" in dataset.dims:
+        return tradeoff.figure(dataset, theme)
+    return sweep.figure(dataset, theme) if sweep.is_sweep(dataset) else figure(dataset, theme)
+
+
+def named(
+    path: str | os.PathLike[str], format: str | None, formats: tuple[str, ...], *, force: bool, what: str = "figure"
+) -> tuple[Path, str]:
+    """Return the file and the format, from what is said of either; refuse a file that cannot be written.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    format : str or None
+        The format, where the suffix does not say it.
+    formats : tuple of str
+        The formats that there are.
+    force : bool
+        Whether a file of that name may be replaced.
+    what : str
+        What is in the file.
+
+    Returns
+    -------
+    pathlib.Path
+        The file, with a suffix.
+    str
+        The format.
+
+    Raises
+    ------
+    FileError
+        If the file exists, or its folder does not.
+    SettingError
+        If the format is unknown.
+
+    Examples
+    --------
+    >>> str(named("parcel", "svg", FORMATS, force=True)[0])
+    'parcel.svg'
+    """
+    path = Path(path)
     suffix = path.suffix[1:].lower()
     kind = suffix if format is None else format.lower().lstrip(".")
-    if kind not in FORMATS:
+    if kind not in formats:
         problem = "is unknown" if kind else "is not given"
-        raise SettingError("format", kind or None, problem, "give a file name or --format of png, svg or pdf")
-    if suffix in FORMATS and suffix != kind:
+        known = f"{', '.join(formats[:-1])} or {formats[-1]}"
+        raise SettingError("format", kind or None, problem, f"give a file name or --format of {known}")
+    if suffix in formats and suffix != kind:
         raise SettingError("format", kind, f"does not go with the file name {path.name}", "leave one of the two out")
-    return (path if suffix == kind else path.with_name(f"{path.name}.{kind}")), kind
+    path = path if suffix == kind else path.with_name(f"{path.name}.{kind}")
+    if path.is_dir():
+        raise FileError(f"{path} is a folder: name the file of the {what}, {path / f'{what}.{kind}'} for instance.")
+    if not path.parent.is_dir():
+        raise FileError(f"The folder {path.parent} for the {what} does not exist: make it first, or name another one.")
+    if path.exists() and not force:
+        raise FileError(f"{path} exists already: add --force to replace it, or name another file.")
+    return path, kind
 
 
-def _render(dataset: xr.Dataset, kind: str, theme: str) -> bytes:
-    drawing = tradeoff.figure(dataset, theme) if "rung" in dataset.dims else figure(dataset, theme)
-    title = str(dataset.attrs.get("title", "atmosbox"))
-    parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
+def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: str) -> bytes:
+    """Return the bytes of a figure.
+
+    Parameters
+    ----------
+    drawing : matplotlib.figure.Figure
+        The figure.
+    kind : {"png", "svg", "pdf"}
+        The format.
+    theme : {"notes", "slides"}
+        The theme it was drawn in.
+    title, parameters : str
+        What the file says of itself.
+
+    Examples
+    --------
+    >>> render(Figure(), "png", "notes", title="Nothing", parameters="{}")[1:4]
+    b'PNG'
+    """
     metadata: dict[str, dict[str, Any]] = {
         "png": {"Title": title, "Software": "atmosbox", "Description": parameters},
         "svg": {"Title": title, "Creator": "atmosbox", "Description": parameters, "Date": None},
@@ -106,8 +171,31 @@ def _render(dataset: xr.Dataset, kind: str, theme: str) -> bytes:
     return stream.getvalue()
 
 
-def _write(path: Path, content: bytes) -> None:
-    """Write a file beside its place and put it there when it is whole."""
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file beside its place and put it there when it is whole.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file, which `named` has let through.
+    content : bytes
+        What is in it.
+
+    Raises
+    ------
+    DiskFullError
+        If the disk is full.
+    FileError
+        If the file cannot be written for another reason.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_whole(Path(folder, "a.txt"), b"air")
+    ...     Path(folder, "a.txt").read_text()
+    'air'
+    """
     part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
     try:
         with part.open("xb") as stream:

@@ -15,7 +15,7 @@ from atmosbox.plot.draw import Entry
 from atmosbox.plot.theme import Theme
 from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.tilt import fit_skewt
-from atmosbox.plot.unit import spelled
+from atmosbox.plot.unit import labelled
 
 _FIXED = "\u00a0"  # a space that no line breaks at
 # The lines of a legend, their distance from the words and that between columns, in sizes of the type.
@@ -120,13 +120,13 @@ class Plate:
             log = panel.x_scale == "log"
             power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
         if x_label:
-            axes.set_xlabel(pen.wrap(f"{x_label} ({spelled(x_unit, power)})", width, size))
+            axes.set_xlabel(pen.wrap(labelled(x_label, x_unit, power), width, size))
         else:
             axes.tick_params(axis="x", labelbottom=False)
         log = panel.y_scale == "log"
         power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
         # The label may reach over both ends of the axis into the gap that is there anyhow.
-        axes.set_ylabel(pen.wrap(f"{y_label} ({spelled(y_unit, power)})", height + 0.8 * size, size))
+        axes.set_ylabel(pen.wrap(labelled(y_label, y_unit, power), height + 0.8 * size, size))
         outer = axes.get_tightbbox() or axes.get_window_extent()
         return float(outer.x0)
 

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.panels import Panel
+from atmosbox.panels import Line, Panel
 from atmosbox.plot.curve import Curve, curve, read
 from atmosbox.plot.draw import Entry, draw_lines
 from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, FAINT, PALE, Theme
@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 BACKGROUND = "grey: dry adiabats (solid), moist adiabats (dashed), mixing ratios (dotted)"
 
 _ABBREVIATIONS = {"lcl": "LCL", "cloud_base": "LCL", "lfc": "LFC", "el": "EL"}
-_SLENDER = 0.75  # width of the curves in that of others: at the ground they run close together
+SHADE_ORDER = 0.8
+"""Where the shaded areas lie: over the lines to read the diagram by, under all curves."""
+
+_SLENDER = 0.75  # width of the curves in that of others
 # The curves keep so far from the ground and the top, in parts of their height; so large a ratio of pressures is shown.
 _END, _LEAST_RATIO = 0.02, 2.0
 # The lines in the background begin at these temperatures of 1000 hPa [degC], and mixing ratios [g kg-1].
@@ -87,7 +90,12 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
 
 
 def draw_skewt(
-    figure: Figure, spot: SubplotSpec, panel: Panel, dataset: xr.Dataset, theme: Theme
+    figure: Figure,
+    spot: SubplotSpec,
+    panel: Panel,
+    dataset: xr.Dataset,
+    theme: Theme,
+    only: tuple[Line, ...] | None = None,
 ) -> tuple[Axes, list[Entry]]:
     """Draw a parcel and its environment as a skew-T, with CAPE and CIN shaded.
 
@@ -103,6 +111,8 @@ def draw_skewt(
         The run.
     theme : Theme
         How large.
+    only : tuple of Line, optional
+        The lines to draw; all if nothing is said.
 
     Returns
     -------
@@ -138,6 +148,35 @@ def draw_skewt(
     >>> axes.get_yscale(), [label for _, label in entries]
     ('log', ['air'])
     """
+    skewed, axes = skewed_axes(figure, spot)
+    entries, _ = draw_lines(axes, panel, dataset, slender(theme), only)
+    put_background(skewed, axes, theme)
+    return axes, entries + _shade(skewed, panel, dataset, theme)
+
+
+def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
+    """Return an empty skew-T and its axes.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        Where to draw.
+    spot : matplotlib.gridspec.SubplotSpec
+        The place in it.
+
+    Returns
+    -------
+    metpy.plots.SkewT
+        The diagram.
+    matplotlib.axes.Axes
+        Its axes.
+
+    Examples
+    --------
+    >>> figure = Figure()
+    >>> skewed_axes(figure, figure.add_gridspec(1, 1)[0, 0])[1].get_yscale()
+    'log'
+    """
     with warnings.catch_warnings(action="ignore"):  # what a new Python thinks of MetPy is nothing a user can mend
         from metpy.plots import SkewT
 
@@ -147,11 +186,46 @@ def draw_skewt(
     axes.grid(visible=True)
     axes.spines[:].set_visible(True)
     axes.tick_params(top=False)
-    entries, _ = draw_lines(axes, panel, dataset, replace(theme, line=_SLENDER * theme.line))
+    return skewed, axes
+
+
+def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
+    """Set the pressures that a skew-T shows by its curves, and draw the lines by which it is read.
+
+    Parameters
+    ----------
+    skewed : metpy.plots.SkewT
+        The diagram, with its curves.
+    axes : matplotlib.axes.Axes
+        Its axes.
+    theme : Theme
+        How large.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> figure = Figure()
+    >>> skewed, axes = skewed_axes(figure, figure.add_gridspec(1, 1)[0, 0])
+    >>> _ = axes.plot([20.0, -60.0], [1000.0, 250.0])
+    >>> put_background(skewed, axes, THEMES["notes"])
+    >>> [round(float(limit)) for limit in axes.get_ylim()]
+    [1028, 243]
+    """
     bottom, top = _pressures(axes)
     axes.set_ylim(bottom, top)
     _draw_background(skewed, bottom, top, theme)
-    return axes, entries + _shade(skewed, panel, dataset, theme)
+
+
+def slender(theme: Theme) -> Theme:
+    """Return a theme with curves as thin as a skew-T needs them: at the ground they run close together.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> slender(THEMES["notes"]).line < THEMES["notes"].line
+    True
+    """
+    return replace(theme, line=_SLENDER * theme.line)
 
 
 def _mend_ticks(axes: Any) -> None:
@@ -227,7 +301,7 @@ def _shade(skewed: Any, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list
             continue
         look: dict[str, Any] = {"facecolor": AREA_COLOURS[name], "hatch": AREA_HATCHES[name]}
         look |= {"edgecolor": FAINT, "linewidth": 0.0, "alpha": 0.7}
-        shade(pressure[part], around[part], parcel[part], zorder=0.8, **look)
+        shade(pressure[part], around[part], parcel[part], zorder=SHADE_ORDER, **look)
         entries.append(((Patch(**look),), name))
     return entries
 

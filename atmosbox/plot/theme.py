@@ -17,8 +17,10 @@ DARK = "#1a1a1a"
 FAINT = "#595959"
 
 # Each curve differs from its neighbours by colour and by a second cue, so that a grey print can be read.
-DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _SKY)
-DATA_MARKERS = ("o", "s", "^", "D")
+DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _SKY, _GREEN, _ORANGE)
+DATA_MARKERS = ("o", "s", "^", "D", "v", "P")
+# Of several measured curves of one run, beside those of another.
+DATA_DASHES = ("solid", (0.0, (1.0, 1.0)), (0.0, (4.0, 1.0, 1.0, 1.0)))
 THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
 THEORY_DASHES = ((5.0, 2.0), (1.2, 1.2), (9.0, 2.0, 2.0, 2.0, 2.0, 2.0))
 ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)

@@ -128,6 +128,26 @@ def spelled(unit: str, power: int = 0) -> str:
     return " ".join(words)
 
 
+def labelled(label: str, unit: str, power: int = 0) -> str:
+    """Return what stands at an axis: what it shows and in which unit, which a bare number has not.
+
+    Parameters
+    ----------
+    label : str
+        What the axis shows.
+    unit : str
+        Its unit, as files write it.
+    power : int
+        The power of ten that the numbers beside it are to be multiplied by.
+
+    Examples
+    --------
+    >>> labelled("speed", "m s-1"), labelled("molecules", "1"), labelled("molecules", "1", 6)
+    ('speed (m s⁻¹)', 'molecules', 'molecules (10⁶)')
+    """
+    return label if unit == "1" and not power else f"{label} ({spelled(unit, power)})"
+
+
 def power_of_ten(power: int) -> str:
     """Return a power of ten as it is printed.
 

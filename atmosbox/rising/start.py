@@ -11,6 +11,7 @@ from atmosbox.engine.lift import FollowPressure
 from atmosbox.engine.liquid import Mist
 from atmosbox.engines import EngineChoice
 from atmosbox.instruments import Air, Environment, MoistLift, Water
+from atmosbox.knob import altitude, way
 from atmosbox.moisture import water
 from atmosbox.piston import CLOSING, moist_parcel, size_of_parcel
 from atmosbox.rising.ascent import RAIN, MoistAscent
@@ -109,4 +110,11 @@ def rise(
             ),
             "error by the finite speed": f"up to {warmth:.2g} K",
         },
+        knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
+        ends=True,
     )
+
+
+def _climbs(height: Profile) -> bool:
+    """Return whether the way goes up all the time."""
+    return bool(np.all(np.diff([height(float(share)) for share in np.linspace(0.0, 1.0, 101)]) > 0.0))

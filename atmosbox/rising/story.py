@@ -109,7 +109,11 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
     if ascent.rains:
         shares, along = ascent.planned
         middle = (np.arange(len(pressure)) + 0.5) / frames
-        path = law.ParcelPath(*(np.interp(middle, shares, each) for each in along))
+        planned = np.exp(np.interp(middle, shares, np.log(ascent.route)))
+        if np.allclose(planned, dataset.environment_pressure.values, rtol=1e-6):
+            path = law.ParcelPath(*(np.interp(middle, shares, each) for each in along))
+        else:  # it was led by hand
+            path = ascent.path(pressure, middle)
     else:
         path = ascent.path(pressure, pressure)
     exponent = float(law.moist_air_poisson_exponent(ascent.total_water, ascent.nuclei_heat))

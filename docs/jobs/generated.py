@@ -1,5 +1,6 @@
-"""Tables that are read off the code: settings, facts, variables, attributes, layers, words of the command line."""
+"""Tables that are read off the code: settings, facts, variables, attributes, layers, and what is printed."""
 
+import ast
 import importlib.util
 import os
 import subprocess
@@ -26,7 +27,7 @@ def parameters(found: Findings) -> None:
     """Make a table of the settings of each scene."""
     for name in scenarios.names():
         rows = [
-            [f"`{p.name}`", f"`{p.typed()}`", p.unit if p.unit not in ("", "1") else "–", p.allowed, p.help]
+            [f"`{p.name}`", f"`{p.typed()}`", f"`{p.unit}`" if p.unit not in ("", "1") else "–", p.allowed, p.help]
             for p in scenarios.load(name).Settings.describe()
         ]
         found.table(["setting", "default", "unit", "allowed", "what it is"], rows, key=name)
@@ -111,13 +112,6 @@ def console(words: str, folder: Path | None = None, status: int = 0) -> str:
     return "\n".join(["```console", f"$ atmosbox {words}", *lines, "```"])
 
 
-@job("help")
-def help_texts(found: Findings) -> None:
-    """Keep what `--help` says of each command."""
-    for command in ("list", "info", "run", "plot", "check", "tradeoff"):
-        found.text("\n".join(["```text", typed(command, "--help"), "```"]), key=command)
-
-
 @job("refusal")
 def refusal(found: Findings) -> None:
     """Type something that cannot be understood."""
@@ -138,6 +132,17 @@ def tour(found: Findings) -> None:
             found.text(console(words, folder), key=key)
 
 
+def lines_of_code(source: str) -> int:
+    """Return how many lines of a module are neither empty nor part of an import or a docstring."""
+    tree = ast.parse(source)
+    apart: set[int] = set()
+    for node in ast.walk(tree):
+        text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        if text or isinstance(node, ast.Import | ast.ImportFrom):
+            apart.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return sum(1 for number, line in enumerate(source.splitlines(), 1) if line.strip() and number not in apart)
+
+
 @job("own-scene")
 def own_scene(found: Findings) -> None:
     """Show the example of a scene of one's own, and run it."""
@@ -145,6 +150,7 @@ def own_scene(found: Findings) -> None:
     source = path.read_text(encoding="utf-8").rstrip()
     found.text(f"```python\n{source}\n```", key="source")
     found.number("lines", sum(1 for line in source.splitlines() if line.strip()))
+    found.number("statements", lines_of_code(source))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "my_scene.py").write_text(f"{source}\n", encoding="utf-8")

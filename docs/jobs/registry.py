@@ -124,7 +124,10 @@ class Findings:
         """Write a figure, or at least check that it can be drawn."""
         stream = io.BytesIO()
         drawing.savefig(stream, format="png", dpi=dots_per_inch, metadata={"Software": None})
-        content = stream.getvalue()
+        self.picture(stream.getvalue(), name)
+
+    def picture(self, content: bytes, name: str) -> None:
+        """Write a figure that is a PNG already."""
         if len(content) > LARGEST_FIGURE:
             content = compact(content)
         if len(content) > LARGEST_FIGURE:

@@ -5,9 +5,22 @@ import warnings
 
 from atmosbox.cli.application import app
 
-from atmosbox.cli.command import listing, run, tradeoff, plot, check  # isort: skip
+from atmosbox.cli.command import listing, run, sweep, tradeoff, plot, view, live, animate, compare, sheet, check  # isort: skip
 
-__all__ = ["check", "listing", "main", "plot", "run", "tradeoff"]
+__all__ = [
+    "animate",
+    "check",
+    "compare",
+    "listing",
+    "live",
+    "main",
+    "plot",
+    "run",
+    "sheet",
+    "sweep",
+    "tradeoff",
+    "view",
+]
 
 
 def main() -> None:

@@ -1,0 +1,178 @@
+"""What ``atmosbox compare`` does: several runs in one figure, and a table of their numbers."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.cli.table import digits, measurement, number, table, wrapped
+from atmosbox.cli.terminal import say, say_json, tell, width
+from atmosbox.errors import SettingError
+
+if TYPE_CHECKING:
+    from atmosbox.compare import Compared, Naming
+
+_LONGEST = 100  # characters of a name that is made of those of all files
+
+
+def compare(
+    files: Sequence[str],
+    *,
+    out: str | None,
+    format: str | None,
+    theme: str,
+    force: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Draw several runs into one figure, and say by how much their numbers differ.
+
+    Parameters
+    ----------
+    files
+        The files of the runs.
+    out, format, theme, force, as_json, quiet
+        The options of these names.
+
+    Raises
+    ------
+    AtmosboxError
+        If something is refused or fails.
+    """
+    if len(files) < 2:
+        raise SettingError("FILE", None, "is given once", f"give a second run to compare {files[0]} with")
+    from atmosbox.output import check_writable, read
+
+    kind = (Path(out).suffix[1:].lower() if out else "") if format is None else format
+    path = beside(files, kind or "png") if out is None else Path(out)
+    datasets = [read(file) for file in files]
+
+    from atmosbox.compare import compared, naming, save
+
+    names = naming(datasets, [Path(file).stem for file in files])
+    numbers = compared(datasets)
+    if kind == "html":
+        if len(files) > 2:
+            pair = shlex.join(["atmosbox", "view", *files[:2]])
+            raise SettingError("FILE", None, f"is given {len(files)} times, and a page shows two runs", f"type {pair}")
+        from atmosbox.page import save as save_page
+
+        check_writable(path, force)
+        path = save_page(datasets, path, force=force)
+    else:
+        path = save(datasets, names, path, format, theme=theme, force=force)
+    if names.same:
+        tell(f"note: {' and '.join(files)} hold the same run")
+    if as_json:
+        say_json({"file": str(path), **as_record(files, names, numbers)})
+    elif quiet:
+        say(str(path))
+    else:
+        say("\n".join([*lines(files, names, numbers, width()), "", f"file: {path}"]))
+
+
+def beside(files: Sequence[str], kind: str) -> Path:
+    """Return the figure beside the first file, named after all of them.
+
+    Examples
+    --------
+    >>> str(beside(["runs/cold.nc", "warm.nc"], "png"))
+    'runs/cold-and-warm.png'
+    """
+    first = Path(files[0])
+    stem = "-and-".join(Path(file).stem for file in files)
+    if len(stem) > _LONGEST:
+        stem = f"{first.stem[:_LONGEST]}-and-{len(files) - 1}-more"
+    return first.with_name(f"{stem}.{kind}")
+
+
+def lines(files: Sequence[str], names: Naming, numbers: Sequence[Compared], columns: int) -> list[str]:
+    """Return the comparison as text: what differs, and the numbers of all runs with their differences."""
+    head = f"{' and '.join(dict.fromkeys(names.scenes))}: {names.title}"
+    runs = [f"{label}: {file}" for label, file in zip(names.labels, files, strict=True) if label != Path(file).stem]
+    made = [*wrapped(head, columns), *(line for run in runs for line in wrapped(run, columns, indent="  ")), ""]
+    if not numbers:
+        return [*made, "No number is in both files: each run shows its own with atmosbox check."]
+    rows = []
+    for each in numbers:
+        unit = "" if each.unit in ("", "1") else f" [{each.unit}]"
+        if len(files) == 2:
+            rows.append(
+                [each.label + unit, *(_said(each, run) for run in (0, 1)), _changed(each, 1), _expected(each, 1)]
+            )
+            continue
+        for run, label in enumerate(names.labels):
+            first = run == 0
+            rows.append(
+                [each.label + unit if first else "", label, _said(each, run)]
+                + ["", ""] * first
+                + [_changed(each, run), _expected(each, run)] * (not first)
+            )
+    if len(files) == 2:
+        header = ["quantity", *names.labels, "difference", "by theory"]
+    else:
+        header = ["quantity", "run", "measured", "less the first", "by theory"]
+    return [*made, *table(header, rows, columns)]
+
+
+def _said(each: Compared, run: int) -> str:
+    """Return a measurement of a run."""
+    value, error = each.runs[run].value, each.runs[run].error
+    if not math.isfinite(value):
+        return "-"
+    return measurement(value, error) if math.isfinite(error) else number(value)
+
+
+def _changed(each: Compared, run: int) -> str:
+    """Return the difference from the first run, with its standard error, and how many of these it is."""
+    difference, error = each.difference(run), each.error(run)
+    if not math.isfinite(difference):
+        return "-"
+    decimals, power = digits(difference, error)
+    if decimals is None:
+        return number(difference, sign="+") if difference else "0"
+    shown = f"{number(difference, decimals, power, '+')} ± {number(error, decimals, power)}"
+    return f"{shown} ({abs(each.sigma(run)):.1f}σ)"
+
+
+def _expected(each: Compared, run: int) -> str:
+    """Return the difference that theory expects, in the digits of the measured one."""
+    expected = each.expected(run)
+    if not math.isfinite(expected):
+        return "-"
+    return number(expected, *digits(each.difference(run), each.error(run)), "+") if expected else "0"
+
+
+def as_record(files: Sequence[str], names: Naming, numbers: Sequence[Compared]) -> dict[str, Any]:
+    """Return the comparison for JSON."""
+    return {
+        "same": names.same,
+        "changes": {change.name: list(change.values) for change in names.changes},
+        "runs": [
+            {"file": file, "label": label, "scene": scene}
+            for file, label, scene in zip(files, names.labels, names.scenes, strict=True)
+        ],
+        "headlines": [
+            {
+                "name": each.name,
+                "label": each.label,
+                "unit": each.unit,
+                "runs": [
+                    {
+                        "value": run.value,
+                        "standard_error": run.error,
+                        "theory": run.theory,
+                        "difference": each.difference(k),
+                        "difference_standard_error": each.error(k) if k else math.nan,
+                        "sigma": each.sigma(k) if k else math.nan,
+                        "difference_by_theory": each.expected(k),
+                    }
+                    for k, run in enumerate(each.runs)
+                ],
+            }
+            for each in numbers
+        ],
+    }

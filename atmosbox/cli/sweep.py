@@ -1,0 +1,250 @@
+"""What ``atmosbox sweep`` does: run a scene with many settings, save it, and say what came out."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from atmosbox.cli.progress import progress
+from atmosbox.cli.report import ledger_line, next_command
+from atmosbox.cli.run import checked_path, default_path
+from atmosbox.cli.table import measurement, number, table, wrapped
+from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
+from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.sweep import Plan, SweepInterrupted, Swept
+
+_MOST_NAMED = 5
+"""So many failures are told one by one."""
+
+
+def sweep(
+    scene: str,
+    *,
+    vary: Sequence[str],
+    members: str,
+    values: Sequence[str],
+    seed: str | None,
+    engine: str | None,
+    accuracy: str | None,
+    jobs: str | None,
+    scheduler: str | None,
+    out: str | None,
+    force: bool,
+    dry_run: bool,
+    as_json: bool,
+    quiet: bool,
+    words: Sequence[str],
+) -> None:
+    """Run a sweep as it was asked for, and say what came out.
+
+    Parameters
+    ----------
+    scene
+        The name of the scene.
+    vary, values
+        What stood behind each ``--vary`` and each ``--set``.
+    members, seed, engine, accuracy, jobs, scheduler
+        What stood behind the options of these names.
+    out, force
+        The file, and whether it may replace another.
+    dry_run, as_json, quiet
+        The options of these names.
+    words
+        What was typed, for the history of the file.
+
+    Raises
+    ------
+    AtmosboxError
+        If something is refused, or a run has failed.
+    typer.Exit
+        With the status of an interruption, if the sweep was stopped.
+    """
+    from atmosbox.config import parse_set
+    from atmosbox.sweep import SweepInterrupted, plan
+    from atmosbox.sweep import sweep as run
+
+    with contextlib.redirect_stdout(sys.stderr):  # what a scene of one's own prints is no result
+        grid = plan(
+            scene,
+            vary,
+            settings=parse_set(values),
+            members=_whole("members", members, 1),
+            seed=None if seed is None else _whole("seed", seed, 0, 2**63 - 1),
+            engine=engine,
+            accuracy=accuracy,
+        )
+    path = checked_path(out, scene) if out is not None else Path(f"{default_path(scene).stem}-sweep.nc")
+    processes = None if jobs is None else _whole("jobs", jobs, 1, 4096)
+    if dry_run:
+        _describe(grid, path, as_json=as_json, quiet=quiet)
+        return
+    try:
+        with contextlib.redirect_stdout(sys.stderr), progress(grid.scene, quiet=quiet) as show:
+            swept = run(
+                grid,
+                path,
+                jobs=processes,
+                scheduler=scheduler,
+                force=force,
+                progress=show,
+                note=None if quiet else lambda text: tell(text if text.startswith("warning") else f"note: {text}"),
+                command=shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8"),
+            )
+    except SweepInterrupted as stop:
+        _say_interrupted(stop, grid, path)
+        raise typer.Exit(INTERRUPTED) from stop
+    _say(grid, swept, path, as_json=as_json, quiet=quiet)
+    _judge(grid, swept, path)
+
+
+def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
+    """Return a whole number that stood behind an option."""
+    from atmosbox.quantity import parse_whole
+
+    try:
+        return parse_whole(text, "1", option, low=low, high=high, example="8")
+    except SettingError as error:
+        fix = error.fix.replace(f"--set {option}=", f"--{option} ")
+        raise type(error)(error.setting, error.value, error.problem, fix) from None
+
+
+def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
+    """Say what would run."""
+    names = [axis.name for axis in grid.axes]
+    if as_json:
+        points = [dict(grid.values(point)) for point in range(1, grid.points + 1)]
+        facts = {"dry_run": True, "scene": grid.scene, "title": grid.title, "file": str(path), "runs": grid.runs}
+        say_json({**facts, "members": grid.members, "settings": dict(grid.defaults), "points": points})
+        return
+    if quiet:
+        say(str(path))
+        return
+    rows = [[*grid.typed(point), grid.refused.get(point, "")] for point in range(1, grid.points + 1)]
+    lines = [
+        f"{grid.scene}: {grid.title}",
+        "",
+        *table([*names, "refused" if grid.refused else ""], rows, width()),
+        "",
+        f"runs: {grid.runs}, {grid.members} at each of {grid.points} points",
+        f"file: {path} (not written: this is a dry run)",
+    ]
+    say("\n".join(lines))
+
+
+def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
+    """Say what came out."""
+    from atmosbox.runner import LEDGER_LIMIT
+
+    if as_json:
+        made = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "computed": swept.computed}
+        failed = [{"point": point, "member": member, "reason": why} for point, member, why in swept.failures]
+        say_json({**made, "failed": failed, "ledger": swept.ledger, "points": records(grid, swept.dataset)})
+    elif quiet:
+        say(str(path))
+    else:
+        said = lines(grid, swept.dataset, width())
+        said += ["", ledger_line(swept.ledger, LEDGER_LIMIT), f"file: {path}", f"next: {next_command('plot', path)}"]
+        say("\n".join(said))
+
+
+def records(grid: Plan, dataset: xr.Dataset) -> list[dict[str, Any]]:
+    """Return one record for each point, in SI units, for JSON."""
+    names = _headlines(dataset)
+    made = []
+    for point in range(1, grid.points + 1):
+        record: dict[str, Any] = {"settings": grid.values(point), "headlines": {}}
+        for name in names:
+            parts = {"mean": name, "standard_error": f"{name}_se", "theory": f"{name}_theory"}
+            record["headlines"][name] = {
+                part: float(dataset[key].values.ravel()[point - 1]) for part, key in parts.items() if key in dataset
+            } | {"unit": str(dataset[name].attrs["units"])}
+        made.append(record)
+    return made
+
+
+def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
+    """Return a table of the points: the mean of the members with its error, and theory beside it."""
+    from atmosbox.conversion import from_si
+    from atmosbox.sweep import FEWEST
+
+    names = _headlines(dataset)
+    header = [axis.name for axis in grid.axes]
+    for name in names:
+        attributes = dataset[name].attrs
+        shown = attributes["display_units"]
+        header.append(f"{attributes['long_name']}{'' if shown == '1' else f' [{shown}]'}")
+        header += ["theory"] if f"{name}_theory" in dataset else []
+    body = []
+    for point in range(1, grid.points + 1):
+        cells = [*grid.typed(point)]
+        for name in names:
+            unit = str(dataset[name].attrs["display_units"])
+            mean, error = (float(dataset[key].values.ravel()[point - 1]) for key in (name, f"{name}_se"))
+            scaled = from_si(mean, unit), from_si(error, unit, difference=True)
+            cells.append(measurement(*scaled) if math.isfinite(mean) else "-")
+            if f"{name}_theory" in dataset:
+                answer = float(dataset[f"{name}_theory"].values.ravel()[point - 1])
+                cells.append(number(from_si(answer, unit)) if math.isfinite(answer) else "-")
+        body.append(cells)
+    words = "a single run ± its standard error"
+    if grid.members > 1:
+        source = "own error bars" if grid.members < FEWEST else "scatter"
+        words = f"mean of {grid.members} runs ± its standard error, from their {source}"
+    return [*table(header, body, columns), "", *wrapped(words, columns)]
+
+
+def _headlines(dataset: xr.Dataset) -> list[str]:
+    from atmosbox.provenance import parameters
+
+    return [str(name) for name in parameters(dataset)["sweep"]["headlines"]]
+
+
+def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
+    """Say what is kept of a sweep that was stopped, and how to go on."""
+    from atmosbox.output import part_path
+
+    if stop.swept is None:
+        tell("stopped before the first run was complete: nothing is kept")
+        return
+    saved = stop.swept.computed + stop.swept.recalled
+    tell(
+        f"stopped: {saved} of {grid.runs} runs are saved, type the same again to go on; to see them: "
+        f"{next_command('plot', part_path(path))}"
+    )
+
+
+def _judge(grid: Plan, swept: Swept, path: Path) -> None:
+    """Raise the error that the sweep ends with, if any run has failed."""
+    from atmosbox.runner import LEDGER_LIMIT
+
+    failed: AtmosboxError | None = None
+    if swept.failures:
+        named = [
+            f"{grid.named(point)}, member {member} ({why.rstrip('.')})"
+            for point, member, why in swept.failures[:_MOST_NAMED]
+        ]
+        more = len(swept.failures) - len(named)
+        named += [f"and {more} more, see member_reason in the file"] if more else []
+        failed = EngineError(
+            f"{len(swept.failures)} of {grid.runs} runs failed and are missing in {path}: {'; '.join(named)}."
+        )
+    if not swept.ledger <= LEDGER_LIMIT:
+        if failed is not None:
+            tell(f"error: {failed}")
+        raise PhysicsError(
+            f"The energy ledger of a run of this sweep is off by {swept.ledger:.0e}, more than {LEDGER_LIMIT:.0e}: "
+            f"see member_ledger in {path}."
+        )
+    if failed is not None:
+        raise failed

@@ -1,0 +1,15 @@
+"""The film of a run: its molecules in their box, beside the scene's graphs, which grow with the clock.
+
+Everything comes from the file: places and speeds of the molecules, the box and its walls, which a run keeps when it
+is asked to (``--save-molecules``), and the panels of its scene. Without molecules the graphs alone can be filmed.
+
+Read in this order: `pace` (which frames, how fast), `box` (what the file says of the box), `view` (from space to the
+page), `stage` and `table` (the molecules in space and in a plane), `running` and `graph` (graphs that grow), `sheet`
+(where everything stands), `encoder` and `file` (GIF and MP4).
+"""
+
+from atmosbox.film.file import FORMATS, save
+from atmosbox.film.pace import Pace, pace
+from atmosbox.film.sheet import Sheet
+
+__all__ = ["FORMATS", "Pace", "Sheet", "pace", "save"]

@@ -1,0 +1,249 @@
+"""The graphs beside the box: their measured curves grow with the clock, theory stands from the start."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+
+from atmosbox.film.running import Running
+from atmosbox.panels import Line, Panel
+from atmosbox.plot.curve import Curve, curve
+from atmosbox.plot.draw import Entry
+from atmosbox.plot.layout import Painter
+from atmosbox.plot.skewt import SHADE_ORDER, slender
+from atmosbox.plot.stroke import draw_line, draw_steps
+from atmosbox.plot.theme import DARK, DATA_COLOURS, Theme
+from atmosbox.plot.unit import convert
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Graph", "GraphPainter", "chosen"]
+
+_HEADROOM = 1.08  # over the highest of a histogram
+
+
+def _grows(dataset: xr.Dataset, line: Line, running: Running) -> bool:
+    """Tell whether a curve is measured bit by bit."""
+    names = [name.partition("[")[0] for name in (line.x, line.y)]
+    in_time = any("elapsed_time" in dataset[name].dims for name in names if name in dataset.variables)
+    return line.role == "data" and (in_time or any(name in running.names for name in names))
+
+
+def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, most: int = 2) -> tuple[Panel, ...]:
+    """Return the panels to film: those that grow, first of two kinds, and no misfits if there is anything else.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    panels : tuple of Panel
+        What its figure shows.
+    running : Running
+        What can be followed by its molecules.
+    most : int
+        How many panels there is room for; a skew-T takes that of two.
+
+    Returns
+    -------
+    tuple of Panel
+        The panels; none if nothing grows.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0])}, coords={"elapsed_time": [0.0]})
+    >>> warm = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
+    >>> [panel.title for panel in chosen(dataset, (Panel("discs", "A box"), warm), Running(dataset))]
+    ['Warm']
+    """
+    growing = [panel for panel in panels if any(_grows(dataset, line, running) for line in panel.lines)]
+    telling = [panel for panel in growing if not any(line.minus for line in panel.lines)] or growing
+    if not telling:
+        return ()
+    first, *rest = telling
+    if first.kind == "skewt":
+        return (first,)
+    others = [panel for panel in rest if panel.kind != first.kind and panel.kind != "skewt"]
+    others += [panel for panel in rest if panel.kind == first.kind]
+    picked = (first, *others[: most - 1])
+    return tuple(panel for panel in panels if panel in picked)
+
+
+class GraphPainter:
+    """Draws what stands still in panels, within the limits of all that they will hold.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    look : Theme
+        How large.
+    running : Running
+        What can be followed by its molecules.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.plot.theme import THEMES
+    >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0, 3.0])}, coords={"elapsed_time": [0.0, 9.0]})
+    >>> panel = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
+    >>> drawing = Figure()
+    >>> painter = GraphPainter(dataset, THEMES["notes"], Running(dataset))
+    >>> axes, entries = painter.draw(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
+    >>> len(axes.lines), [label for _, label in entries]
+    (0, ['air'])
+    """
+
+    def __init__(self, dataset: xr.Dataset, look: Theme, running: Running) -> None:
+        self.dataset, self.look, self.running = dataset, look, running
+
+    def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
+        """Draw a panel at its place, along the abscissa of the one above if that is given."""
+        scratch = Figure(figsize=tuple(drawing.get_size_inches()))
+        whole = Painter(self.dataset, self.look)
+        full, entries = whole.draw(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
+        still = tuple(line for line in panel.lines if not _grows(self.dataset, line, self.running))
+        if still:
+            axes, _ = Painter(self.dataset, self.look, still).draw(drawing, spot, panel, above)
+        else:
+            axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
+            axes.grid(visible=True)
+        axes.set_xlim(full.get_xlim())
+        axes.set_ylim(full.get_ylim())
+        if panel.kind == "histogram":
+            axes.set_ylim(top=max(axes.get_ylim()[1], self._highest(panel)))
+        return axes, entries
+
+    def _highest(self, panel: Panel) -> float:
+        """Return what a histogram must have room for."""
+        lines = [line for line in panel.lines if line.y in self.running.names]
+        frames = range(0, self.dataset.sizes["elapsed_time"], max(1, self.dataset.sizes["elapsed_time"] // 60))
+        tops = [
+            float(np.max(convert(self.running.values(line.y, frame), _unit(self.dataset, line.y), panel.y_unit)))
+            for line in lines
+            for frame in frames
+        ]
+        return _HEADROOM * max(tops, default=0.0)
+
+    def labels(self, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Return what the two axes of a panel show, and in which units."""
+        return Painter(self.dataset, self.look).labels(panel)
+
+    def levels(self, panel: Panel) -> dict[str, float]:
+        """Return the pressures that a panel marks [hPa]."""
+        return Painter(self.dataset, self.look).levels(panel)
+
+
+class Graph:
+    """The curves of one panel as far as they have come.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes, with all that stands still.
+    panel : Panel
+        The panel.
+    dataset : xarray.Dataset
+        The run.
+    look : Theme
+        How large.
+    running : Running
+        What can be followed by its molecules.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.plot.theme import THEMES
+    >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0, 3.0])}, coords={"elapsed_time": [0.0, 9.0]})
+    >>> panel = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
+    >>> graph = Graph(Figure().add_subplot(), panel, dataset, THEMES["notes"], Running(dataset))
+    >>> len(graph.artists(1)) > 0
+    True
+    """
+
+    def __init__(self, axes: Axes, panel: Panel, dataset: xr.Dataset, look: Theme, running: Running) -> None:
+        self.axes, self.panel, self.dataset, self.running = axes, panel, dataset, running
+        self.look = slender(look) if panel.kind == "skewt" else look
+        axes.set_autoscale_on(False)
+        measured = [line for line in panel.lines if line.role == "data"]
+        self.lines = [(line, measured.index(line)) for line in measured if _grows(dataset, line, running)]
+        self.curves = {
+            line: curve(dataset, panel, line) for line, _ in self.lines if not {line.x, line.y} & set(running.names)
+        }
+        time = dataset["elapsed_time"]
+        shown = panel.x_unit if panel.kind == "line" and all(line.x == "elapsed_time" for line in measured) else ""
+        self.time = convert(time.values, _unit(dataset, "elapsed_time"), shown, name="elapsed_time")
+        self.cursor = axes.axvline(self.time[0], color=DARK, linewidth=look.line / 2, zorder=5.0)
+        self.cursor.set_visible(panel.kind == "line" and all(line.x == "elapsed_time" for line in measured))
+        self.cursor.set_animated(True)
+        # the energy of a storm is shaded as far as the parcel has come
+        self.shades = [each for each in axes.collections if panel.kind == "skewt" and each.get_zorder() == SHADE_ORDER]
+        for shade in self.shades:
+            shade.set_animated(True)
+        self.drawn: list[Artist] = []
+
+    def artists(self, frame: int) -> list[Artist]:
+        """Return what is to be drawn of a frame, from the back to the front."""
+        for bars in list(self.axes.containers):
+            bars.remove()
+        for artist in self.drawn:
+            if artist.axes is not None:
+                artist.remove()
+        before = set(self.axes.get_children())
+        if len(self.curves) < len(self.lines):
+            so_far = self.running.at(frame)
+        for line, index in self.lines:
+            if line in self.curves:
+                self._draw_so_far(line, index, frame)
+            elif self.panel.kind == "histogram":
+                draw_steps(self.axes, self.panel, replace(line, error=None), so_far, self.look, index)
+            else:
+                values = curve(so_far, self.panel, replace(line, error=None))
+                draw_line(self.axes, self.panel, line, values, self.look, index)
+        new = [artist for artist in self.axes.get_children() if artist not in before]
+        self.drawn = sorted(new, key=lambda artist: artist.get_zorder())
+        for artist in self.drawn:
+            artist.set_animated(True)
+        self.cursor.set_xdata([self.time[frame]] * 2)
+        for shade in self.shades:
+            shade.set_clip_path(self._below(frame))
+        return [*self.shades, *([self.cursor] if self.cursor.get_visible() else []), *self.drawn]
+
+    def _below(self, frame: int) -> Rectangle:
+        """Return the part of the axes up to where the first curve has come."""
+        up = self.curves[self.lines[0][0]].y[frame]
+        top = self.axes.transAxes.inverted().transform(self.axes.transData.transform((self.axes.get_xlim()[0], up)))[1]
+        return Rectangle((0.0, 0.0), 1.0, float(top), transform=self.axes.transAxes)
+
+    def _draw_so_far(self, line: Line, index: int, frame: int) -> None:
+        """Draw a curve up to a frame, and a dot at its head."""
+        x, y, error = self.curves[line]
+        each = x.size == self.time.size
+        past = np.arange(x.size) <= frame if each else x <= self.time[frame]
+        values = Curve(np.where(past, x, np.nan), np.where(past, y, np.nan), error)
+        draw_line(self.axes, self.panel, line, values, self.look, index)
+        if each:
+            self.axes.add_line(
+                Line2D(
+                    x[[frame]],
+                    y[[frame]],
+                    marker="o",
+                    markersize=1.5 * self.look.marker,
+                    markerfacecolor=DATA_COLOURS[index % len(DATA_COLOURS)],
+                    markeredgecolor="white",
+                    zorder=6.0,
+                )
+            )
+
+
+def _unit(dataset: xr.Dataset, name: str) -> str:
+    return str(dataset[name].attrs.get("units", "1"))

@@ -1,0 +1,90 @@
+"""Which frames of a run a film shows, and for how long each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import SettingError
+
+__all__ = ["Pace", "pace"]
+
+SECONDS = 12.0
+"""How long a film lasts if nobody says otherwise."""
+SMOOTH, APART = 20.0, 10.0
+"""Pictures a second where the molecules are seen to move, and where each picture is a new arrangement."""
+FASTEST, LONGEST = 50.0, 3600.0
+MOST = 5000
+"""Pictures that a film may have."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Which frames a film shows, and how many a second.
+
+    Parameters
+    ----------
+    frames : ndarray of int, (picture,)
+        The frames of the run, in order.
+    fps : float
+        Pictures a second.
+
+    Examples
+    --------
+    >>> Pace(np.arange(40), 10.0).seconds
+    4.0
+    """
+
+    frames: NDArray[np.int64]
+    fps: float
+
+    @property
+    def seconds(self) -> float:
+        """How long the film lasts."""
+        return self.frames.size / self.fps
+
+
+def pace(frames: int, *, fps: float | None = None, seconds: float | None = None, smooth: bool = False) -> Pace:
+    """Choose evenly spaced frames of a run, the last among them, so that a film of them lasts as long as is wished.
+
+    Parameters
+    ----------
+    frames : int
+        How many frames the run has.
+    fps : float, optional
+        Pictures a second: 10 if nothing is said, 20 where the run is `smooth`.
+    seconds : float, optional
+        How long the film is to last: 12 seconds if nothing is said, or as long as the frames reach.
+    smooth : bool
+        Whether molecules move but little from one frame to the next.
+
+    Returns
+    -------
+    Pace
+        The frames. A run of few frames is shown slower if the seconds are given and the pictures a second are not.
+
+    Raises
+    ------
+    SettingError
+        If a film cannot have so many pictures, or be so fast or long.
+
+    Examples
+    --------
+    >>> pace(1000).frames.size, pace(40).seconds, pace(40, seconds=8.0).fps
+    (120, 4.0, 5.0)
+    """
+    if fps is not None and not 0.1 <= fps <= FASTEST:
+        raise SettingError("fps", fps, f"is no number of 0.1 to {FASTEST:g} pictures a second", "give --fps 10")
+    if seconds is not None and not 0.1 <= seconds <= LONGEST:
+        raise SettingError("seconds", seconds, f"is no number of 0.1 to {LONGEST:g} seconds", "give --seconds 12")
+    rate = fps or (SMOOTH if smooth else APART)
+    if seconds is not None and fps is None:
+        rate = min(rate, max(frames / seconds, 0.1))
+    number = min(frames, max(1, round(rate * (seconds or SECONDS))))
+    if number > MOST:
+        problem = f"at {rate:g} pictures a second are {number} pictures, more than the {MOST} that a film may have"
+        raise SettingError("seconds", seconds, problem, f"give --seconds {math.floor(MOST / rate)} or less")
+    return Pace(np.linspace(frames - 1, 0, number).round().astype(np.int64)[::-1], rate)

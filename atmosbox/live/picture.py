@@ -1,0 +1,127 @@
+"""What the page sees of a box: said once, and then where everything is."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox import __version__
+from atmosbox.instruments import wall_laws
+from atmosbox.page import Box, Stage, stage
+from atmosbox.preparation import Prepared
+from atmosbox.quantity import phrase
+from atmosbox.scene import Setup
+from atmosbox.units import DRY_AIR, WATER
+
+if TYPE_CHECKING:
+    from atmosbox.panels import Panel
+
+__all__ = ["Picture"]
+
+_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_FASTEST = 3.0
+
+
+class Picture:
+    """The view of one box.
+
+    Parameters
+    ----------
+    prepared, setup
+        The scene and its box.
+    panels
+        Its graphs.
+
+    Attributes
+    ----------
+    stage
+        What the page is told once.
+    """
+
+    def __init__(self, prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> None:
+        self._setup = setup
+        parcel: Any = setup.parcel
+        scale = setup.scale
+        present = parcel.present
+        mass = np.full(present.size, math.nan)
+        diameter = np.full(present.size, math.nan)
+        mass[present] = parcel.mass * scale.mass
+        diameter[present] = parcel.diameter * scale.length
+        water = None
+        if hasattr(parcel, "vapour"):
+            mass[~present] = WATER.molecule_mass  # only water is ever out of the gas
+            diameter[~present] = float(np.nanmean(diameter)) if present.any() else DRY_AIR.diameter
+            water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
+        kT = np.array([*parcel.wall_kT(), self._kT()])
+        lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
+        fastest = _FASTEST * math.sqrt(float(np.nanmax(kT)) / lightest) * scale.velocity
+        module, settings = prepared.module, prepared.settings
+        self.stage: Stage = stage(
+            scene=prepared.scene,
+            title=str(getattr(module, "title", prepared.scene)),
+            story=(module.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
+            facts=list(setup.facts.items()),
+            settings=[(p.name, _said(getattr(settings, p.name), p.unit)) for p in settings.describe()],
+            version=__version__,
+            seed=settings.seed,
+            engine=str(prepared.engine),
+            box=Box(
+                length=tuple(float(side) * scale.length for side in parcel.length),  # type: ignore[arg-type]
+                walls=wall_laws(parcel),
+                wall_temperature=tuple(
+                    float(each) * scale.temperature if math.isfinite(each) else None for each in parcel.wall_kT()
+                ),
+                planar=parcel.planar,
+                gravity=parcel.gravity > 0.0,
+            ),
+            mass=mass,
+            diameter=diameter,
+            water=water,
+            time_unit=setup.time_unit,
+            fastest=fastest,
+            panels=panels,
+            discs=any(panel.kind == "discs" for panel in panels),
+        )
+
+    def _kT(self) -> float:
+        parcel = self._setup.parcel
+        dimensions = 2.0 if parcel.planar else 3.0
+        return 2.0 * parcel.energy()[0] / (dimensions * max(parcel.number, 1))
+
+    def time(self) -> float:
+        """Return the time of the box, in the unit of its stage."""
+        return self._setup.parcel.time * self._setup.scale.time / _SECONDS[self._setup.time_unit]
+
+    def frame(self, sequence: int) -> bytes:
+        """Return where everything is now, as one message to the page."""
+        parcel: Any = self._setup.parcel
+        scale = self._setup.scale
+        snapshot = parcel.snapshot()
+        present = parcel.present
+        position = np.full((present.size, 3), math.nan)
+        speed = np.full(present.size, math.nan)
+        position[present] = snapshot.position * scale.length
+        speed[present] = np.sqrt(np.sum(snapshot.velocity**2, axis=1)) * scale.velocity
+        drops = None
+        if hasattr(parcel, "drops"):
+            centre, radius, _ = parcel.drops()
+            drops = np.column_stack([centre, radius]) * scale.length
+        return self.stage.frame(
+            sequence,
+            self.time(),
+            parcel.length * scale.length,
+            position,
+            speed,
+            drops=drops,
+            liquid=int(getattr(parcel, "liquid", 0)),
+            rained=int(getattr(parcel, "rained", 0)),
+        )
+
+
+def _said(value: object, unit: str) -> str:
+    """Return a setting as the caption says it."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return str(value) if isinstance(value, str) else phrase(value, unit)  # type: ignore[arg-type]

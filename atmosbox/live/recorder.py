@@ -1,0 +1,169 @@
+"""The record button: which file is being written, and from when on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.live.experiment import Experiment
+from atmosbox.live.tape import Change, Tape, file_for
+from atmosbox.panels import to_json
+from atmosbox.recording import Recording
+
+__all__ = ["Recorder"]
+
+_LONGEST = 30_000
+_MOLECULE = 16.0  # bytes of a molecule in a frame
+_MEMORY = 1e9
+
+
+class Recorder:
+    """Records a box into one file after the other.
+
+    Parameters
+    ----------
+    folder
+        Where files go.
+    out
+        The name of the first, if it has one.
+    force
+        Whether they may replace others.
+    command
+        What the user typed, for the history of a file.
+    note
+        Told a level and a sentence for the page.
+
+    Examples
+    --------
+    >>> recorder = Recorder(Path(), None, False, "atmosbox live temperature", print)
+    >>> recorder.name is None, recorder.stop() is None
+    (True, True)
+    """
+
+    def __init__(
+        self, folder: Path, out: str | None, force: bool, command: str, note: Callable[[str, str], None]
+    ) -> None:
+        self._folder = folder
+        self._out = out
+        self._force = force
+        self._command = command
+        self._note = note
+        self._wanted: Path | None = None
+        self._tape: Tape | None = None
+
+    @property
+    def name(self) -> str | None:
+        """Name of the file that is being recorded."""
+        if self._wanted is not None:
+            return self._wanted.name
+        return None if self._tape is None else self._tape.path.name
+
+    def watching(self) -> list[Recording]:
+        """Return the instruments whose readings are recorded."""
+        return [] if self._tape is None else [self._tape.recording]
+
+    def start(self, name: object, box: Experiment, changes: Sequence[Change]) -> None:
+        """Record a box from now on, or from its next frame if one has begun.
+
+        Parameters
+        ----------
+        name
+            What the page gave as the name of the file; None or empty for one that is free.
+        box, changes
+            The box, and all that has been changed in it; the list grows.
+
+        Raises
+        ------
+        AtmosboxError
+            If something is being recorded already, or the file is refused.
+        """
+        if self.name is not None:
+            raise SettingError("record", self.name, "is recording already", "stop that first")
+        if name is not None and not isinstance(name, str):
+            raise SettingError("file", repr(name), "is not a name", "give the name of a file, such as warm.nc")
+        name = None if name is None or not name.strip() else name
+        if name is None and self._out is not None:
+            name, self._out = self._out, None
+        self._wanted = file_for(name, box.prepared.scene, self._folder, force=self._force)
+        if box.between_frames:
+            self._begin(box, changes)
+
+    def _begin(self, box: Experiment, changes: Sequence[Change]) -> None:
+        from atmosbox.provenance import global_attributes
+
+        path, self._wanted = self._wanted, None
+        if path is None:
+            return
+        prepared = box.prepared
+        about = global_attributes(
+            prepared.parameters,
+            title=str(getattr(prepared.module, "title", prepared.scene)),
+            command=self._command,
+            comment=" ".join((prepared.module.__doc__ or "").split()),
+            references=prepared.engine.engine.reference,
+            panels=to_json(box.panels),
+            status="partial",
+        )
+        if box.setup.ends:  # the whole way
+            recording = box.gauges[0]
+            recording.attributes = about
+        else:
+            recording = box.recording(about)
+        try:
+            self._tape = Tape(path, prepared, box.setup, recording, changes, panels=box.panels, force=self._force)
+        except AtmosboxError as error:
+            self._note("error", str(error))
+
+    def closed(self, box: Experiment, changes: Sequence[Change]) -> None:
+        """Take note that a frame is complete."""
+        if self._wanted is not None:
+            self._begin(box, changes)
+        elif self._tape is not None:
+            try:
+                self._tape.save()
+            except AtmosboxError as error:
+                self._note("error", f"The recording stops: {error}")
+                self._tape = None
+            else:
+                if self._tape.frames >= longest(box):
+                    self.stop(f"The recording holds {self._tape.frames} frames, which is all it can.")
+
+    def stop(self, why: str | None = None) -> Path | None:
+        """End the recording, if there is one, and return its file.
+
+        Parameters
+        ----------
+        why
+            What is said if something is being recorded, where nobody has asked for the end.
+        """
+        if why is not None and self.name is not None:
+            self._note("warning", why)
+        wanted, self._wanted = self._wanted, None
+        tape, self._tape = self._tape, None
+        if tape is None and wanted is None:
+            return None
+        try:
+            path = None if tape is None else tape.finish()
+        except AtmosboxError as error:
+            self._note("error", str(error))
+            return None
+        if tape is None or path is None:
+            self._note("warning", "Nothing was recorded: no frame was complete.")
+            return None
+        self._note("info", f"{tape.frames} frames are in {path}: type atmosbox plot {path} to see them.")
+        return path
+
+
+def longest(box: Experiment) -> int:
+    """Return how many frames of a box are kept at most.
+
+    Examples
+    --------
+    >>> import time
+    >>> from atmosbox.preparation import prepare
+    >>> longest(Experiment(prepare("elastic-collisions", {"molecules": 10}), time.perf_counter))
+    30000
+    """
+    each = _MOLECULE * box.setup.parcel.present.size if box.prepared.save_molecules else 1.0
+    return max(min(_LONGEST, int(_MEMORY / each)), box.setup.frames)

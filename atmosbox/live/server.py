@@ -1,0 +1,291 @@
+"""The local page: one port that serves the document and its socket, to this computer alone unless told otherwise."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import http
+import ipaddress
+import json
+import signal
+import socket
+from collections.abc import Callable, Coroutine
+from typing import Any
+from urllib.parse import urlsplit
+
+from websockets.asyncio.server import Server as SocketServer
+from websockets.asyncio.server import ServerConnection, serve
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from atmosbox.errors import AtmosboxError, EngineError, SettingError
+from atmosbox.live.audience import Audience, Mailbox
+from atmosbox.live.session import Session
+from atmosbox.live.worker import GREET, JOIN, LEAVE, Worker
+
+__all__ = ["PORT", "allowed", "loopback", "run", "serve_session"]
+
+PORT = 8642
+"""The port that is tried first."""
+
+_TRIES = 20
+_LARGEST = 65_536
+_PATIENCE = 1.0
+_BUSY = (errno.EADDRINUSE, errno.EACCES)
+
+
+def loopback(host: str) -> bool:
+    """Return whether only this computer can reach a host.
+
+    Examples
+    --------
+    >>> loopback("127.0.0.1"), loopback("localhost"), loopback("::1"), loopback("0.0.0.0")
+    (True, True, True, False)
+    """
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def allowed(host: str | None, origin: str | None, *, names: frozenset[str] = frozenset()) -> bool:
+    """Return whether a request comes from our own page.
+
+    A page of another site may ask a browser for anything on this computer; it then says where it comes from. And a
+    name of another site may be made to point to this computer; so only addresses and our own names are ours.
+
+    Parameters
+    ----------
+    host, origin
+        What the request says in these headers.
+    names
+        The names of this computer, beside localhost and all addresses.
+
+    Examples
+    --------
+    >>> allowed("127.0.0.1:8642", "http://127.0.0.1:8642"), allowed("127.0.0.1:8642", "http://evil.example")
+    (True, False)
+    >>> allowed("evil.example:8642", "http://evil.example:8642")
+    False
+    """
+    if host is None:
+        return False
+    try:
+        name = urlsplit(f"//{host}").hostname or ""
+        named = name == "localhost" or name in names or bool(ipaddress.ip_address(name))
+    except ValueError:
+        named = False
+    if not named:
+        return False
+    return origin is None or origin.casefold() in (f"http://{host}".casefold(), f"https://{host}".casefold())
+
+
+class _Service:
+    """The pages, and the thread that the box runs in."""
+
+    def __init__(self, session: Session, document: str, names: frozenset[str]) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._audience = Audience()
+        self._document = document.encode("utf-8")
+        self._names = names
+        self.worker = Worker(session, self._publish)
+
+    def _publish(self, page: int | None, message: str | bytes) -> None:
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._audience.put, page, message)
+
+    def request(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Answer a request: with the document, or with none if the socket is asked for."""
+        headers = request.headers
+        if not allowed(headers.get("Host"), headers.get("Origin"), names=self._names):
+            return connection.respond(http.HTTPStatus.FORBIDDEN, "This page is for this computer alone.\n")
+        path = urlsplit(request.path).path
+        if path == "/socket":
+            return None
+        if path != "/":
+            return connection.respond(http.HTTPStatus.NOT_FOUND, "There is one page here, at /.\n")
+        answer = connection.respond(http.HTTPStatus.OK, "")
+        answer.body = self._document
+        for name, value in (
+            ("Content-Type", "text/html; charset=utf-8"),
+            ("Content-Length", str(len(self._document))),
+            ("Cache-Control", "no-store"),
+            ("X-Frame-Options", "DENY"),
+            ("X-Content-Type-Options", "nosniff"),
+        ):
+            with contextlib.suppress(KeyError):
+                del answer.headers[name]
+            answer.headers[name] = value
+        return answer
+
+    async def attend(self, connection: ServerConnection) -> None:
+        """Serve one page until it is gone."""
+        box = self._audience.join()
+        await asyncio.to_thread(self.worker.ask, box.number, JOIN)
+        speaking = asyncio.create_task(self._speak(connection, box))
+        try:
+            async for message in connection:
+                self._hear(box, message)
+        except ConnectionClosed:
+            pass
+        finally:
+            speaking.cancel()
+            self._audience.leave(box)
+            await asyncio.to_thread(self.worker.ask, box.number, LEAVE)
+
+    async def _speak(self, connection: ServerConnection, box: Mailbox) -> None:
+        with contextlib.suppress(ConnectionClosed):
+            while True:
+                await box.waiting.wait()
+                if box.overrun:
+                    box.overrun = False
+                    box.take()
+                    await asyncio.to_thread(self.worker.ask, box.number, GREET)
+                    continue
+                for message in box.take():
+                    await connection.send(message)
+
+    def _hear(self, box: Mailbox, message: str | bytes) -> None:
+        """Pass on what a page says, or tell it that it makes no sense."""
+        try:
+            asked = json.loads(message) if isinstance(message, str) else None
+        except (ValueError, RecursionError):
+            asked = None
+        if not isinstance(asked, dict):
+            return self._refuse(box, "What this page has said is no request: reload it.")
+        if not self.worker.ask(box.number, asked):
+            self._refuse(box, "The box is busy, and so many requests wait already that this one was left out.")
+        return None
+
+    def _refuse(self, box: Mailbox, text: str) -> None:
+        box.put(json.dumps({"type": "note", "level": "error", "text": text}))
+
+
+async def _listen(service: _Service, host: str, port: int | None) -> SocketServer:
+    """Open the port that was asked for, or the first that is free."""
+    ports = [PORT + k for k in range(_TRIES)] if port is None else [port]
+    for number in ports:
+        try:
+            return await serve(
+                service.attend,
+                host,
+                number,
+                process_request=service.request,
+                compression=None,
+                max_size=_LARGEST,
+                close_timeout=_PATIENCE,
+                server_header=None,
+            )
+        except socket.gaierror as error:
+            raise SettingError("host", host, "is no address of this computer", "give 127.0.0.1") from error
+        except OSError as error:
+            if error.errno == errno.EADDRNOTAVAIL:
+                raise SettingError("host", host, "is no address of this computer", "give 127.0.0.1") from error
+            if error.errno not in _BUSY and "address already in use" not in str(error):
+                raise
+    if port is None:
+        said = f"{PORT} to {ports[-1]}"
+        raise SettingError("port", said, "are all in use", "end another program, or give --port with a free one")
+    raise SettingError("port", port, "is in use or not allowed", "give another, or leave --port out for a free one")
+
+
+def run(
+    session: Session,
+    document: str,
+    *,
+    host: str = "127.0.0.1",
+    port: int | None = None,
+    opened: Callable[[str, int], None],
+) -> tuple[int, list[str]]:
+    """Serve a session until Ctrl-C or a request to end, and save what is recorded.
+
+    Parameters
+    ----------
+    session
+        What is played with.
+    document
+        The HTML of the page.
+    host, port
+        Where; of the ports from `PORT` on the first that is free, if none is given.
+    opened
+        Told the address of the page and the port, once it is there.
+
+    Returns
+    -------
+    (int, list of str)
+        The signal that ended it, and what is left to say.
+
+    Raises
+    ------
+    SettingError
+        If the port is in use, or the host none of this computer.
+    EngineError
+        If the engine cannot go on.
+    """
+    return asyncio.run(serve_session(session, document, _signal, host=host, port=port, opened=opened))
+
+
+async def serve_session(
+    session: Session,
+    document: str,
+    ending: Callable[[], Coroutine[Any, Any, int]],
+    *,
+    host: str = "127.0.0.1",
+    port: int | None = None,
+    opened: Callable[[str, int], None],
+) -> tuple[int, list[str]]:
+    """Serve a session until something says that it ends; see `run`.
+
+    Parameters
+    ----------
+    session, document, host, port, opened
+        See `run`.
+    ending
+        Waits for the end, and returns what it was.
+    """
+    names = frozenset({host.casefold(), socket.gethostname().casefold()}) - {""}
+    service = _Service(session, document, names)
+    server = await _listen(service, host, port)
+    ended = asyncio.create_task(ending())
+    try:
+        service.worker.start()
+        number = int(next(iter(server.sockets)).getsockname()[1])
+        own = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+        shown = f"[{own}]" if ":" in own else own
+        opened(f"http://{shown}:{number}/", number)
+        while not ended.done() and service.worker.alive:
+            await asyncio.wait([ended], timeout=0.5)
+    finally:
+        left = await asyncio.to_thread(service.worker.stop)
+        server.close(close_connections=True)
+        await server.wait_closed()
+    failure = service.worker.failure
+    if failure is not None:
+        ended.cancel()
+        if isinstance(failure, AtmosboxError):
+            raise failure
+        raise EngineError(f"The session has ended ({type(failure).__name__}: {failure}).") from failure
+    return ended.result(), left
+
+
+async def _signal() -> int:
+    """Wait for Ctrl-C or a request to end, and return which it was."""
+    loop = asyncio.get_running_loop()
+    ended: asyncio.Future[int] = loop.create_future()
+
+    def note(number: int) -> None:
+        if not ended.done():
+            ended.set_result(number)
+
+    def end(number: int, frame: object) -> None:
+        loop.call_soon_threadsafe(note, number)
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        return await ended
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)

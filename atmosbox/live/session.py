@@ -1,0 +1,339 @@
+"""A box that the class plays with: it runs, is changed by hand, measured and recorded; no socket is needed."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.errors import SettingError
+from atmosbox.live.control import COLLISIONS, Control, controls
+from atmosbox.live.experiment import Experiment
+from atmosbox.live.picture import Picture
+from atmosbox.live.recorder import Recorder, longest
+from atmosbox.live.report import Report, while_it_runs
+from atmosbox.live.tape import Change
+from atmosbox.parameter import Value
+from atmosbox.preparation import Prepared
+from atmosbox.scene import Setup
+
+__all__ = ["Session"]
+
+SLOWEST, FASTEST = 0.25, 16.0
+_STEP = 0.04
+_MOST_CHANGES = 5000
+
+
+class Session:
+    """A box with its instruments, advanced in small pieces, that obeys what the page asks for.
+
+    However its time is cut into pieces, a box that nobody changes does the same as in ``atmosbox run``.
+
+    Parameters
+    ----------
+    prepared
+        The scene.
+    folder
+        Where recordings go.
+    out
+        The name of the first recording, if it has one.
+    force
+        Whether recordings may replace files.
+    command
+        What the user typed, for the history of the file.
+    clock
+        What tells the time [s].
+
+    Attributes
+    ----------
+    playing
+        Whether time passes.
+    pace
+        How much faster than usual.
+    finished
+        Whether the box has come to the end of its planned way, and rests there.
+
+    Raises
+    ------
+    AtmosboxError
+        If the box cannot be built.
+
+    Examples
+    --------
+    >>> from atmosbox.preparation import prepare
+    >>> session = Session(prepare("elastic-collisions", {"molecules": 10}))
+    >>> session.obey({"type": "play"})
+    >>> session.run(0.1)
+    >>> session.state()["playing"], session.state()["time"] > 0.0
+    (True, True)
+    """
+
+    def __init__(
+        self,
+        prepared: Prepared,
+        *,
+        folder: Path = Path(),
+        out: str | None = None,
+        force: bool = False,
+        command: str = "",
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self._clock = clock
+        self.playing = False
+        self.pace = 1.0
+        self._notes: list[dict[str, str]] = []
+        self._recorder = Recorder(folder, out, force, command or f"atmosbox live {prepared.scene}", self.note)
+        self._begin(prepared)
+
+    # ------------------------------------------------------------------ a box
+
+    def _begin(self, prepared: Prepared) -> None:
+        """Build a box, and put it in the place of the one before."""
+        experiment = Experiment(prepared, self._clock)
+        shown = tuple(panel for panel in map(while_it_runs, experiment.panels) if panel is not None)
+        picture = Picture(prepared, experiment.setup, shown)
+        self._recorder.stop("The box begins anew, and the recording ends.")
+        self.experiment = experiment
+        self.picture = picture
+        self.report = Report(shown, picture.stage.variables)
+        self.changes: list[Change] = []
+        self.finished = False
+        self._sequence = 0
+        self._knobs = {knob.name: knob for knob in experiment.setup.knobs}
+        self._turned: dict[str, Value] = {}
+
+    @property
+    def prepared(self) -> Prepared:
+        """The scene, with the settings with which the box has begun."""
+        return self.experiment.prepared
+
+    @property
+    def setup(self) -> Setup:
+        """The box."""
+        return self.experiment.setup
+
+    # ------------------------------------------------------------------ time
+
+    def run(self, seconds: float, budget: float | None = None) -> None:
+        """Let as much time pass in the box as belongs to so many seconds, if it is playing.
+
+        Parameters
+        ----------
+        seconds
+            Time of the class [s].
+        budget
+            After how many seconds to come back in any case [s].
+        """
+        if self.playing:
+            self._go_on(seconds, math.inf if budget is None else budget)
+
+    def _go_on(self, seconds: float, budget: float) -> None:
+        box = self.experiment
+        try:
+            box.pass_time(box.now + seconds * box.rate * self.pace, budget, self._recorder.watching, self._closed)
+        except StalledError as error:
+            self.playing = False
+            self.note("error", f"The box cannot go on: {error}. Begin anew.")
+
+    def _closed(self) -> bool:
+        """Take note that a frame is complete; return whether to go on."""
+        self._recorder.closed(self.experiment, self.changes)
+        return not self.setup.ends or self._goes_on_beyond()
+
+    def _goes_on_beyond(self) -> bool:
+        """Pause at the end of an ascent; return whether to go on."""
+        frame = self.experiment.frame
+        if frame == self.setup.frames:
+            self.finished = True
+            self.playing = False
+            names = [name for name in self._knobs if name in ("altitude", "way")]
+            lead = f"; lead the parcel on with {names[0]}" if names else ""
+            self.note("info", f"The parcel has come to the end of its way{lead}, or begin anew.")
+            return False
+        if frame >= longest(self.experiment):
+            self.playing = False
+            self.note("warning", f"This way is {frame} frames long, which is all that is kept: begin anew.")
+            return False
+        return True
+
+    # ------------------------------------------------------------------ what the page asks for
+
+    def obey(self, message: Mapping[str, Any]) -> None:
+        """Do what a message of the page asks for.
+
+        Parameters
+        ----------
+        message
+            Its ``type`` is play, pause, step, reset, pace, set, record or stop_record.
+
+        Raises
+        ------
+        AtmosboxError
+            If it asks for what is not possible; nothing has changed then.
+        """
+        try:
+            self._obey(message.get("type"), message)
+        except SettingError as error:  # said for somebody who types
+            fix = error.fix.replace("--set ", "").replace("--engine ", "the engine ")
+            raise type(error)(error.setting, error.value, error.problem, fix) from None
+
+    def _obey(self, kind: object, message: Mapping[str, Any]) -> None:
+        if kind == "play":
+            self.playing, self.finished = True, False
+        elif kind == "pause":
+            self.playing = False
+        elif kind == "step":
+            self.playing = False
+            self._go_on(_STEP, math.inf)
+        elif kind == "reset":
+            self._reset(message.get("seed"))
+        elif kind == "pace":
+            self.pace = _number(message.get("value"), "pace", SLOWEST, FASTEST)
+        elif kind == "set":
+            self._set(message.get("name"), message.get("value"))
+        elif kind == "record":
+            self._recorder.start(message.get("file"), self.experiment, self.changes)
+        elif kind == "stop_record":
+            self.stop_recording()
+        else:
+            known = "play, pause, step, reset, pace, set, record or stop_record"
+            raise SettingError("type", _text(kind), "is nothing that this page can ask for", f"give {known}")
+
+    def _reset(self, seed: object) -> None:
+        values: dict[str, Any] = self._settings()
+        if seed is not None:
+            values["seed"] = seed
+        self._anew(values, str(self.prepared.engine) if self._collide is None else self._engine(self._collide))
+
+    def _set(self, name: object, value: object) -> None:
+        control = next((each for each in self.controls() if each.name == name), None)
+        if control is None:
+            known = ", ".join(each.name for each in self.controls())
+            raise SettingError("name", _text(name), "is nothing that can be changed here", f"give one of {known}")
+        wanted = control.parse(value)
+        if not control.restarts:
+            self._turn(control, wanted)
+        elif control.name == COLLISIONS:
+            self._anew(self._settings(), self._engine(bool(wanted)))
+        else:
+            self._anew(self._settings() | {control.name: wanted}, str(self.prepared.engine))
+
+    def _turn(self, control: Control, value: Value) -> None:
+        """Turn a knob."""
+        try:
+            self._knobs[control.name].set(float(value))
+        except RefusedError as error:
+            said = str(value) if not control.parameter.unit else f"{value} {control.parameter.unit}"
+            raise SettingError(control.name, said, f"is not possible ({error})", "give another") from error
+        self._turned[control.name] = value
+        if self.finished:  # it rests only because its way was at an end
+            self.playing, self.finished = True, False
+        self.experiment.begin_averages_anew()
+        change = Change(self.experiment.now, self.experiment.frame, control.name, value, control.parameter.unit)
+        last = self.changes[-1] if self.changes else None
+        if last is not None and (last.name, last.frame) == (change.name, change.frame):
+            self.changes[-1] = change  # a slider on its way
+        else:
+            self.changes.append(change)
+        if len(self.changes) > _MOST_CHANGES:
+            self._recorder.stop(f"The recording tells of {_MOST_CHANGES} changes, which is all it can.")
+            del self.changes[0]
+
+    def _settings(self) -> dict[str, Any]:
+        """Return the settings with which the box would begin anew: what the sliders say."""
+        return {name: self._turned.get(name, value) for name, value in self.prepared.settings.as_dict().items()}
+
+    @property
+    def _collide(self) -> bool | None:
+        """Whether molecules meet; None where that cannot be chosen, for they hit drops, or never meet."""
+        parcel = self.setup.parcel
+        takes_engine = "engine" in inspect.signature(self.prepared.module.build).parameters
+        if hasattr(parcel, "drops") or not takes_engine or not parcel.diameter.any():
+            return None
+        return self.prepared.engine.options.get(COLLISIONS) is not False
+
+    def _engine(self, collisions: bool) -> str:
+        """Return the engine that is asked for, with or without collisions."""
+        options = {name: value for name, value in self.prepared.engine.options.items() if name != COLLISIONS}
+        if not collisions:
+            options[COLLISIONS] = False
+        return str(replace(self.prepared.engine, options=options))
+
+    def _anew(self, values: Mapping[str, Any], engine: str) -> None:
+        """Let a box begin anew."""
+        from atmosbox.engines import choose
+
+        settings = type(self.prepared.settings).from_user(dict(values))
+        self._begin(replace(self.prepared, settings=settings, engine=choose(engine), expectation=None))
+
+    def stop_recording(self) -> Path | None:
+        """End the recording, if there is one, and return its file."""
+        return self._recorder.stop()
+
+    @property
+    def recording(self) -> str | None:
+        """Name of the file that is being recorded."""
+        return self._recorder.name
+
+    # ------------------------------------------------------------------ what the page is told
+
+    def controls(self) -> tuple[Control, ...]:
+        """Return all that can be changed, as it is now."""
+        values = self.prepared.settings.as_dict() | self._turned
+        return controls(self.setup.knobs, self.prepared.settings.describe(), values, collisions=self._collide)
+
+    def note(self, level: str, text: str) -> None:
+        """Leave a sentence for the page."""
+        self._notes.append({"type": "note", "level": level, "text": text})
+
+    def notes(self) -> list[dict[str, str]]:
+        """Return the sentences that have been left, once."""
+        told, self._notes = self._notes, []
+        return told
+
+    def state(self) -> dict[str, Any]:
+        """Return where things stand, as the page is told."""
+        return {
+            "type": "state",
+            "playing": self.playing,
+            "pace": self.pace,
+            "recording": self.recording,
+            "time": self.picture.time(),
+            "frame": self.experiment.frame,
+            "seed": self.prepared.settings.seed,
+            "finished": self.finished,
+            "ledger": self.setup.parcel.ledger(),
+            "molecules": self.setup.parcel.number,
+        }
+
+    def stage(self) -> dict[str, Any]:
+        """Return what a page is told first."""
+        state = {name: value for name, value in self.state().items() if name != "type"}
+        told = [control.record() for control in self.controls()]
+        return {"type": "stage", "stage": self.picture.stage.record, "controls": told, "state": state}
+
+    def frame(self) -> bytes:
+        """Return where everything is now."""
+        self._sequence += 1
+        return self.picture.frame(self._sequence)
+
+    def measured(self) -> list[dict[str, Any]]:
+        """Return what has been measured since the last call, as messages to the page."""
+        found = self.experiment.measured(self.changes[-1].frame + 1 if self.changes else 0)
+        return [] if found is None else self.report.messages(found)
+
+
+def _number(value: object, name: str, low: float, high: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise SettingError(name, _text(value), f"is not a number from {low:g} to {high:g}", f"give {name} = 1")
+    return float(value)
+
+
+def _text(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value, default=str)

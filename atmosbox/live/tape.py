@@ -1,0 +1,211 @@
+"""What the record button makes: the file that ``atmosbox run`` would have written, and what was changed meanwhile."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from atmosbox.checkpoint import Checkpoint
+from atmosbox.errors import FileError
+from atmosbox.live.report import without_headlines
+from atmosbox.output import check_writable
+from atmosbox.panels import Panel, to_json
+from atmosbox.parameter import Value
+from atmosbox.preparation import Prepared
+from atmosbox.provenance import history_line
+from atmosbox.quantity import phrase
+from atmosbox.recording import Recording
+from atmosbox.scene import Setup
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Change", "Tape", "file_for"]
+
+_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_NAMES = 1000
+_SAID = 20
+
+
+@dataclass(frozen=True)
+class Change:
+    """A knob that was turned while the box ran.
+
+    Parameters
+    ----------
+    time
+        When, by the clock of the box [its unit of time].
+    frame
+        How many frames were complete.
+    name, value, unit
+        What it was set to.
+    """
+
+    time: float
+    frame: int
+    name: str
+    value: Value
+    unit: str
+
+    @property
+    def words(self) -> str:
+        """What was done, as a sentence goes on.
+
+        Examples
+        --------
+        >>> Change(3.0, 2, "temperature", 60.0, "degC").words
+        'temperature = 60 degC'
+        """
+        return f"{self.name} = {phrase(float(self.value), self.unit)}"
+
+
+def file_for(name: str | None, scene: str, folder: Path, *, force: bool) -> Path:
+    """Return the file that a recording goes to.
+
+    Parameters
+    ----------
+    name
+        What was asked for: the name of a file in the folder, nothing else; None for one that is free.
+    scene
+        The name of the scene, for a recording without one.
+    folder
+        Where files go.
+    force
+        Whether a file may be replaced.
+
+    Raises
+    ------
+    FileError
+        If the name is not that of a file in the folder, or the file may not be written.
+
+    Examples
+    --------
+    >>> file_for("warm", "temperature", Path(), force=True).name
+    'warm.nc'
+    >>> file_for("../warm.nc", "temperature", Path(), force=True)
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: ../warm.nc is not the name of a file: give one without a folder, such as warm.nc.
+    """
+    if name is None:
+        stem = Path(scene).stem
+        for number in range(1, _NAMES):
+            path = folder / (f"{stem}-live.nc" if number == 1 else f"{stem}-live-{number}.nc")
+            if not os.path.exists(path):
+                return check_writable(path)
+        raise FileError(f"There are {_NAMES} recordings of {stem} here: move them, or give the file a name.")
+    plain = name.strip()
+    if not plain or Path(plain).name != plain or plain.startswith(".") or not plain.isprintable() or "\\" in plain:
+        like = f"{Path(plain).stem or scene}.nc".lstrip(".")
+        raise FileError(f"{plain or 'Nothing'} is not the name of a file: give one without a folder, such as {like}.")
+    path = folder / (plain if plain.endswith(".nc") else f"{plain}.nc")
+    if os.path.exists(path) and not force:
+        raise FileError(f"{path.name} exists already: give another name, or start atmosbox live with --force.")
+    return check_writable(path, force)
+
+
+class Tape:
+    """A recording of a box that runs, on its way into a file.
+
+    Parameters
+    ----------
+    path
+        The file, which `file_for` has let through.
+    prepared, setup
+        The scene and its box.
+    recording
+        The instruments whose readings go into the file.
+    changes
+        All that has been changed in this box, in order; grows while it runs.
+    panels
+        The graphs of the scene.
+    force
+        Whether the file may replace another.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        prepared: Prepared,
+        setup: Setup,
+        recording: Recording,
+        changes: Sequence[Change],
+        *,
+        panels: Sequence[Panel] = (),
+        force: bool = False,
+    ) -> None:
+        self.path = path
+        self.recording = recording
+        self._prepared = prepared
+        self._setup = setup
+        self._changes = changes
+        self._panels = panels
+        self._checkpoint = Checkpoint(path, force=force)
+
+    @property
+    def frames(self) -> int:
+        """How many frames it holds."""
+        return self.recording.frames
+
+    def dataset(self, status: str) -> xr.Dataset:
+        """Return what has been recorded so far.
+
+        Averages begin when the box has settled after the last change. The headlines of a scene are about the whole
+        run as it was set, so that only a recording from the start, with nothing changed, has any.
+        """
+        whole = not self.recording.first and not self._changes and self.frames <= self._setup.frames
+        last = self._changes[-1].frame + 1 if self._changes else 0
+        settle = max(last + self._setup.settle - self.recording.first, 0)
+        found, _ = self.recording.dataset(status, settle=settle, judged=whole)
+        if not whole:
+            panels = [panel for panel in map(without_headlines, self._panels) if panel is not None]
+            found.attrs["atmosbox_panels"] = to_json(panels)
+        if self.recording.first:
+            self._tell_beginning(found)
+        if self._changes:
+            self._tell_changes(found)
+        return found
+
+    def _tell_beginning(self, found: xr.Dataset) -> None:
+        bounds = found.elapsed_time_bnds.values
+        if len(bounds):
+            word = f"Recorded from {bounds[0, 0]:.6g} {self._setup.time_unit} on. "
+            found.attrs["comment"] = word + str(found.attrs.get("comment", ""))
+
+    def _tell_changes(self, found: xr.Dataset) -> None:
+        unit = self._setup.time_unit
+        seconds = self._setup.scale.time / _SECONDS[unit]
+        told = [
+            {"elapsed_time": each.time * seconds, "time_unit": unit, "name": each.name, "value": each.value,
+             "unit": each.unit}
+            for each in self._changes
+        ]  # fmt: skip
+        few = self._changes[:_SAID]
+        words = "; ".join(f"at {each.time * seconds:.6g} {unit} {each.words}" for each in few)
+        if len(few) < len(self._changes):
+            words += f"; and {len(self._changes) - len(few)} changes more, in atmosbox_changes"
+        found.attrs["atmosbox_changes"] = json.dumps(told)
+        found.attrs["comment"] = f"Changed by hand while it ran: {words}. Averages begin after the last change. " + str(
+            found.attrs.get("comment", "")
+        )
+        found.attrs["history"] += "\n" + history_line(f"atmosbox live, by hand: {words}")
+
+    def save(self) -> None:
+        """Keep what there is so far on disk, now and then."""
+        self._checkpoint(lambda: self.dataset("partial"))
+
+    def finish(self) -> Path | None:
+        """Write the file, and return it; None if no frame is complete, and nothing is written.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        """
+        if not self.frames:
+            self._checkpoint.abandon()
+            return None
+        return self._checkpoint.finish(self.dataset("complete"))

@@ -1,0 +1,17 @@
+"""The page that shows a box: its molecules in three dimensions, and its graphs on the same clock.
+
+A run becomes one HTML file that opens from disk without a network (`save`); a box that is running is shown by the
+same page, fed through a socket (`live_page`). Both speak one language: a *stage* that says once what there is to see,
+and *frames* that say where everything is.
+
+Read in this order: `box` and `stage` (what is shown), `panel` (its graphs), `liquid` and `frame` (one moment as
+bytes), `thinning` (what a large run leaves out), `run` (from a dataset to all of these), `document` (the HTML) and
+`file`. The folder ``web`` holds the page's own scripts, ``vendor`` the two libraries that it draws with.
+"""
+
+from atmosbox.page.box import Box
+from atmosbox.page.document import live_page, view_page
+from atmosbox.page.file import save
+from atmosbox.page.stage import Stage, stage
+
+__all__ = ["Box", "Stage", "live_page", "save", "stage", "view_page"]

@@ -1,0 +1,136 @@
+"""The page as one HTML document: the libraries, our scripts, and the data of the runs, all in it."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import resources
+from typing import Any
+
+__all__ = ["MODULES", "THEMES", "live_page", "view_page"]
+
+THEMES = ("auto", "light", "dark")
+
+MODULES = (
+    "colour.js",
+    "figure.js",
+    "frames.js",
+    "clock.js",
+    "molecules.js",
+    "furniture.js",
+    "labels.js",
+    "trace.js",
+    "camera.js",
+    "stage.js",
+    "speeds.js",
+    "curves.js",
+    "skewt.js",
+    "ink.js",
+    "graph.js",
+    "graphs.js",
+    "caption.js",
+    "legend.js",
+    "transport.js",
+    "keys.js",
+    "sheet.js",
+)
+"""Our scripts, each after those that it imports."""
+
+_ENTRIES = {"view": ("view.js",), "live": ("link.js", "controls.js", "notes.js", "pulse.js", "live.js")}
+_THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
+
+
+def view_page(runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme: str = "auto") -> str:
+    """Return the page that shows runs, complete.
+
+    Parameters
+    ----------
+    runs : sequence of mapping
+        Of each run its ``stage``, its ``values`` by name, and what `atmosbox.page.run.describe` says besides.
+    frames : sequence of str
+        Of each run its frames, as `atmosbox.page.frame.pack` packs them.
+    theme : {"auto", "light", "dark"}
+        Its colours; ``auto`` takes those that the reader's system prefers.
+
+    Returns
+    -------
+    str
+        The HTML, which needs no other file and no network.
+
+    Examples
+    --------
+    >>> page = view_page([{"stage": {"title": "Air & water"}}], ["eJw="])
+    >>> page.startswith("<!doctype html>"), "<title>Air &amp; water</title>" in page
+    (True, True)
+    """
+    titles = dict.fromkeys(str(run["stage"]["title"]) for run in runs)
+    packed = (_block(f"frames-{number}", "text/plain", text) for number, text in enumerate(frames))
+    told = _block("told", "application/json", _json({"runs": list(runs)}))
+    return _document("view", " · ".join(titles), theme, [told, *packed])
+
+
+def live_page(*, theme: str = "auto") -> str:
+    """Return the page that shows a box while it runs, complete; it fetches its data from ``/socket``.
+
+    Parameters
+    ----------
+    theme : {"auto", "light", "dark"}
+        Its colours.
+
+    Returns
+    -------
+    str
+        The HTML.
+
+    Examples
+    --------
+    >>> "/socket" in live_page()
+    True
+    """
+    return _document("live", "atmosbox live", theme, [])
+
+
+def _document(entry: str, title: str, theme: str, data: Iterable[str]) -> str:
+    """Return the HTML around some data."""
+    scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
+    scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
+    parts = {
+        "TITLE": html.escape(title),
+        "THEME": theme,
+        "ENTRY": entry,
+        "CONNECT": "ws: wss:" if entry == "live" else "'none'",
+        "STYLE": "\n".join((_text("vendor", "uplot", "uPlot.min.css"), _text("web", "theme.css"))),
+        "UPLOT": _inline(_text("vendor", "uplot", "uPlot.iife.min.js")),
+        "MODULES": "\n".join(scripts),
+        "DATA": "\n".join(data),
+        "BOOT": _inline(_text("web", "boot.js")),
+        "LICENCES": "\n".join(f"{name}:\n{_text('vendor', name, 'LICENSE')}" for name in ("three", "uplot")),
+    }
+    pieces = _text("web", "page.html").split("@@")
+    return "".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces))
+
+
+def _text(*place: str) -> str:
+    """Return a file of the package."""
+    return resources.files("atmosbox.page").joinpath(*place).read_text(encoding="utf-8")
+
+
+def _module(name: str, text: str) -> str:
+    """Return a script that the page's first script turns into a module."""
+    return f'<script type="text/plain" data-module="{name}">{_inline(text)}</script>'
+
+
+def _block(name: str, kind: str, text: str) -> str:
+    return f'<script type="{kind}" id="{name}">{text}</script>'
+
+
+def _inline(text: str) -> str:
+    """Return a script that cannot end the element that it stands in."""
+    return text.replace("</script", "<\\/script")
+
+
+def _json(content: Any) -> str:
+    """Return JSON that may stand in HTML."""
+    text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

@@ -1,0 +1,93 @@
+// Where one looks from: four places, and what a mouse or a finger makes of them.
+
+import * as THREE from "three";
+import { OrbitControls } from "./OrbitControls.js";
+import { scaled } from "./figure.js";
+
+const DEGREES = Math.PI / 180;
+const MARGIN = [64, 58]; // pixels around the box, for the numbers at its edges
+
+// From which side, by azimuth and elevation, and how much closer than where all of the box is seen.
+export const PLACES = [
+  { name: "Corner", azimuth: -58, elevation: 17, closer: 1 },
+  { name: "Front", azimuth: -90, elevation: 0, closer: 1 },
+  { name: "Above", azimuth: -90, elevation: 89.9, closer: 1 },
+  { name: "Close", azimuth: -66, elevation: 9, closer: 2.4 },
+];
+
+export class Camera {
+  constructor(canvas, box, changed) {
+    this.box = box;
+    this.eye = new THREE.PerspectiveCamera(32, 1, 0.001, 1000);
+    this.eye.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.eye, canvas);
+    this.controls.enablePan = false;
+    this.controls.rotateSpeed = 0.8;
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => { this.place = null; });
+    this.place = box.planar ? 1 : 0;
+  }
+
+  // How much room the box needs: as much as it ever will, with what stands on its ceiling. Two boxes side by side are seen
+  // from equally far, so that one can compare them.
+  room() {
+    const [x, y] = this.box.length;
+    const z = this.box.reach * (this.box.walls[5] === "piston" ? 1.18 : 1);
+    return [x, y, z].map((side, axis) => Math.max(side, this.besides?.[axis] ?? 0));
+  }
+
+  // Look from one of the places, so that the box as high as it will ever be is in the picture.
+  go(place) {
+    this.place = place;
+    const { azimuth, elevation, closer } = PLACES[place];
+    const [x, y, z] = this.room();
+    const middle = new THREE.Vector3(x / 2, y / 2, z / 2);
+    const side = new THREE.Vector3(
+      Math.cos(azimuth * DEGREES) * Math.cos(elevation * DEGREES),
+      Math.sin(azimuth * DEGREES) * Math.cos(elevation * DEGREES),
+      Math.sin(elevation * DEGREES),
+    );
+    const corners = [];
+    for (const cx of [0, x]) for (const cy of [0, y]) for (const cz of [0, z]) corners.push(new THREE.Vector3(cx, cy, cz));
+    const radius = middle.length();
+    let near = radius * 0.2, far = radius * 60;
+    for (let round = 0; round < 40; round += 1) {
+      const distance = Math.sqrt(near * far);
+      this.#stand(middle, side, distance, radius);
+      const reach = Math.max(...corners.map((corner) => {
+        const seen = corner.clone().project(this.eye);
+        return seen.z > 1 ? Infinity : Math.max(Math.abs(seen.x) / this.free[0], Math.abs(seen.y) / this.free[1]);
+      }));
+      if (reach > 1) near = distance; else far = distance;
+    }
+    this.#stand(middle, side, far / closer, radius);
+    this.controls.target.copy(middle);
+    this.controls.minDistance = radius * 0.05;
+    this.controls.maxDistance = radius * 30;
+    this.controls.update();
+  }
+
+  #stand(middle, side, distance, radius) {
+    this.eye.position.copy(middle).addScaledVector(side, distance);
+    this.eye.near = radius * 0.01;
+    this.eye.far = distance + 30 * radius;
+    this.eye.lookAt(middle);
+    this.eye.updateProjectionMatrix();
+    this.eye.updateMatrixWorld(true);
+  }
+
+  resize(width, height) {
+    this.eye.aspect = width / height;
+    this.free = [width, height].map((size, axis) => Math.max(1 - 2 * scaled(MARGIN[axis]) / size, 0.3));
+    this.eye.updateProjectionMatrix();
+    if (this.place !== null) this.go(this.place);
+  }
+
+  // The nearest and the farthest that anything in the box can be, for the haze.
+  depths() {
+    const [x, y, z] = this.room();
+    const distance = this.eye.position.distanceTo(new THREE.Vector3(x / 2, y / 2, z / 2));
+    const radius = Math.hypot(x, y, z) / 2;
+    return [Math.max(distance - radius, 0), distance + radius];
+  }
+}

@@ -1,0 +1,112 @@
+// What one may change while the box runs: a line for each setting, with its unit.
+
+import { spelled } from "./figure.js";
+
+const WIDE = 300; // a slider over so many times its lowest value goes by ratios
+const PATIENCE = 120; // ms between two values that a moving slider sends
+
+const brief = (number) => Number(Number(number).toPrecision(5));
+
+const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
+
+export class Controls {
+  // `set(name, value)` is called when somebody turns a control.
+  constructor(parent, set) {
+    Object.assign(this, { parent, set, shown: new Map() });
+  }
+
+  // Show again what is in force, for what somebody typed was refused.
+  restore() {
+    if (this.told) this.show(this.told);
+  }
+
+  // Build the controls anew, or only take over their values.
+  show(controls) {
+    this.told = controls;
+    const names = controls.map(({ name }) => name).join();
+    if (names === this.names) {
+      for (const control of controls) this.shown.get(control.name)?.(control.value);
+      return;
+    }
+    this.names = names;
+    this.shown.clear();
+    this.parent.replaceChildren();
+    this.parent.hidden = controls.length === 0;
+    const now = controls.filter(({ restarts }) => !restarts), later = controls.filter(({ restarts }) => restarts);
+    if (now.length) this.parent.append(this.#group(now));
+    if (later.length) {
+      const more = make("details", { open: now.length === 0 });
+      more.append(make("summary", { textContent: "Settings that begin the box anew" }), this.#group(later));
+      this.parent.append(more);
+    }
+  }
+
+  #group(controls) {
+    const group = make("div", { className: "settings" });
+    for (const control of controls) group.append(this.#line(control));
+    return group;
+  }
+
+  #line(control) {
+    const line = make("label", { className: `setting ${control.kind}`, title: control.help ?? "" });
+    line.append(make("span", { className: "name", textContent: control.label }));
+    if (control.kind === "number") this.#number(line, control);
+    else if (control.kind === "switch") this.#switch(line, control);
+    else this.#choice(line, control);
+    return line;
+  }
+
+  #number(line, { name, low, high, step, value, unit, restarts }) {
+    const bounded = Number.isFinite(low) && Number.isFinite(high);
+    const ratios = bounded && low > 0 && high / low > WIDE;
+    const place = (number) => (ratios ? Math.log(number) : number);
+    const box = make("input", { type: "number", step: "any", value: brief(value) });
+    if (bounded) Object.assign(box, { min: low, max: high });
+    box.addEventListener("keydown", ({ key }) => key === "Enter" && box.blur()); // so that the keys play again
+    const send = (number) => Number.isFinite(number) && this.set(name, number);
+    const slider = make("input", { type: "range", step: ratios ? "any" : step ?? "any" });
+    box.addEventListener("change", () => {
+      slider.value = place(box.valueAsNumber);
+      send(box.valueAsNumber);
+    });
+    if (bounded) {
+      Object.assign(slider, { min: place(low), max: place(high) });
+      slider.value = place(value);
+      slider.setAttribute("aria-label", name);
+      let waiting = null;
+      const moved = () => Number((ratios ? Math.exp(slider.valueAsNumber) : slider.valueAsNumber).toPrecision(ratios ? 3 : 6));
+      slider.addEventListener("input", () => {
+        box.value = moved();
+        if (!restarts) waiting ??= setTimeout(() => { waiting = null; send(moved()); }, PATIENCE);
+      });
+      slider.addEventListener("change", () => {
+        clearTimeout(waiting);
+        waiting = null;
+        send(moved());
+      });
+      line.append(slider);
+    }
+    line.append(box, make("span", { className: "unit", textContent: spelled(unit) }));
+    this.shown.set(name, (number) => {
+      if (document.activeElement === box || document.activeElement === slider) return;
+      box.value = brief(number);
+      slider.value = place(number);
+    });
+  }
+
+  #switch(line, { name, value }) {
+    const box = make("input", { type: "checkbox", checked: Boolean(value) });
+    box.addEventListener("change", () => this.set(name, box.checked));
+    line.append(box);
+    this.shown.set(name, (on) => { box.checked = Boolean(on); });
+  }
+
+  #choice(line, { name, value, choices }) {
+    const list = make("select");
+    for (const each of choices ?? []) list.append(make("option", { value: each, textContent: each }));
+    list.value = value;
+    list.addEventListener("change", () => this.set(name, list.value));
+    line.append(list);
+    this.shown.set(name, (chosen) => { list.value = chosen; });
+  }
+}

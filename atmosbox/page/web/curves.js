@@ -1,0 +1,104 @@
+// From the values of a run, in SI, to the curves of a graph in the units that are read.
+
+const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
+
+// The values of a run by name. Those that go with time may grow while one looks on.
+export class Numbers {
+  constructor({ values = {}, timed = [] } = {}) {
+    this.values = { ...values };
+    this.timed = new Set(timed);
+  }
+
+  get(name) {
+    return this.values[name];
+  }
+
+  // The temperatures of the six walls at a time, or at last; null where they are not known.
+  walls(time = Infinity) {
+    const times = this.values.elapsed_time ?? [];
+    let index = times.findIndex((each) => each > time);
+    index = Math.max(0, (index < 0 ? times.length : index) - 1);
+    return WALLS.map((wall) => this.values[`wall_temperature[${wall}]`]?.[index] ?? null);
+  }
+
+  append(times, series) {
+    const before = this.values.elapsed_time?.length ?? 0;
+    this.values.elapsed_time = (this.values.elapsed_time ?? []).concat(times);
+    this.timed.add("elapsed_time");
+    for (const [name, added] of Object.entries(series)) {
+      if (name === "elapsed_time") continue;
+      const old = this.values[name] ?? new Array(before).fill(null);
+      this.values[name] = old.concat(added);
+      this.timed.add(name);
+    }
+  }
+
+  replace(arrays) {
+    for (const [name, values] of Object.entries(arrays)) {
+      this.values[name] = Array.isArray(values) ? values : [values];
+    }
+  }
+
+  clear() {
+    this.values = {};
+    this.timed.clear();
+  }
+}
+
+const shown = (values, way) => values.map((value) => (value === null ? NaN : value * way.factor + way.offset));
+
+// A single number beside a list of values goes along with all of them.
+const along = (values, count) => (values.length === 1 && count > 1 ? new Array(count).fill(values[0]) : values);
+
+// The curves of a panel, those that the run has values of.
+export function curvesOf(panel, numbers) {
+  const seen = {};
+  const found = [];
+  for (const line of panel.lines) {
+    const index = seen[line.role] ?? 0;
+    seen[line.role] = index + 1;
+    const curve = curveOf(panel, line, numbers);
+    if (curve) found.push({ ...curve, index });
+  }
+  return found;
+}
+
+function curveOf(panel, line, numbers) {
+  const [across, up] = [numbers.get(line.x.name), numbers.get(line.y.name)];
+  if (!across?.length || !up?.length) return null;
+  const count = Math.max(across.length, up.length);
+  let x = along(shown(across, line.x), count), y = along(shown(up, line.y), count);
+  if (line.minus) {
+    const base = along(shown(numbers.get(line.minus.name) ?? [], line.minus), count);
+    if (panel.across) x = x.map((value, place) => value - base[place]);
+    else y = y.map((value, place) => value - base[place]);
+  }
+  const spread = line.error && numbers.get(line.error.name);
+  const error = spread?.length ? along(shown(spread, line.error), count) : null;
+  const timed = numbers.timed.has(line.x.name) || numbers.timed.has(line.y.name);
+  const clean = (values, { log }) => (log ? values.map((value) => (value > 0 ? value : NaN)) : values);
+  let curve = { label: line.label, role: line.role, x: clean(x, panel.x), y: clean(y, panel.y), error };
+  curve.steps = panel.kind === "histogram" && line.role === "data";
+  curve.instants = timed && panel.across ? numbers.get("elapsed_time") : null;
+  if (panel.averages && line.role === "data" && !error) curve = { ...curve, ...averaged(curve, panel) };
+  return curve;
+}
+
+// Means of x and y over equal parts of the x axis, those of the parts that hold values.
+function averaged({ x, y }, panel) {
+  const place = panel.x.log ? Math.log : (value) => value;
+  const known = x.map((value, index) => index).filter((index) =>
+    Number.isFinite(x[index]) && Number.isFinite(y[index]) && (!panel.x.log || x[index] > 0));
+  if (known.length < 2) return { x, y };
+  const low = place(x[known[0]]), span = place(x[known.at(-1)]) - low;
+  if (!(span > 0)) return { x, y };
+  const parts = Array.from({ length: panel.averages }, () => [0, 0, 0]);
+  for (const index of known) {
+    const part = parts[Math.min(Math.floor((place(x[index]) - low) / span * panel.averages), panel.averages - 1)];
+    part[0] += 1;
+    part[1] += x[index];
+    part[2] += y[index];
+  }
+  const held = parts.filter(([number]) => number > 0);
+  return { x: held.map(([number, sum]) => sum / number), y: held.map(([number, , sum]) => sum / number) };
+}

@@ -1,0 +1,257 @@
+// One graph: uPlot gives axes, grid and size, the curves are drawn as the figures of a run draw them.
+
+import { curveColour, curveDash, look } from "./colour.js";
+import { logTicks, powerText, scaled, tickTexts, ticks } from "./figure.js";
+import { drawCurve, markerSvg } from "./ink.js";
+import { drawSkewt, slanted } from "./skewt.js";
+
+const ORDER = { reference: 0, environment: 1, data: 2, theory: 3 };
+const font = (size) => `${size}px system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif`;
+
+export class Graph {
+  // `seek` is called with the time that a click on a graph over time points at; `whole` says that the curves are there
+  // from the start, so that what is to come must be veiled.
+  constructor(parent, panel, { runs = 1, seek = null, whole = false } = {}) {
+    Object.assign(this, { panel, runs, seek, whole, curves: [], fixed: null, time: null });
+    this.element = document.createElement("figure");
+    this.element.className = `graph ${panel.kind}`;
+    this.element.innerHTML = "<figcaption><strong></strong><span class='sentences'></span></figcaption>"
+      + "<div class='heads'><span class='unit up'></span><span class='key'></span></div><div class='plot'></div>"
+      + "<span class='unit along'></span>";
+    this.part = (name) => this.element.querySelector(name);
+    this.part("strong").textContent = panel.title;
+    this.say(panel.sentences);
+    this.overTime = !panel.across && panel.kind === "line" && panel.lines?.every(({ x }) => x.name === "elapsed_time");
+    parent.append(this.element);
+    this.veil = Object.assign(document.createElement("div"), { className: "veil" });
+    this.dots = [];
+    this.#begin();
+  }
+
+  say(sentences) {
+    const line = this.part(".sentences");
+    line.replaceChildren();
+    line.title = sentences.join("\n");
+    for (const sentence of sentences) {
+      const [words, number] = sentence.split(" = "); // the number first, for a narrow graph cuts the end off
+      const bold = Object.assign(document.createElement("b"), { textContent: number ?? "" });
+      line.append(bold, ` ${words} `);
+    }
+  }
+
+  #begin() {
+    const grown = (axis) => ({
+      scale: axis, font: font(scaled(12)), stroke: () => look().faint, gap: 4, size: axis === "x" ? scaled(24) : this.#width.bind(this),
+      grid: { stroke: () => look().grid, width: 1, show: this.panel.kind !== "skewt" }, ticks: { stroke: () => look().grid, width: 1, size: 4 },
+      splits: (plot) => this.#ticks(axis, plot).map(this.to[axis]),
+      values: (plot) => this.#texts(axis, plot),
+    });
+    this.to = { x: this.#scale(this.panel.x), y: this.#scale(this.panel.y) };
+    this.range = { x: [0, 1], y: [0, 1] };
+    const plot = this.part(".plot");
+    this.plot = new uPlot({
+      width: 300, height: 150, legend: { show: false }, padding: [8, 14, 0, 4],
+      cursor: { show: true, x: false, y: false, points: { show: false }, drag: { setScale: false, x: false, y: false } },
+      scales: Object.fromEntries(["x", "y"].map((axis) => [axis, {
+        time: false, auto: true, dir: this.panel[axis].invert ? -1 : 1, range: () => this.range[axis],
+      }])),
+      axes: [grown("x"), { ...grown("y"), side: 3 }],
+      series: [{}, { paths: () => null, points: { show: false } }],
+      hooks: { draw: [() => this.#draw()] },
+    }, [[0, 1], [0, 1]], plot);
+    this.plot.over.append(this.veil);
+    if (this.overTime && this.seek) {
+      this.plot.over.style.cursor = "pointer";
+      this.plot.over.addEventListener("click", (event) => {
+        const place = this.plot.posToVal(event.offsetX, "x");
+        this.seek(this.panel.x.log ? 10 ** place : place);
+      });
+    }
+    new ResizeObserver(() => this.resize()).observe(plot);
+  }
+
+  #scale({ log }) {
+    return log ? Math.log10 : (value) => value;
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.part(".plot");
+    if (width > 40 && height > 40) this.plot.setSize({ width, height });
+    this.at(this.time);
+  }
+
+  // The numbers on an axis, as many as have room.
+  #ticks(axis, plot) {
+    const { log } = this.panel[axis];
+    const [low, high] = this.range[axis].map((value) => (log ? 10 ** value : value));
+    const room = axis === "x" ? (plot.width - scaled(60)) / scaled(52) : (plot.height - scaled(32)) / scaled(30);
+    return (log ? logTicks : ticks)(low, high, Math.max(2, room));
+  }
+
+  #texts(axis, plot) {
+    const { texts, power } = tickTexts(this.#ticks(axis, plot));
+    const { label, unit } = this.panel[axis];
+    const words = [powerText(power), unit].filter(Boolean).join(" ");
+    const text = words ? `${label} (${words})` : label;
+    const spot = this.part(axis === "x" ? ".along" : ".up");
+    if (spot.textContent !== text) spot.textContent = text;
+    return texts;
+  }
+
+  #width(self, texts) {
+    return 14 + scaled(7) * Math.max(2, ...(texts ?? []).map((text) => text?.length ?? 0));
+  }
+
+  // Show these curves.
+  set(curves) {
+    this.curves = curves.toSorted((first, second) => ORDER[first.role] - ORDER[second.role]);
+    this.#measure();
+    this.#key();
+    this.plot.setData([this.range.x, this.range.y]);
+    this.at(this.time);
+  }
+
+  repaint() {
+    this.#key();
+    this.plot.redraw(false);
+  }
+
+  #measure() {
+    const known = { x: [], y: [] };
+    for (const { x, y, error } of this.curves) {
+      for (let index = 0; index < x.length; index += 1) {
+        if (!Number.isFinite(x[index]) || !Number.isFinite(y[index])) continue;
+        const spread = Number.isFinite(error?.[index]) ? error[index] : 0;
+        const across = this.panel.across;
+        for (const sign of spread ? [-1, 1] : [0]) {
+          known.x.push(x[index] + (across ? sign * spread : 0));
+          known.y.push(y[index] + (across ? 0 : sign * spread));
+        }
+      }
+    }
+    const { kind } = this.panel;
+    if (kind === "skewt" && known.y.length) {
+      this.foot = Math.max(...known.y) * 1.02;
+      known.x = known.x.map((value, index) => slanted(value, known.y[index], this.foot));
+    }
+    for (const axis of ["x", "y"]) {
+      const { log } = this.panel[axis];
+      const values = known[axis].map(this.to[axis]).filter(Number.isFinite);
+      let low = Infinity, high = -Infinity;
+      for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
+      if (!(high >= low)) [low, high] = [0, 1];
+      if (high === low) [low, high] = [low - 0.5, high + 0.5];
+      let margin = axis === "y" ? (kind === "line" ? 0.07 : 0.03) : (kind === "profile" ? 0.06 : kind === "skewt" ? 0.1 : 0);
+      if (kind === "histogram") [low, margin] = [axis === "y" ? 0 : Math.max(0, low), 0.03];
+      const floor = !log && low >= 0 && low < 0.2 * high && (kind === "profile" || (axis === "x" && kind === "line"));
+      const span = high - low;
+      this.range[axis] = [floor || (kind === "histogram" && low === 0) ? Math.min(low, 0) : low - margin * span, high + margin * span];
+    }
+    if (this.fixed) Object.assign(this.range, this.fixed);
+    if (kind === "skewt" && known.y.length) {
+      this.range.y = [Math.log10(Math.min(...known.y) / 1.02), Math.log10(this.foot)];
+    }
+  }
+
+  // What each curve is called. Of two runs the colour tells which is meant, and the dashes which curve.
+  #key() {
+    const key = this.part(".key");
+    key.replaceChildren();
+    const named = new Set();
+    for (const curve of this.curves) {
+      if (named.has(curve.label)) continue;
+      named.add(curve.label);
+      const item = document.createElement("span");
+      const colour = this.runs > 1 ? look().faint : this.colour(curve);
+      const dashes = curveDash(curve.role, curve.index).join(" ");
+      const wide = curve.role === "reference" ? 5 : 2.2;
+      item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
+        + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
+      item.append(curve.label);
+      key.append(item);
+    }
+  }
+
+  colour({ role, index, run = 0 }) {
+    return this.runs > 1 ? curveColour("data", run) : curveColour(role, index);
+  }
+
+  #several({ role, run = 0, steps }) {
+    return role === "data" && !steps
+      && this.curves.filter((curve) => curve.role === "data" && (curve.run ?? 0) === run).length > 1;
+  }
+
+  // Pixels of the canvas, of a point in the units of the panel.
+  #spot(x, y) {
+    const along = this.panel.kind === "skewt" ? slanted(x, y, this.foot) : this.to.x(x);
+    return [this.plot.valToPos(along, "x", true), this.plot.valToPos(this.to.y(y), "y", true)];
+  }
+
+  #draw() {
+    const { ctx: context, bbox } = this.plot;
+    const unit = uPlot.pxRatio;
+    context.save();
+    context.beginPath();
+    context.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    context.clip();
+    context.font = font(scaled(12) * unit);
+    if (this.panel.kind === "skewt" && this.foot) {
+      drawSkewt(context, this.panel, this.curves, this.foot, 10 ** this.range.y[0], (x, y) => this.#spot(x, y), unit);
+    }
+    this.#marks(context, bbox, unit);
+    for (const curve of this.curves) drawCurve(context, curve, {
+      spot: (x, y) => this.#spot(x, y), unit, across: this.panel.across, colour: this.colour(curve), several: this.#several(curve),
+      floor: this.plot.valToPos(this.range.y[0], "y", true),
+    });
+    context.restore();
+  }
+
+  #marks(context, bbox, unit) {
+    let above = -Infinity;
+    for (const [name, pressure] of Object.entries(this.panel.marks ?? {}).toSorted((one, other) => one[1] - other[1])) {
+      const [, y] = this.#spot(0, pressure);
+      const under = y - above < 15 * unit; // of two levels that are close, the lower has its name below
+      above = y;
+      context.strokeStyle = context.fillStyle = look().ink;
+      context.lineWidth = unit;
+      context.beginPath();
+      context.moveTo(bbox.left + bbox.width - 34 * unit, y);
+      context.lineTo(bbox.left + bbox.width, y);
+      context.stroke();
+      context.textAlign = "right";
+      context.fillText(name, bbox.left + bbox.width - 3 * unit , y + (under ? 13 : -4) * unit);
+    }
+  }
+
+  // Let the graph show that it is such a time: what is to come is veiled, or a dot runs along the curves.
+  at(time) {
+    this.time = time;
+    if (time === null) return;
+    if (this.overTime && this.whole) {
+      const place = this.to.x(time), [low, high] = this.range.x;
+      const left = this.plot.valToPos(Math.min(Math.max(Number.isFinite(place) ? place : low, low), high), "x");
+      this.veil.style.display = "block";
+      this.veil.style.left = `${left}px`;
+    }
+    const followed = this.panel.across ? this.curves.filter(({ role, instants }) => role === "data" && instants) : [];
+    followed.forEach((curve, number) => {
+      this.dots[number] ??= this.plot.over.appendChild(Object.assign(document.createElement("div"), { className: "dot" }));
+      const index = latest(curve.instants, time);
+      const [x, y] = this.#spot(curve.x[index], curve.y[index]);
+      const unit = uPlot.pxRatio, { left, top } = this.plot.bbox;
+      this.dots[number].style.display = Number.isFinite(x) && Number.isFinite(y) ? "block" : "none";
+      this.dots[number].style.background = this.colour(curve);
+      this.dots[number].style.transform = `translate(${(x - left) / unit}px, ${(y - top) / unit}px)`;
+    });
+    for (const spare of this.dots.slice(followed.length)) spare.style.display = "none";
+  }
+}
+
+function latest(instants, time) {
+  let low = 0, high = instants.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (instants[middle] <= time) low = middle; else high = middle - 1;
+  }
+  return low;
+}

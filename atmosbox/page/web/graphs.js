@@ -1,0 +1,69 @@
+// All graphs of the page, of one run or of two together.
+
+import { curvesOf } from "./curves.js";
+import { Graph } from "./graph.js";
+import { highestShare, speedCurves, speedPanel } from "./speeds.js";
+
+const PATIENCE = 90; // ms between two counts of the speeds
+
+const letter = (run) => String.fromCharCode(65 + run);
+
+// Panels of two runs are one graph if they show the same variables.
+const subject = (panel) => JSON.stringify([panel.kind, panel.lines.map(({ x, y, role }) => [x.name, y.name, role])]);
+
+export class Graphs {
+  // `runs`: of each its stage, its film and its numbers.
+  constructor(parent, runs, seek) {
+    Object.assign(this, { parent, runs });
+    this.panels = [];
+    parent.replaceChildren();
+    runs.forEach(({ stage }, run) => {
+      for (const panel of stage.panels) {
+        const same = this.panels.find((other) => subject(other.panel) === subject(panel) && !other.members.some((each) => each.run === run));
+        if (same) same.members.push({ run, panel });
+        else this.panels.push({ panel, members: [{ run, panel }] });
+      }
+    });
+    for (const each of this.panels) {
+      each.graph = new Graph(parent, this.#titled(each), { runs: runs.length, seek, whole: Boolean(seek) });
+    }
+    this.speeds = new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length });
+    parent.dataset.count = this.panels.length + 1;
+    this.refresh();
+    this.highest = 0;
+  }
+
+  #titled({ panel, members }) {
+    if (this.runs.length === 1) return panel;
+    const title = members.length > 1 ? panel.title : `${letter(members[0].run)}: ${panel.title}`;
+    return { ...panel, title, sentences: members.flatMap(({ run, panel: own }) => own.sentences.map((text) => text.replace(" = ", ` = ${letter(run)} `))) };
+  }
+
+  // Draw the curves anew, for values may have come.
+  refresh() {
+    for (const { graph, members } of this.panels) {
+      graph.set(members.flatMap(({ run, panel }) => curvesOf(panel, this.runs[run].numbers).map((curve) => ({ ...curve, run }))));
+    }
+  }
+
+  // Let all graphs show that it is such a time. While the film runs, the speeds need not be counted for every picture.
+  at(time, running = false) {
+    for (const { graph } of this.panels) graph.at(time);
+    const now = performance.now();
+    if (running && now - this.counted < PATIENCE) return;
+    this.counted = now;
+    const curves = this.runs.flatMap(({ stage, film }, run) => {
+      if (!film.frames.length) return [];
+      return speedCurves(film.frames[film.before(time)], stage).map((curve) => ({ ...curve, run }));
+    });
+    const tops = this.runs.map(({ stage, film }) => (this.highest ? 0 : highestShare(film.frames, stage)));
+    this.highest = Math.max(this.highest, ...tops);
+    this.speeds.fixed = { y: [0, this.highest || 1] };
+    this.speeds.set(curves);
+  }
+
+  repaint() {
+    for (const { graph } of this.panels) graph.repaint();
+    this.speeds.repaint();
+  }
+}

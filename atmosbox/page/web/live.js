@@ -1,0 +1,135 @@
+// The page of a box that runs: frames and numbers come through a line, and what one turns goes back.
+
+import { showCaption } from "./caption.js";
+import { Controls } from "./controls.js";
+import { Numbers } from "./curves.js";
+import { Film, decode } from "./frames.js";
+import { Graphs } from "./graphs.js";
+import { listen } from "./keys.js";
+import { Link } from "./link.js";
+import { forget, note } from "./notes.js";
+import { Pulse } from "./pulse.js";
+import { Sheet } from "./sheet.js";
+import { Stage } from "./stage.js";
+
+const KEPT = 240; // frames, which the path of a molecule is drawn from
+const LOOK = 200; // ms between two looks of the graphs at what has come
+
+const find = (name) => document.getElementById(name);
+
+class Live {
+  constructor() {
+    this.link = new Link({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer), state: (state) => this.line(state) });
+    this.pulse = new Pulse(find("transport"), (told) => this.link.say(told));
+    this.controls = new Controls(find("controls"), (name, value) => this.link.say({ type: "set", name, value }));
+    this.beat = { arrived: 0, interval: 50 };
+    this.stale = false;
+  }
+
+  line(state) {
+    document.body.dataset.line = state;
+    if (state === "lost") note(find("notes"), { level: "warning", name: "line", text: "The connection to atmosbox is lost. Trying again; if it was stopped, type atmosbox live once more." });
+    else forget(find("notes"), "line");
+  }
+
+  hear(told) {
+    if (told.type === "stage") this.open(told);
+    else if (told.type === "series") this.append(told);
+    else if (told.type === "arrays") this.numbers?.replace(told.values);
+    else if (told.type === "state") this.pulse.show(told);
+    else if (told.type === "controls") this.controls.show(told.controls);
+    else if (told.type === "note") {
+      note(find("notes"), told);
+      if (told.level === "error") this.controls.restore();
+    }
+    this.stale = true;
+  }
+
+  // A box that begins: all that was seen of another is put away.
+  open({ stage: record, controls, state }) {
+    this.stage?.leave();
+    find("boxes").replaceChildren();
+    const frame = Object.assign(document.createElement("div"), { className: "box" });
+    find("boxes").append(frame);
+    find("title").textContent = document.title = record.title;
+    const place = this.stage?.camera.place;
+    this.film = new Film([], KEPT);
+    this.numbers = new Numbers();
+    this.stage = new Stage(frame, record, this.film);
+    if (place !== undefined && place !== null) this.stage.camera.place = place;
+    this.graphs = new Graphs(find("graphs"), [{ stage: record, film: this.film, numbers: this.numbers }], null);
+    this.sheet = new Sheet([this.stage], () => this.graphs.repaint());
+    const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
+      record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
+    showCaption(find("caption"), [{ stage: record, footer }]);
+    this.pulse.begin(record);
+    this.pulse.show({ seed: record.seed, ...state });
+    this.controls.show(controls ?? []);
+    document.body.dataset.ready = true;
+  }
+
+  append({ reset, time, values }) {
+    if (reset) this.numbers.clear();
+    this.numbers.append(time ?? [], values ?? {});
+    this.stage.warm(this.numbers.walls());
+  }
+
+  see(buffer) {
+    if (!this.film) return;
+    const { frame } = decode(buffer);
+    const last = this.film.frames.at(-1);
+    if (last && frame.time < last.time) this.film.clear();
+    this.film.push(frame);
+    const now = performance.now();
+    this.beat = { arrived: now, interval: Math.min(0.8 * this.beat.interval + 0.2 * (now - this.beat.arrived), 400) };
+    this.stale = true;
+    document.body.dataset.time = frame.time;
+    if (last === undefined || !this.pulse.state.playing) this.pulse.show({ time: frame.time });
+  }
+
+  // Between two frames that came, molecules go on evenly; so the picture is one frame behind.
+  draw(now) {
+    const { frames } = this.film ?? { frames: [] };
+    if (!frames.length) return;
+    const second = frames.at(-1), first = frames.at(-2) ?? second;
+    const share = Math.min((now - this.beat.arrived) / Math.max(this.beat.interval, 1), 1);
+    const time = first.time + (second.time - first.time) * share;
+    if (time !== this.drawn || this.stage.dirty) this.stage.show(time);
+    this.drawn = time;
+    this.stage.render();
+  }
+
+  // The graphs need not be as quick as the picture.
+  look() {
+    if (!this.stale || !this.graphs) return;
+    this.stale = false;
+    this.graphs.refresh();
+    if (this.film.frames.length) {
+      this.graphs.at(this.film.end);
+      find("status").textContent = this.sheet.story();
+    }
+  }
+}
+
+export function begin() {
+  const live = new Live();
+  const { pulse } = live;
+  listen({
+    " ": () => pulse.toggle(),
+    ArrowRight: () => pulse.step(),
+    ArrowUp: () => pulse.accelerate(2),
+    ArrowDown: () => pulse.accelerate(0.5),
+    ...Object.fromEntries([0, 1, 2, 3].map((place) => [String(place + 1), () => live.sheet?.look(place)])),
+    c: () => live.sheet?.colour(),
+    t: () => live.sheet?.trace(),
+    d: () => live.sheet?.turnTheme(),
+    r: () => pulse.reset(),
+    "?": () => live.sheet?.help(),
+  });
+  setInterval(() => live.look(), LOOK);
+  const beat = (now) => {
+    live.draw(now);
+    requestAnimationFrame(beat);
+  };
+  requestAnimationFrame(beat);
+}

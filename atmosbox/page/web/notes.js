@@ -1,0 +1,22 @@
+// What the box has to say to whoever looks on: a sentence that goes away, or, if something was refused, stays.
+
+const SIGNS = { info: "i", warning: "!", error: "×" };
+const WORDS = { info: "", warning: "Note: ", error: "Refused: " };
+const READING = 7000; // ms
+
+export function note(parent, { level = "info", text, name }) {
+  if (name) parent.querySelector(`[data-name="${name}"]`)?.remove();
+  const card = document.createElement("div");
+  card.className = `note ${level}`;
+  if (name) card.dataset.name = name;
+  const sign = Object.assign(document.createElement("b"), { textContent: SIGNS[level] ?? "i" });
+  const words = Object.assign(document.createElement("span"), { textContent: (name ? "" : WORDS[level] ?? "") + text });
+  const close = Object.assign(document.createElement("button"), { type: "button", textContent: "Close" });
+  close.onclick = () => card.remove();
+  card.append(sign, words, close);
+  parent.append(card);
+  if (level !== "error" && !name) setTimeout(() => card.remove(), READING);
+  while (parent.children.length > 4) parent.firstElementChild.remove();
+}
+
+export const forget = (parent, name) => parent.querySelector(`[data-name="${name}"]`)?.remove();

@@ -1,0 +1,80 @@
+// The bar of a box that runs: play, step, begin anew with a seed, how fast, and recording.
+
+import { figure, withUnit } from "./figure.js";
+import { icon } from "./transport.js";
+
+const SLOWEST = 0.25, FASTEST = 16;
+
+export class Pulse {
+  constructor(parent, say) {
+    Object.assign(this, { say, state: { playing: false, pace: 1, recording: null }, unit: "" });
+    parent.innerHTML = `
+      <button type="button" id="play" class="main" title="Play or pause (space)"></button>
+      <button type="button" id="on" title="One frame on (→)" aria-label="one frame on">${icon("on")}</button>
+      <span class="group"><button type="button" id="slower" title="Slower (↓)" aria-label="slower">−</button>
+      <output id="pace"></output><button type="button" id="faster" title="Faster (↑)" aria-label="faster">+</button></span>
+      <output id="time"></output><output id="vitals"></output>
+      <span class="group"><button type="button" id="reset" title="Begin anew (R)">Begin anew</button></span>
+      <label class="seed" title="Seed of the random numbers: the same seed, the same run">seed <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
+      <span class="group"><input type="text" id="file" aria-label="file to record to" spellcheck="false"><button type="button" id="record"></button></span>`;
+    this.part = (name) => parent.querySelector(`#${name}`);
+    this.part("play").onclick = () => this.toggle();
+    this.part("on").onclick = () => this.step();
+    this.part("slower").onclick = () => this.accelerate(0.5);
+    this.part("faster").onclick = () => this.accelerate(2);
+    this.part("reset").onclick = () => this.reset();
+    this.part("record").onclick = () => this.record();
+    this.show({});
+  }
+
+  toggle() {
+    this.say({ type: this.state.playing ? "pause" : "play" });
+  }
+
+  step() {
+    this.say({ type: "step" });
+  }
+
+  reset() {
+    const seed = this.part("seed").valueAsNumber;
+    this.say({ type: "reset", seed: Number.isInteger(seed) && seed >= 0 ? seed : null });
+  }
+
+  accelerate(factor) {
+    this.say({ type: "pace", value: Math.min(Math.max(this.state.pace * factor, SLOWEST), FASTEST) });
+  }
+
+  record() {
+    if (this.state.recording) this.say({ type: "stop_record" });
+    else this.say({ type: "record", file: this.part("file").value.trim() || null });
+  }
+
+  // A box that begins: its unit of time, and where its recordings go if nobody names a file.
+  begin({ time, scene }) {
+    this.unit = time.unit;
+    this.part("file").placeholder = `${scene.replace(/.*\//, "").replace(/\.py$/, "")}-live.nc`;
+  }
+
+  // What the box says of itself.
+  show(told) {
+    Object.assign(this.state, told);
+    const { playing, pace, recording, time, rate, ledger, molecules, seed, finished, busy } = this.state;
+    this.part("play").innerHTML = icon(playing ? "pause" : "play");
+    this.part("play").setAttribute("aria-label", playing ? "pause" : "play");
+    this.part("pace").textContent = pace < 1 ? `1/${Math.round(1 / pace)}×` : `${pace}×`;
+    this.part("record").textContent = recording ? "■ Stop recording" : "● Record";
+    this.part("record").setAttribute("aria-pressed", Boolean(recording));
+    this.part("file").disabled = Boolean(recording);
+    if (recording) this.part("file").value = recording;
+    if (time !== undefined) this.part("time").textContent = withUnit(time, this.unit, 4);
+    const vitals = busy ? [busy] : [
+      molecules !== undefined && `${molecules} molecules`,
+      Number.isFinite(rate) && playing && `${figure(rate, 2)} frames/s`,
+      Number.isFinite(ledger) && `energy off by ${figure(ledger, 2)}`,
+      finished && "the run is over",
+    ];
+    this.part("vitals").textContent = vitals.filter(Boolean).join(" · ");
+    if (seed !== undefined && seed !== null && document.activeElement !== this.part("seed")) this.part("seed").value = seed;
+    document.body.dataset.playing = playing;
+  }
+}

@@ -1,0 +1,108 @@
+// What surrounds the picture on both pages: cameras, colours, theme, tracing, the list of keys.
+
+import { theme } from "./colour.js";
+import { PLACES } from "./camera.js";
+import { showLegend } from "./legend.js";
+import { figure } from "./figure.js";
+import { KEYS } from "./keys.js";
+
+const find = (name) => document.getElementById(name);
+
+// Buttons of which one is pressed.
+function choice(parent, names, chosen, choose) {
+  parent.replaceChildren();
+  names.forEach((name, index) => {
+    const button = Object.assign(document.createElement("button"), { type: "button", textContent: name });
+    button.setAttribute("aria-pressed", index === chosen);
+    button.onclick = () => choose(index);
+    parent.append(button);
+  });
+}
+
+export class Sheet {
+  // `stages`: the boxes; `repaint` is called when the theme has changed.
+  constructor(stages, repaint) {
+    Object.assign(this, { stages, repaint });
+    find("theme").onclick = () => this.turnTheme();
+    find("help").onclick = () => this.help();
+    find("trace").onclick = () => this.trace();
+    matchMedia("(prefers-color-scheme: dark)").onchange = () => this.paint();
+    stages.forEach((stage) => stage.parent.addEventListener("pick", ({ detail }) => this.follow(stage, detail)));
+    this.#tools();
+    this.follow(null, null); // a box that begins anew follows nobody
+  }
+
+  #tools() {
+    const [{ mode, camera, record }] = this.stages;
+    const modes = this.modes = record.species.length > 1 ? ["speed", "species"] : ["speed"];
+    choice(find("colours"), modes.map((each) => (each === "speed" ? "Speed" : "Kind")), modes.indexOf(mode), (index) => this.colour(modes[index]));
+    find("colours").hidden = modes.length < 2;
+    choice(find("cameras"), PLACES.map(({ name }, index) => `${index + 1} ${name}`), camera.place, (index) => this.look(index));
+    showLegend(find("legend"), record, mode);
+  }
+
+  colour(mode = this.modes[(this.modes.indexOf(this.stages[0].mode) + 1) % this.modes.length]) {
+    for (const stage of this.stages) {
+      stage.mode = mode;
+      stage.tint();
+    }
+    this.#tools();
+  }
+
+  look(place) {
+    for (const stage of this.stages) {
+      stage.camera.go(place);
+      stage.dirty = true;
+    }
+    this.#tools();
+  }
+
+  // Follow a molecule of a box, or none.
+  follow(chosen, molecule) {
+    for (const stage of this.stages) stage.follow(stage === chosen ? molecule : null);
+    find("trace").setAttribute("aria-pressed", molecule !== null && molecule !== undefined);
+    document.body.dataset.traced = molecule ?? "";
+    this.refresh?.();
+  }
+
+  trace() {
+    const followed = this.stages.some((stage) => stage.trace.molecule !== null);
+    this.follow(this.stages[0], followed ? null : this.stages[0].pick());
+  }
+
+  // What is known of the molecule that is followed.
+  story() {
+    const stage = this.stages.find(({ trace }) => trace.molecule !== null);
+    if (!stage?.shown) return "";
+    const { first } = stage.shown, { molecule } = stage.trace, { record } = stage;
+    const name = record.species[record.kind[molecule]].name;
+    if (first.state[molecule]) return `Following a molecule of ${name}: it is in the liquid`;
+    const speed = first.speed[molecule] / 255 * record.speed.high;
+    const what = record.particle === "disc" ? `a disc (${name})` : `a molecule of ${name.replace("molecule", "gas")}`;
+    return `Following ${what}: ${figure(speed)} ${record.speed.unit}`;
+  }
+
+  turnTheme() {
+    document.documentElement.dataset.theme = theme() === "dark" ? "light" : "dark";
+    this.paint();
+  }
+
+  paint() {
+    for (const stage of this.stages) stage.paint();
+    this.#tools();
+    this.repaint();
+  }
+
+  help() {
+    const dialog = find("sheet");
+    dialog.innerHTML = "<h2>Keys</h2><dl></dl><p>Drag to turn the box, wheel or two fingers to come closer, "
+      + "click a molecule to follow it, click a graph over time to go there.</p><p>Drawn with three.js and uPlot.</p><form method='dialog'><button>Close</button></form>";
+    for (const [key, meaning] of KEYS) {
+      dialog.querySelector("dl").append(
+        Object.assign(document.createElement("dt"), { textContent: key }),
+        Object.assign(document.createElement("dd"), { textContent: meaning }),
+      );
+    }
+    dialog.showModal();
+  }
+}

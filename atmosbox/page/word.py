@@ -1,0 +1,227 @@
+"""What a page says in words: the story, the settings and how they differ, and what the picture leaves out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox.page.box import length_text
+from atmosbox.page.moment import Moments
+from atmosbox.provenance import parameters
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["changed", "footer_of", "notes", "settings_of", "story_of"]
+
+_FAR = 0.15  # of the box; where molecules fly farther between two frames, the page says so
+_NEAR = 0.03  # of the box; so far they fly in a film that shows how they collide
+
+
+def story_of(dataset: xr.Dataset) -> str:
+    """Return what a scene is about: its model card up to what is modelled.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, with the attribute ``comment``.
+
+    Returns
+    -------
+    str
+        The sentences.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> story_of(xr.Dataset(attrs={"comment": "What heat is. Modelled: spheres. Left out: the rest."}))
+    'What heat is.'
+    """
+    return str(dataset.attrs.get("comment", "")).partition(" Modelled:")[0].strip()
+
+
+def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
+    """Return the settings of a run as a reader knows them.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+
+    Returns
+    -------
+    list of tuple of str
+        Names and values, with the units of the scene where atmosbox has it.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> made = '{"scene": "temperature", "settings": {"temperature": 25.0, "seed": 3}}'
+    >>> settings_of(xr.Dataset(attrs={"atmosbox_parameters": made}))
+    [('temperature', '25 °C'), ('seed', '3')]
+    """
+    made = parameters(dataset)
+    units = _units(str(made.get("scene", "")))
+    return [
+        (name.replace("_", " "), _phrase(value, units.get(name, "")))
+        for name, value in made.get("settings", {}).items()
+    ]
+
+
+def changed(runs: Sequence[xr.Dataset]) -> list[str]:
+    """Return for each run what sets it apart from the others, and nothing else.
+
+    Parameters
+    ----------
+    runs : sequence of xarray.Dataset
+        The runs.
+
+    Returns
+    -------
+    list of str
+        Headings; runs that are alike in all are numbered.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> made = '{"scene": "temperature", "engine": "exact", "settings": {"temperature": %s, "seed": 1}}'
+    >>> changed([xr.Dataset(attrs={"atmosbox_parameters": made % value}) for value in ("25.0", "60.0")])
+    ['temperature 25 °C', 'temperature 60 °C']
+    """
+    made = [parameters(run) for run in runs]
+    told = [
+        {"scene": str(one.get("scene", "")), **dict(settings_of(run)), "engine": str(one.get("engine", "exact"))}
+        for one, run in zip(made, runs, strict=True)
+    ]
+    known = dict.fromkeys(name for each in told for name in each)
+    if len({each["scene"] for each in told}) > 1:
+        return [str(run.attrs.get("title", each["scene"])) for run, each in zip(runs, told, strict=True)]
+    different = [name for name in known if len({each.get(name) for each in told}) > 1]
+    headings = [_heading(each, different) for each in told]
+    return [heading or f"run {number + 1}" for number, heading in enumerate(headings)]
+
+
+def footer_of(dataset: xr.Dataset) -> str:
+    """Return the small type under a page: version, scene, molecules, seed, engine.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+
+    Returns
+    -------
+    str
+        See `atmosbox.plot.caption.footer`.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> footer_of(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "atmosphere", "version": "1.0"}'}))
+    'atmosbox 1.0 · atmosphere'
+    """
+    from atmosbox.plot.caption import footer
+
+    return footer(dataset)
+
+
+def notes(seen: Moments, stage: Mapping[str, Any], *, frames: int) -> list[str]:
+    """Return what the picture leaves out or adds, in sentences.
+
+    Parameters
+    ----------
+    seen : Moments
+        The run.
+    stage : mapping
+        The record of its stage.
+    frames : int
+        How many of its frames the page holds.
+
+    Returns
+    -------
+    list of str
+        The sentences.
+
+    Examples
+    --------
+    >>> import types, numpy as np
+    >>> seen = types.SimpleNamespace(
+    ...     time=np.arange(2.0), position=np.zeros((2, 4, 3)), side=np.ones((2, 3)), drops=None, liquid=np.zeros(2),
+    ...     rained=np.zeros(2),
+    ... )
+    >>> stage = {"molecules": 4, "molecules_shown": 2, "particle": "molecule", "box": {"walls": ["specular"] * 6}}
+    >>> notes(seen, stage, frames=2)
+    ['2 of the 4 molecules are drawn.']
+    """
+    found = []
+    particle, walls = stage["particle"], stage["box"]["walls"]
+    if stage["molecules_shown"] < stage["molecules"]:
+        found.append(f"{stage['molecules_shown']} of the {stage['molecules']} {particle}s are drawn.")
+    if frames < len(seen.time):
+        found.append(f"{frames} of the {len(seen.time)} frames are drawn; the graphs have all of them.")
+    far, of_side = _flight(seen)
+    if of_side > _FAR:
+        found.append(
+            f"From frame to frame a {particle} flies {length_text(far)}, and is drawn on a straight line: "
+            f"its collisions on the way are not seen. {_shorter(seen, stage, of_side)}"
+        )
+    if walls[4] == "pool":
+        found.append("The pool has no depth in the model: the layer drawn is as high as there is water left in it.")
+    elif seen.drops is not None:
+        wider = dict(stage["settings"]).get("drop size")
+        if wider:
+            found.append(f"The drops are {wider} times as wide as real ones of so many molecules.")
+    elif np.any(seen.liquid):
+        found.append("The liquid is a mist without places: it is drawn as clumps, whose places the page chose.")
+    if np.any(seen.rained):
+        found.append("Rain has left the box: it is drawn as a layer on the floor.")
+    return found
+
+
+def _flight(seen: Moments) -> tuple[float, float]:
+    """Return how far a molecule comes from frame to frame [m], in the middle of the run, and in sides of the box."""
+    if len(seen.time) < 2 or not seen.position.shape[1]:
+        return 0.0, 0.0
+    middle = len(seen.time) // 2
+    step = np.abs(seen.position[middle] - seen.position[middle - 1])
+    step = np.minimum(step, np.where(np.isfinite(step), seen.side[middle] - step, step))  # the shorter way round
+    flown = np.linalg.norm(step[np.isfinite(step).all(axis=1)], axis=1)
+    far = float(np.median(flown)) if flown.size else 0.0
+    return far, far / float(np.exp(np.log(seen.side[middle]).mean()))
+
+
+def _shorter(seen: Moments, stage: Mapping[str, Any], of_side: float) -> str:
+    """Return which run shows the collisions: one so short that molecules fly little from frame to frame."""
+    unit = stage["time"]["unit"]
+    number, _, own = dict(stage["settings"]).get("duration", "").partition(" ")
+    if own != unit or not number:
+        return "A shorter run shows them."
+    short = float(seen.time[-1]) * _NEAR / of_side
+    return f"A run with --set duration={float(f'{short:.1g}'):g}{unit} shows them."
+
+
+def _units(scene: str) -> dict[str, str]:
+    """Return the units of the settings of a scene that comes with atmosbox; of another one's nothing is known."""
+    from atmosbox import scenarios
+
+    if scene not in scenarios.names():
+        return {}
+    return {parameter.name: parameter.unit for parameter in scenarios.load(scene).Settings.describe()}
+
+
+def _heading(told: Mapping[str, str], names: Sequence[str]) -> str:
+    return " · ".join(f"{name} {told[name]}" for name in names if name in told)
+
+
+def _phrase(value: object, unit: str) -> str:
+    """Return a value with its unit, as it is read."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, int | float) and math.isfinite(value):
+        from atmosbox.plot.unit import spelled
+
+        return f"{value:.6g} {'' if unit == '1' else spelled(unit)}".replace("-", "\u2212").rstrip()
+    return str(value)

@@ -1,0 +1,246 @@
+"""Several runs in one figure: each panel with the curves of all, told apart by colour and by a second cue."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+from matplotlib.lines import Line2D
+
+from atmosbox.errors import FileError
+from atmosbox.panels import Line, Panel
+from atmosbox.plot.caption import footer
+from atmosbox.plot.curve import Curve, curve, unit_of
+from atmosbox.plot.draw import Entry, set_limits
+from atmosbox.plot.layout import Painter, explanation, panels_of
+from atmosbox.plot.place import blank, frame, put_panels, settle
+from atmosbox.plot.plate import Pen
+from atmosbox.plot.skewt import put_background, skewed_axes, slender
+from atmosbox.plot.stroke import draw_line, draw_steps, line_style
+from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find, style
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import xarray as xr
+
+__all__ = ["MOST", "figure", "shared_panels"]
+
+MOST = len(DATA_COLOURS)
+"""So many runs can be told apart in one figure."""
+
+_SAME = 2e-3  # of the range of a calculated curve: two that differ by less are drawn once
+_DARKER = 0.6  # of the colour of a run, for what is calculated for it
+
+
+def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, theme: str = "notes") -> Figure:
+    """Draw several runs into one figure.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        The runs; the panels are those of the first.
+    labels : sequence of str
+        What the legend calls each of them.
+    title : str
+        What stands over the panels.
+    theme : {"notes", "slides"}
+        A figure for a page, or one for a screen.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    FileError
+        If the runs have no panel in common.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.panels import to_json
+    >>> air = Panel("line", "Temperature", (Line("elapsed_time", "t", "air"),), "time", "temperature")
+    >>> runs = [
+    ...     xr.Dataset(
+    ...         {"t": ("elapsed_time", [288.0 + k, 290.0 + k], {"units": "K"})},
+    ...         coords={"elapsed_time": ("elapsed_time", [0.0, 1.0], {"units": "ns"})},
+    ...         attrs={"atmosbox_panels": to_json([air])},
+    ...     )
+    ...     for k in (0, 5)
+    ... ]
+    >>> [text.get_text() for text in figure(runs, ["cold", "warm"], "Two").axes[0].get_legend().get_texts()]
+    ['cold', 'warm']
+    """
+    look = find(theme)
+    panels = shared_panels(datasets)
+    with style(look):
+        drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
+        pen = Pen(drawing)
+        plates = put_panels(drawing, panels, look, _Painter(datasets, labels, look), [[] for _ in panels])
+        frame(pen, _small(datasets) + explanation(datasets[0], panels), title, look)
+        settle(pen, plates, look)
+    return drawing
+
+
+def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
+    """Return the panels of the first run that show something that all the others have measured, too.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        The runs.
+
+    Returns
+    -------
+    tuple of Panel
+        The panels, with their units said.
+
+    Raises
+    ------
+    FileError
+        If there is none.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.panels import to_json
+    >>> shared_panels([xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])})])
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: These runs have no graph in common: compare runs of one scene.
+    """
+    first = datasets[0]
+    found = [
+        panel
+        for panel in panels_of(first)
+        if panel.kind != "discs"
+        and any(line.role == "data" and all(_held(each, line) for each in datasets) for line in panel.lines)
+    ]
+    if not found:
+        raise FileError("These runs have no graph in common: compare runs of one scene.")
+    return tuple(_with_units(first, panel) for panel in found)
+
+
+def _held(dataset: xr.Dataset, line: Line) -> bool:
+    """Tell whether a run has the variables of a line."""
+    return all(name.partition("[")[0] in dataset.variables for name in line.variables)
+
+
+def _with_units(dataset: xr.Dataset, panel: Panel) -> Panel:
+    """Return a panel that says its units, lest each run be drawn in its own."""
+    if panel.kind == "skewt":
+        return panel
+    return replace(
+        panel, x_unit=panel.x_unit or unit_of(dataset, panel, "x"), y_unit=panel.y_unit or unit_of(dataset, panel, "y")
+    )
+
+
+def _small(datasets: Sequence[xr.Dataset]) -> str:
+    """Return the small type of all runs, what differs side by side."""
+    parts = [footer(dataset).split(" · ") for dataset in datasets]
+    if len({len(part) for part in parts}) > 1:
+        return "; ".join(dict.fromkeys(" · ".join(part) for part in parts))
+    return " · ".join(" / ".join(dict.fromkeys(same)) for same in zip(*parts, strict=True))
+
+
+class _Painter:
+    """Draws the panels of several runs."""
+
+    def __init__(self, datasets: Sequence[xr.Dataset], labels: Sequence[str], look: Theme) -> None:
+        self.datasets, self.names, self.look = tuple(datasets), tuple(labels), look
+
+    def labels(self, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Return what the two axes of a panel show, and in which units."""
+        return Painter(self.datasets[0], self.look).labels(panel)
+
+    def levels(self, panel: Panel) -> dict[str, float]:
+        """Return the pressures that a panel marks [hPa], where all runs agree about them."""
+        found = [Painter(dataset, self.look).levels(panel) for dataset in self.datasets]
+        alike = all(set(each) == set(found[0]) for each in found)
+        return found[0] if alike and all(np.allclose([*each.values()], [*found[0].values()]) for each in found) else {}
+
+    def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
+        """Draw a panel at its place, along the abscissa of the one above if that is given."""
+        if panel.kind == "skewt":
+            skewed, axes = skewed_axes(drawing, spot)
+            entries, _ = self._draw_lines(axes, panel, slender(self.look))
+            put_background(skewed, axes, self.look)
+            return axes, entries
+        axes = drawing.add_subplot(spot, sharex=above)
+        axes.set_xscale(panel.x_scale)
+        axes.set_yscale(panel.y_scale)
+        axes.grid(visible=True)
+        entries, most = self._draw_lines(axes, panel, self.look)
+        set_limits(axes, panel, most)
+        return axes, entries
+
+    def _draw_lines(self, axes: Axes, panel: Panel, look: Theme) -> tuple[list[Entry], int]:
+        """Draw the curves of all runs, and return the entries of the legend and how long the longest curve is."""
+        entries: list[Entry] = []
+        most = 0
+        for role in ("data", "theory", "environment", "reference"):
+            lines = [line for line in panel.lines if line.role == role]
+            for index, line in enumerate(lines):
+                curves = {k: curve(d, panel, line) for k, d in enumerate(self.datasets) if _held(d, line)}
+                most = max([most, *(each.x.size for each in curves.values())])
+                if role == "data":
+                    entries += self._draw_measured(axes, panel, (line, index, len(lines)), curves, look)
+                elif curves:
+                    entries.append(self._draw_calculated(axes, panel, (line, index), curves, look))
+        return entries, most
+
+    def _draw_measured(
+        self, axes: Axes, panel: Panel, which: tuple[Line, int, int], curves: dict[int, Curve], look: Theme
+    ) -> list[Entry]:
+        """Draw a measured curve of each run: a colour and a marker for the run, dashes for the curve."""
+        line, index, lines = which
+        several = replace(panel, lines=(line, replace(line, label="of another run"))) if line.minus is None else panel
+        entries: list[Entry] = []
+        for run, values in curves.items():
+            colour, dashes = DATA_COLOURS[run], DATA_DASHES[index % len(DATA_DASHES)]
+            if panel.kind == "histogram":
+                drawn = draw_steps(
+                    axes, panel, line, self.datasets[run], look, run, colour=colour,
+                    style=DATA_DASHES[(run + index) % len(DATA_DASHES)], filled=False,
+                )  # fmt: skip
+            else:
+                mark = run + index * len(self.datasets)
+                drawn = draw_line(axes, several, line, values, look, mark, color=colour, linestyle=dashes)
+            name = self.names[run]
+            entries.append((drawn, name if lines == 1 else f"{line.label}, {name}"))
+        return entries
+
+    def _draw_calculated(
+        self, axes: Axes, panel: Panel, which: tuple[Line, int], curves: dict[int, Curve], look: Theme
+    ) -> Entry:
+        """Draw a calculated curve once if it is the same for all runs, else for each, darker than what was measured."""
+        line, index = which
+        first, *rest = curves.values()
+        if all(_same(first, other, across=panel.measured_across) for other in rest):
+            return draw_line(axes, panel, line, first, look, index), line.label
+        for run, values in curves.items():
+            colour = tuple(_DARKER * part for part in to_rgb(DATA_COLOURS[run]))
+            draw_line(axes, panel, line, values, look, index, color=colour)
+        return (Line2D([], [], **line_style(line.role, look, index) | {"color": DARK}),), line.label
+
+
+def _same(one: Curve, other: Curve, *, across: bool) -> bool:
+    """Tell whether two curves are the same law, although perhaps at other places."""
+    (x, y), (u, v) = ((each.y, each.x) if across else (each.x, each.y) for each in (one, other))
+    known, seen = np.isfinite(x) & np.isfinite(y), np.isfinite(u) & np.isfinite(v)
+    x, y, u, v = x[known], y[known], u[seen], v[seen]
+    if not x.size or not u.size:
+        return bool(x.size == u.size)
+    order = np.argsort(x, kind="stable")
+    x, y = x[order], y[order]
+    inside = (u >= x[0] - 1e-9 * abs(x[0])) & (u <= x[-1] + 1e-9 * abs(x[-1]))
+    if inside.sum() < 0.5 * u.size:
+        return False
+    scale = max(float(np.ptp(y)), 1e-6 * float(np.abs(y).max()))
+    return bool(np.abs(v[inside] - np.interp(u[inside], x, y)).max() <= max(_SAME * scale, 1e-300))

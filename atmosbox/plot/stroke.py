@@ -1,0 +1,258 @@
+"""One curve in ink: as a line with a band, as points with bars, or as steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from atmosbox.panels import Line, Panel
+from atmosbox.plot.curve import Curve, curve, edges
+from atmosbox.plot.theme import (
+    DATA_COLOURS,
+    DATA_MARKERS,
+    ENVIRONMENT_COLOURS,
+    ENVIRONMENT_DASHES,
+    REFERENCE_COLOURS,
+    REFERENCE_WIDTH,
+    THEORY_COLOURS,
+    THEORY_DASHES,
+    Theme,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Up to so many values, a measured curve is drawn as points with bars; beyond, as a line with a band.
+MOST_POINTS = 40
+# A curve that crosses its own range more often than this becomes thinner, lest its scatter be a blot; down to
+# this share of its width.
+_MOST_CROSSINGS, _THINNEST = 25.0, 0.5
+_ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
+
+
+def draw_line(
+    axes: Axes, panel: Panel, line: Line, values: Curve, theme: Theme, index: int, **look: Any
+) -> tuple[Artist, ...]:
+    """Draw one curve of a panel.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    panel : Panel
+        The panel.
+    line : Line
+        One of its lines.
+    values : Curve
+        Its numbers; what is not finite is not drawn.
+    theme : Theme
+        How large.
+    index : int
+        How many lines of the same role stand before it.
+    **look
+        What differs from the looks of its role: ``color``, ``linestyle``, ``linewidth``.
+
+    Returns
+    -------
+    tuple of Artist
+        What the legend shows of it.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> line = Line("z", "p", "air", "theory")
+    >>> values = Curve(np.array([0.0, 1.0]), np.array([1e3, 9e2]), None)
+    >>> (drawn,) = draw_line(Figure().add_subplot(), Panel("line", "Air", (line,)), line, values, THEMES["notes"], 0)
+    >>> drawn.get_color()
+    '#1a1a1a'
+    """
+    x, y, error = values
+    style = line_style(line.role, theme, index) | {"zorder": _ORDER[line.role]} | look
+    along_x = panel.measured_across
+    measured = line.role == "data"
+    if x.size == 1 or (measured and x.size <= MOST_POINTS):
+        if measured and not along_x:
+            axes.plot(x, y, alpha=0.4, **style)
+        return _points(axes, panel, values, style, index)
+    if measured and sum(other.role == "data" for other in panel.lines) > 1:
+        every = max(1, x.size // 8)
+        style |= {
+            "marker": DATA_MARKERS[index % len(DATA_MARKERS)],
+            "markevery": (every // 2 + index * every // 4, every),
+        }
+    if measured:
+        style["linewidth"] *= min(1.0, max(_THINNEST, _MOST_CROSSINGS / _crossings(x if along_x else y)))
+    artists: list[Artist] = []
+    if error is not None:
+        alpha = 0.3 if measured else 0.15
+        fill = {"color": style["color"], "alpha": alpha, "linewidth": 0.0, "zorder": _ORDER["band"]}
+        if along_x:
+            artists.append(axes.fill_betweenx(y, x - error, x + error, **fill))
+        else:
+            artists.append(axes.fill_between(x, y - error, y + error, **fill))
+    artists.extend(axes.plot(x, y, **style))
+    return tuple(artists)
+
+
+def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
+    """Draw values with bars of one standard error, and hollow where the error is not known."""
+    along_x = panel.measured_across
+    marker = DATA_MARKERS[index % len(DATA_MARKERS)]
+    bars = axes.errorbar(
+        values.x,
+        values.y,
+        xerr=values.error if along_x else None,
+        yerr=None if along_x else values.error,
+        linestyle="none",
+        marker=marker,
+        capsize=0.0,
+        elinewidth=style["linewidth"],
+        color=style["color"],
+        zorder=style["zorder"],
+    )
+    unsure = hollow_points(values)
+    if unsure.any():
+        axes.plot(
+            values.x[unsure],
+            values.y[unsure],
+            linestyle="none",
+            marker=marker,
+            color=style["color"],
+            markerfacecolor="white",
+            zorder=style["zorder"] + 0.5,
+        )
+    return (cast(Artist, bars),)
+
+
+def hollow_points(values: Curve) -> NDArray[np.bool_]:
+    """Tell which points have no error although the others have: a layer that was seldom visited, for instance.
+
+    Parameters
+    ----------
+    values : Curve
+        A curve.
+
+    Returns
+    -------
+    ndarray of bool
+        True at the points that are known and whose error is not; nowhere if the curve is no points but a line.
+
+    Examples
+    --------
+    >>> one = np.ones(3)
+    >>> hollow_points(Curve(one, one, np.array([0.1, np.nan, 0.2]))).tolist()
+    [False, True, False]
+    """
+    known = np.isfinite(values.x) & np.isfinite(values.y)
+    if values.error is None or values.x.size > MOST_POINTS:
+        return np.zeros_like(known)
+    return known & ~np.isfinite(values.error)
+
+
+def _crossings(values: NDArray[np.float64]) -> float:
+    """Return how often a curve goes over its whole range, up or down; at least once."""
+    seen = values[np.isfinite(values)]
+    extent = np.ptp(seen) if seen.size else 0.0
+    return max(1.0, float(np.abs(np.diff(seen)).sum() / extent)) if extent else 1.0
+
+
+def draw_steps(
+    axes: Axes,
+    panel: Panel,
+    line: Line,
+    dataset: xr.Dataset,
+    theme: Theme,
+    index: int,
+    *,
+    colour: Any = None,
+    style: Any = "solid",
+    filled: bool = True,
+) -> tuple[Artist, ...]:
+    """Draw a histogram, between the bounds of its bins.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    panel : Panel
+        The panel.
+    line : Line
+        One of its measured lines.
+    dataset : xarray.Dataset
+        The run.
+    theme : Theme
+        How large.
+    index : int
+        How many measured lines stand before it.
+    colour, style
+        Colour and dashes, if they are not those of its role.
+    filled : bool
+        Whether the area below is tinted.
+
+    Returns
+    -------
+    tuple of Artist
+        What the legend shows of it.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> dataset = xr.Dataset({"f": ("speed", [1.0, 3.0])}, coords={"speed": [50.0, 150.0]})
+    >>> line = Line("speed", "f", "molecules")
+    >>> panel = Panel("histogram", "Speeds", (line,))
+    >>> _, steps = draw_steps(Figure().add_subplot(), panel, line, dataset, THEMES["notes"], 0)
+    >>> steps.get_data().edges.tolist()
+    [0.0, 100.0, 200.0]
+    """
+    x, y, error = curve(dataset, panel, line)
+    colour = colour or DATA_COLOURS[index % len(DATA_COLOURS)]
+    bounds = edges(dataset, panel, line)
+    look = {"color": colour, "alpha": 0.25, "linewidth": 0.0, "zorder": _ORDER["band"]}
+    area = (axes.stairs(y, bounds, fill=True, **look),) if filled else ()
+    steps = axes.stairs(
+        y, bounds, color=colour, linewidth=theme.line, linestyle=style, baseline=None, zorder=_ORDER["data"]
+    )
+    if error is not None:
+        axes.errorbar(x, y, error, linestyle="none", color=colour, capsize=0.0, zorder=_ORDER["data"])
+    return *area, steps
+
+
+def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
+    """Return colour, dashes and width of a curve.
+
+    Parameters
+    ----------
+    role : str
+        What the curve is, one of `panels.ROLES`.
+    theme : Theme
+        How large.
+    index : int
+        How many curves of that role stand before it.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> line_style("data", THEMES["notes"], 0)["linestyle"]
+    'solid'
+    """
+    if role == "theory":
+        return {
+            "color": THEORY_COLOURS[index % len(THEORY_COLOURS)],
+            "linestyle": (0.0, THEORY_DASHES[index % len(THEORY_DASHES)]),
+            "linewidth": theme.line * 1.1,
+        }
+    if role == "environment":
+        colour = ENVIRONMENT_COLOURS[index % len(ENVIRONMENT_COLOURS)]
+        dashes = ENVIRONMENT_DASHES[index % len(ENVIRONMENT_DASHES)]
+        return {"color": colour, "linestyle": (0.0, dashes), "linewidth": theme.line}
+    if role == "reference":
+        colour = REFERENCE_COLOURS[index % len(REFERENCE_COLOURS)]
+        return {"color": colour, "linestyle": "solid", "linewidth": theme.line * REFERENCE_WIDTH}
+    return {"color": DATA_COLOURS[index % len(DATA_COLOURS)], "linestyle": "solid", "linewidth": theme.line}

@@ -1,0 +1,15 @@
+"""Worksheets: what a lecturer hands out with a scene, as PDF and as Markdown, and the same with the answers.
+
+The words of a sheet stand beside its scene, in ``my_scene.sheet.toml``; a scene without gets a sheet made from its
+card and its headlines.
+
+Read in this order: `text` (the words, read from their file) and `generic` (words for any scene), `trial` (the runs),
+`arithmetic` and `wording` (numbers in the words), `block` (what a sheet consists of), `worksheet` (words and runs put
+together), `markup`, `markdown`, `flow` and `pdf` (what is printed), `file` (a file that appears whole).
+"""
+
+from atmosbox.sheet.file import FORMATS, check, save
+from atmosbox.sheet.pdf import PAPERS
+from atmosbox.sheet.worksheet import Worksheet, worksheet
+
+__all__ = ["FORMATS", "PAPERS", "Worksheet", "check", "save", "worksheet"]

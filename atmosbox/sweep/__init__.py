@@ -1,0 +1,13 @@
+"""A grid of settings, run through with several members at each point: how a number depends on a setting.
+
+Read in this order: `axis` (one setting that varies), `plan` (the grid, its members and their seeds), `member`
+(one run), `journal` (what is saved, line by line), `pool` and `cluster` (who computes), `conduct` (the whole)
+and `result` (one dataset of it).
+"""
+
+from atmosbox.sweep.axis import Axis, parse_vary
+from atmosbox.sweep.conduct import SweepInterrupted, Swept, sweep
+from atmosbox.sweep.plan import Plan, member_seed, plan
+from atmosbox.sweep.result import FEWEST
+
+__all__ = ["FEWEST", "Axis", "Plan", "SweepInterrupted", "Swept", "member_seed", "parse_vary", "plan", "sweep"]

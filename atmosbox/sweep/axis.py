@@ -1,0 +1,197 @@
+"""One setting that varies in a sweep: what a user types after ``--vary``, and the values it stands for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from atmosbox.conversion import from_si, to_si
+from atmosbox.errors import SettingError, UnitError
+from atmosbox.parameter import Parameter, Value
+from atmosbox.quantity import typed
+
+__all__ = ["LONGEST", "Axis", "parse_vary"]
+
+LONGEST = 10_000
+"""The most values of one setting."""
+
+_COUNT = re.compile(r"\s*([0-9]{1,9})\s*(log|lin)?\s*")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One setting that varies, with its values.
+
+    Parameters
+    ----------
+    parameter
+        The setting as its scene declares it.
+    values
+        Its values in the documented unit: numbers in ascending order, words and switches as they were given.
+
+    Examples
+    --------
+    >>> warm = Parameter("temperature", "degC", 20.0, -60.0, 95.0, None, "temperature of the walls", "float")
+    >>> Axis(warm, (0.0, 10.0)).si
+    (273.15, 283.15)
+    """
+
+    parameter: Parameter
+    values: tuple[Value, ...]
+
+    @property
+    def name(self) -> str:
+        """The name of the setting."""
+        return self.parameter.name
+
+    @property
+    def numeric(self) -> bool:
+        """Whether the values are numbers, and neither words nor switches."""
+        return self.parameter.kind in ("int", "float")
+
+    @property
+    def si(self) -> tuple[float, ...]:
+        """The numbers in SI units."""
+        return tuple(to_si(float(value), self.parameter.unit) for value in self.values)
+
+    def typed(self, index: int) -> str:
+        """Return a value as it is typed after ``--set name=``."""
+        return self.parameter.typed(self.values[index])
+
+
+def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tuple[Axis, ...]:
+    """Return the settings that vary, from the texts after each ``--vary``.
+
+    Parameters
+    ----------
+    items
+        ``name=a:b:n`` for n values from a to b at even distances, ``name=a:b:nlog`` for n values at even ratios, or
+        ``name=x,y,z`` for these values. Numbers carry units as after ``--set``.
+    parameters
+        The settings of the scene by name.
+
+    Returns
+    -------
+    tuple of Axis
+        One for each text, in their order.
+
+    Raises
+    ------
+    UnitError
+        If a number or its unit cannot be understood.
+    SettingError
+        If a text says something else, a value is not allowed, or a setting varies twice.
+
+    Examples
+    --------
+    >>> settings = {
+    ...     "molecules": Parameter("molecules", "1", 4000, 50, 10**6, None, "number of molecules", "int"),
+    ...     "start": Parameter("start", "", "equal", None, None, ("equal", "maxwell"), "first speeds", "str"),
+    ... }
+    >>> grid = parse_vary(["molecules=100:10000:3log", "start=equal,maxwell"], settings)
+    >>> [axis.values for axis in grid]
+    [(100, 1000, 10000), ('equal', 'maxwell')]
+    """
+    axes: list[Axis] = []
+    for item in items:
+        name, equals, text = (part.strip() for part in item.partition("="))
+        name = name.replace("-", "_")
+        problem = "" if equals else 'has no "=" between name and values'
+        problem = problem or ("" if name else "has no name") or ("" if text else "has no values")
+        if problem:
+            fix = f"give --vary {name}={_example(parameters[name])}" if name in parameters else _USUAL
+            raise SettingError(f"--vary {item}", None, problem, fix)
+        if name == "seed":
+            raise SettingError("--vary seed", None, "is what the members vary already", "give --members 8 instead")
+        if name in (axis.name for axis in axes):
+            raise SettingError(f"--vary {name}", None, "is given twice", f"give --vary {name} once")
+        parameter = parameters[name]
+        try:
+            axes.append(Axis(parameter, _values(text, parameter)))
+        except SettingError as error:
+            fix = f"give --vary {name}={_example(parameter)}"
+            raise type(error)(error.setting, error.value, error.problem, fix) from None
+    return tuple(axes)
+
+
+_USUAL = "give --vary name=a:b:n, such as --vary temperature=0degC:40degC:5"
+
+
+def _example(parameter: Parameter) -> str:
+    """Return values of a setting that are allowed, as they are typed."""
+    if parameter.kind == "bool":
+        return "on,off"
+    if parameter.kind == "str":
+        return ",".join(parameter.choices or (str(parameter.default),))
+    default = float(parameter.default)
+    ends = sorted((default, 2.0 * default if default else 10.0))
+    low = ends[0] if parameter.low is None else max(ends[0], parameter.low)
+    high = ends[1] if parameter.high is None else min(ends[1], parameter.high)
+    if not low < high:
+        low, high = (default if end is None else end for end in (parameter.low, parameter.high))
+    whole = parameter.kind == "int"
+    first, last = (typed(int(end) if whole else end, parameter.unit) for end in (low, high))
+    return f"{first}:{last}:{min(5, int(high - low) + 1) if whole else 5}"
+
+
+def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
+    """Return the values that a text stands for; numbers in ascending order."""
+    if parameter.kind in ("bool", "str"):
+        words = tuple(_word(parameter, part) for part in text.split(","))
+        _check_different(text, words, parameter)
+        return words
+    if ":" in text:
+        return _row(text, parameter)
+    numbers = tuple(sorted(_number(parameter, part) for part in text.split(",")))
+    _check_different(text, numbers, parameter)
+    return numbers
+
+
+def _word(parameter: Parameter, text: str) -> Value:
+    return parameter.parse(text.strip())
+
+
+def _number(parameter: Parameter, text: str) -> float:
+    value = parameter.parse(text.strip())
+    assert isinstance(value, int | float)
+    return value
+
+
+def _check_different(text: str, values: tuple[Value, ...], parameter: Parameter) -> None:
+    if len(set(values)) < len(values):
+        raise SettingError(parameter.name, text, "names a value twice", "")
+    if len(values) > LONGEST:
+        raise SettingError(parameter.name, text, f"has {len(values)} values, more than {LONGEST}", "")
+
+
+def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
+    """Return n values from a to b, as a:b:n says it."""
+    parts = text.split(":")
+    count = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
+    if count is None:
+        raise UnitError(parameter.name, text, "is neither a:b:n, a:b:nlog nor x,y,z", "")
+    # The ends may be fractions also of what is counted: it is the values between that are rounded.
+    first, last = (_number(parameter, part) for part in parts[:2])
+    n = int(count[1])
+    if not 2 <= n <= LONGEST:
+        problem = f"asks for {n} values, and from 2 to {LONGEST} can be had"
+        raise SettingError(parameter.name, text, problem, "")
+    low, high = sorted((first, last))
+    if low == high:
+        raise SettingError(parameter.name, text, "begins where it ends", "")
+    inner: Iterable[float] = np.linspace(low, high, n)[1:-1].tolist()
+    if count[2] == "log":
+        start, end = to_si(low, parameter.unit), to_si(high, parameter.unit)
+        if start <= 0.0:
+            raise SettingError(parameter.name, text, "begins at or below zero, where no ratios are even", "")
+        inner = [from_si(value, parameter.unit) for value in np.geomspace(start, end, n)[1:-1].tolist()]
+    if parameter.kind == "int":
+        values: tuple[Value, ...] = (low, *(round(value) for value in inner), high)
+    else:
+        values = (low, *(float(f"{value:.12g}") for value in inner), high)
+    if len(set(values)) < n:
+        raise SettingError(parameter.name, text, f"has only {len(set(values))} different values, not {n}", "")
+    return values

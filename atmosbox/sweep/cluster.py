@@ -1,0 +1,156 @@
+"""The runs of a sweep on a cluster, by dask.distributed."""
+
+from __future__ import annotations
+
+import time
+import uuid
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import CancelledError
+from typing import TYPE_CHECKING, Any
+
+from atmosbox import __version__
+from atmosbox.errors import EngineError, SettingError
+from atmosbox.sweep import member
+from atmosbox.sweep.member import Record
+from atmosbox.sweep.plan import Task
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["PATIENCE", "remote"]
+
+PATIENCE = 10.0
+"""For how long a scheduler, and then a first worker, may keep silent [s]."""
+
+_BREATH = 0.5
+
+Watch = Callable[[float, str], None]
+
+
+def remote(tasks: Sequence[Task], address: str, watch: Watch) -> Generator[Record]:
+    """Run the members on the workers of a Dask cluster, and give back each as soon as it is complete.
+
+    A worker that dies loses what it was at and what nobody has fetched, and Dask gives that to another.
+
+    Parameters
+    ----------
+    tasks
+        The runs.
+    address
+        Where the scheduler is: ``tcp://host:8786``.
+    watch
+        Called while it goes on.
+
+    Yields
+    ------
+    dict
+        What is kept of each run, in the order in which they end.
+
+    Raises
+    ------
+    SettingError
+        If dask.distributed is missing, the scheduler does not answer, or a worker has another atmosbox.
+    EngineError
+        If the scheduler is lost on the way.
+    """
+    client = _connected(address)
+    try:
+        _check_workers(client, address)
+        yield from _collected(client, tasks, address, watch)
+    finally:
+        client.close(timeout=2.0)
+
+
+def _connected(address: str) -> Client:
+    """Return a client of the scheduler."""
+    try:
+        from distributed import Client
+    except ImportError:
+        problem, fix = "needs dask.distributed, which is not installed", "type pip install 'atmosbox[cluster]'"
+        raise SettingError("scheduler", address, problem, fix) from None
+    try:
+        return Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, TimeoutError, ValueError, TypeError, RuntimeError) as error:
+        why = " ".join(str(error).split()) or type(error).__name__
+        fix = "start one with dask scheduler, and give --scheduler with the address that it names"
+        raise SettingError("scheduler", address, f"does not answer ({why})", fix) from error
+
+
+def _check_workers(client: Client, address: str) -> None:
+    """Refuse a cluster without workers, or one of whose workers has another atmosbox."""
+
+    def version() -> str:  # goes to the workers as it stands, for one without atmosbox, too
+        try:
+            from atmosbox import __version__, sweep
+        except ImportError:
+            return ""
+        return __version__ if sweep else ""
+
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        fix = f"start some with dask worker {address} --nworkers auto --nthreads 1"
+        raise SettingError("scheduler", address, "has no workers", fix) from None
+    for worker, found in sorted(client.run(version, on_error="return").items()):
+        if found != __version__:
+            raise _other(address, worker, found if isinstance(found, str) else "")
+
+
+def _other(address: str, worker: str, version: str) -> SettingError:
+    """Return the refusal of a worker that has not this atmosbox."""
+    has = f"atmosbox {version}" if version else "no atmosbox of this kind"
+    fix = f"type pip install atmosbox=={__version__} there, or take the worker away"
+    return SettingError("scheduler", address, f"has the worker {worker} with {has}, and this is {__version__}", fix)
+
+
+def _lost(address: str) -> EngineError:
+    """Return the error that a scheduler which is gone amounts to; what was fetched from it is saved."""
+    return EngineError(f"The scheduler {address} was lost: type the same again to go on where it stopped.")
+
+
+def _run(task: Task, version: str) -> tuple[str, Record | None]:
+    """Run a member on a worker; no record if the worker has another atmosbox."""
+    return (__version__, member.run(task)) if version == __version__ else (__version__, None)
+
+
+def _collected(client: Client, tasks: Sequence[Task], address: str, watch: Watch) -> Generator[Record]:
+    """Hand out all runs and fetch them as they end; what is fetched is given up, so that none is ever made again."""
+    from distributed import KilledWorker, wait
+
+    own = uuid.uuid4().hex
+    under_way: dict[Any, Task] = {
+        client.submit(_run, task, __version__, key=f"atmosbox-{own}-{task.point}-{task.member}"): task for task in tasks
+    }
+    done = 0
+    began = last = time.monotonic()
+    try:
+        while under_way:
+            try:
+                with client.as_current():
+                    wait(list(under_way), timeout=_BREATH, return_when="FIRST_COMPLETED")
+            except TimeoutError:
+                # Workers tell nothing of a run before its end: as much is counted as the pace so far lets expect.
+                now = time.monotonic()
+                watch(min(done / (now - began) * (now - last), 0.9), "running")
+            except CancelledError:
+                raise _lost(address) from None
+            if client.status not in ("running", "connecting"):
+                raise _lost(address)
+            for future in [each for each in under_way if each.done()]:
+                task = under_way.pop(future)
+                try:
+                    version, record = future.result()
+                except KilledWorker as error:
+                    version, record = __version__, member.failure(task, f"Its workers died one after another: {error}")
+                except CancelledError:
+                    raise _lost(address) from None
+                except Exception as error:
+                    why = " ".join(str(error).split()) or type(error).__name__
+                    raise EngineError(f"The cluster {address} cannot run it ({why}): look at its log.") from error
+                future.release()
+                if record is None:
+                    raise _other(address, "that joined later", version)
+                done, last = done + 1, time.monotonic()
+                yield record
+    finally:
+        client.cancel(list(under_way))

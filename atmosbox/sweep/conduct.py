@@ -1,0 +1,209 @@
+"""A sweep from its first run to its file: what is saved is not computed again, what is computed is saved."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from atmosbox.checkpoint import Checkpoint
+from atmosbox.errors import SettingError
+from atmosbox.provenance import history_line
+from atmosbox.sweep import pool
+from atmosbox.sweep.journal import Journal
+from atmosbox.sweep.member import FAILED, Record
+from atmosbox.sweep.plan import Plan, Task
+from atmosbox.sweep.result import assemble
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["SweepInterrupted", "Swept", "sweep"]
+
+_EVERY = 10.0
+"""The shortest time between two writings of what there is so far [s]."""
+
+Progress = Callable[[float, str], None]
+
+
+class Swept(NamedTuple):
+    """What a sweep came to."""
+
+    dataset: xr.Dataset
+    failures: tuple[tuple[int, int, str], ...]
+    """Point, member and reason of every run that failed."""
+    ledger: float
+    """The largest residual of the energy ledger of any run."""
+    computed: int
+    """Number of runs that this command has computed."""
+    recalled: int
+    """Number of runs that were saved before."""
+
+
+class SweepInterrupted(KeyboardInterrupt):
+    """A sweep was stopped by Ctrl-C; ``swept`` holds the runs that are complete, None if there is none."""
+
+    def __init__(self, swept: Swept | None) -> None:
+        super().__init__("the sweep was interrupted")
+        self.swept = swept
+
+
+def sweep(
+    plan: Plan,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    force: bool = False,
+    progress: Progress | None = None,
+    note: Callable[[str], None] | None = None,
+    command: str = "",
+) -> Swept:
+    """Run all members of a sweep, on the cores of this machine or on a cluster.
+
+    Every run is saved as it ends, in ``NAME.part.jsonl`` beside the file. The same call goes on where an earlier one
+    stopped, whatever stopped it.
+
+    Parameters
+    ----------
+    plan
+        The sweep.
+    out
+        Where to write the netCDF file; nothing is written without it.
+    jobs
+        Number of processes on this machine: one for each core if None, and with 1 the runs are made in this very
+        process.
+    scheduler
+        The address of a Dask scheduler, whose workers run the members instead.
+    force
+        Whether a file of that name may be replaced, and a journal of another sweep be thrown away.
+    progress
+        Called with the share that is done and a word on what goes on.
+    note
+        Called with remarks: what is taken from an earlier call, and what the runs warn of.
+    command
+        What the user typed, for the file's history.
+
+    Returns
+    -------
+    Swept
+        The dataset, and what failed.
+
+    Raises
+    ------
+    SweepInterrupted
+        After Ctrl-C, with what is complete.
+    AtmosboxError
+        If a file cannot be written, its journal belongs to another sweep, or the workers cannot be reached.
+
+    Examples
+    --------
+    >>> from atmosbox.runner import LEDGER_LIMIT
+    >>> from atmosbox.sweep.plan import plan
+    >>> discs = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}, members=2)
+    >>> swept = sweep(discs, jobs=1)
+    >>> dict(swept.dataset.sizes), swept.failures, swept.ledger < LEDGER_LIMIT
+    ({'molecules': 2, 'member': 2}, (), True)
+    """
+    if jobs is not None and jobs < 1:
+        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {pool.cores()}")
+    if jobs is not None and scheduler is not None:
+        raise SettingError("jobs", jobs, "is for this machine, and --scheduler for another", "leave one of them out")
+    line = history_line(command or f"atmosbox.sweep.sweep({plan.scene!r}, ...)")
+    if out is None:
+        return _Conductor(plan, None, None, [line], progress, note).conduct(jobs, scheduler)
+    checkpoint = Checkpoint(Path(out), _EVERY, force=force)
+    with Journal(checkpoint.path, plan.request(), line, force=force) as journal:
+        return _Conductor(plan, journal, checkpoint, journal.history, progress, note).conduct(jobs, scheduler)
+
+
+class _Conductor:
+    """A sweep under way."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        journal: Journal | None,
+        checkpoint: Checkpoint | None,
+        history: Sequence[str],
+        progress: Progress | None,
+        note: Callable[[str], None] | None,
+    ) -> None:
+        self.plan, self.journal, self.checkpoint = plan, journal, checkpoint
+        self.records: dict[tuple[int, int], Record] = {} if journal is None else dict(journal.records)
+        self.recalled = len(self.records)
+        self.history = history
+        self.tell = progress or (lambda share, word: None)
+        self.note = note or (lambda text: None)
+        self.warned: set[str] = set()
+
+    def conduct(self, jobs: int | None, scheduler: str | None) -> Swept:
+        """Run what is missing, and write the file."""
+        tasks = [task for task in self.plan.tasks() if (task.point, task.member) not in self.records]
+        if self.journal is not None and self.recalled:
+            self.note(
+                f"{self.recalled} of {self.plan.runs} runs are saved in {self.journal.path}: going on with the rest"
+            )
+        try:
+            if tasks:
+                with closing(self._stream(tasks, jobs, scheduler)) as stream:
+                    for record in stream:
+                        self._keep(record)
+            swept = self._swept("complete")
+        except KeyboardInterrupt:
+            raise SweepInterrupted(self._stopped()) from None
+        if self.checkpoint is not None and self.journal is not None:
+            self.checkpoint.finish(swept.dataset)
+            self.journal.remove()
+        self.tell(1.0, "done")
+        return swept
+
+    def _stream(self, tasks: list[Task], jobs: int | None, scheduler: str | None) -> Generator[Record]:
+        """Return the records of some runs as they end, from wherever they are computed."""
+        if scheduler is not None:
+            from atmosbox.sweep.cluster import remote
+
+            return remote(tasks, scheduler, self._watch)
+        jobs = min(jobs or pool.cores(), len(tasks))
+        return pool.here(tasks, self._watch) if jobs == 1 else pool.processes(tasks, jobs, self._watch)
+
+    def _watch(self, share: float, word: str) -> None:
+        self.tell(min((len(self.records) + share) / self.plan.runs, 1.0), word)
+
+    def _keep(self, record: Record) -> None:
+        """Save a run that has ended."""
+        if self.journal is not None:
+            self.journal.append(record)
+        self.records[record["point"], record["member"]] = record
+        for text in record.get("warnings", ()):
+            if text not in self.warned:
+                self.warned.add(text)
+                self.note(f"warning: {text}")
+        if self.checkpoint is not None:
+            self.checkpoint(lambda: self._dataset("partial"))
+        self._watch(0.0, "running")
+
+    def _stopped(self) -> Swept | None:
+        """Write what is complete, and return it."""
+        if not self.records:
+            return None
+        swept = self._swept("interrupted")
+        if self.checkpoint is not None:
+            self.checkpoint.save(swept.dataset)
+        return swept
+
+    def _dataset(self, status: str) -> xr.Dataset:
+        return assemble(self.plan, self.records.values(), history=self.history, status=status)
+
+    def _swept(self, status: str) -> Swept:
+        failed = [
+            (point, member, why)
+            for point, why in self.plan.refused.items()
+            for member in range(1, self.plan.members + 1)
+        ]
+        failed += [(*key, record["reason"]) for key, record in self.records.items() if record["status"] == FAILED]
+        ledger = max((record["ledger"] for record in self.records.values() if "ledger" in record), default=0.0)
+        computed = len(self.records) - self.recalled
+        return Swept(self._dataset(status), tuple(sorted(failed)), ledger, computed, self.recalled)

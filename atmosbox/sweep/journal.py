@@ -1,0 +1,202 @@
+"""The journal of a sweep: one line for each run that is complete, on the disk before the next is asked for.
+
+It stands beside the file of the sweep as ``NAME.part.jsonl``. The first line says what was asked for; a line that a
+crash has cut short is no line, and its run is computed again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from atmosbox.errors import FileError, shown
+from atmosbox.output import check_writable, write_failure
+from atmosbox.sweep.member import Record
+
+__all__ = ["Journal"]
+
+FORMAT = 1
+
+
+class Journal:
+    """What is saved of a sweep that is not finished; open it, append, and remove it when the file is written.
+
+    Parameters
+    ----------
+    path
+        The file that the finished sweep will have.
+    request
+        All that decides what the sweep computes, by what a sentence calls it.
+    history
+        The line that this command adds to the history of the file.
+    force
+        Whether a journal of another request is thrown away.
+
+    Attributes
+    ----------
+    path
+        The journal.
+    records
+        What is saved, by point and member.
+    history
+        The lines of all commands that took part.
+
+    Raises
+    ------
+    FileError
+        If there is a journal of another request, or another program writes it right now.
+
+    Examples
+    --------
+    A sweep that is killed goes on with what it has saved:
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     asked = {"--members": 2}
+    ...     with Journal(Path(folder, "sweep.nc"), asked, "monday") as journal:
+    ...         journal.append({"point": 1, "member": 2, "status": "complete"})
+    ...     with Journal(Path(folder, "sweep.nc"), asked, "tuesday") as journal:
+    ...         list(journal.records), journal.history
+    ([(1, 2)], ['monday', 'tuesday'])
+    """
+
+    def __init__(self, path: Path, request: Mapping[str, Any], history: str, *, force: bool = False) -> None:
+        self.path = check_writable(path.with_name(f"{path.stem}.part.jsonl"), force=True)
+        self.records: dict[tuple[int, int], Record] = {}
+        self.history = [history]
+        self._target = path
+        try:
+            mode = "r+b" if self.path.exists() else "x+b"
+            self._file = open(self.path, mode, buffering=0)  # noqa: SIM115
+        except OSError as error:
+            raise write_failure(error, self.path) from error
+        try:
+            self._lock()
+            if not self._recalled(request, force):
+                self.records = {}
+                self.history = [history]
+                self._truncate(0)
+                self._write({"atmosbox_sweep": FORMAT, "request": dict(request), "history": history})
+            elif self.history[-1] != history:
+                self.history.append(history)
+                self._write({"history": history})
+        except BaseException:
+            self._file.close()
+            raise
+
+    def __enter__(self) -> Journal:
+        """Return the journal, whose file is open."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def append(self, record: Record) -> None:
+        """Save a run; when this returns, it is on the disk.
+
+        Raises
+        ------
+        DiskFullError
+            If the disk is full; what was saved before is kept.
+        FileError
+            If it cannot be written for another reason.
+        """
+        self._write(record)
+        self.records[record["point"], record["member"]] = record
+
+    def remove(self) -> None:
+        """Close and remove the journal: its sweep is finished."""
+        self._file.close()
+        self.path.unlink(missing_ok=True)
+
+    def _lock(self) -> None:
+        """Refuse a journal that another program writes."""
+        with contextlib.suppress(ImportError):  # Windows itself lets no two programs write
+            import fcntl
+
+            try:
+                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise FileError(
+                    f"{self.path} is being written by another sweep: wait for it, or name another file with --out."
+                ) from None
+            except OSError:  # a file system without locks
+                return
+
+    def _recalled(self, request: Mapping[str, Any], force: bool) -> bool:
+        """Read what is saved; False if there is nothing, or what there is may be thrown away."""
+        content = self._file.read()
+        lines = content.split(b"\n")
+        whole = len(content) - len(lines.pop())
+        try:
+            entries = [json.loads(line) for line in lines]
+            head, entries = (entries[0], entries[1:]) if entries else ({}, [])
+            if content and (head.get("atmosbox_sweep") != FORMAT or not isinstance(head.get("request"), dict)):
+                raise ValueError
+            records = {(int(e["point"]), int(e["member"])): e for e in entries if "history" not in e}
+            history = [str(head["history"])] if head else []
+            history += [str(entry["history"]) for entry in entries if "history" in entry]
+        except (ValueError, KeyError, TypeError, AttributeError):
+            if force or not whole:
+                return False
+            raise FileError(
+                f"{self.path} is in the way, and is no journal of a sweep, or a damaged one: move it, or add --force "
+                "to throw it away."
+            ) from None
+        if not whole:
+            return False
+        if different := _difference(head["request"], _plain(request)):
+            if force:
+                return False
+            raise FileError(
+                f"{self.path} has {len(records)} runs of another sweep, {different}: type that one again to go on "
+                "with it, add --force to throw it away, or name another file with --out."
+            )
+        self.records, self.history = records, history
+        self._truncate(whole)
+        return True
+
+    def _truncate(self, size: int) -> None:
+        self._file.seek(size)
+        self._file.truncate()
+
+    def _write(self, entry: Mapping[str, Any]) -> None:
+        """Write a line down to the disk, or leave no trace of it."""
+        size = self._file.tell()
+        left = f"{json.dumps(entry)}\n".encode()
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self._truncate(size)
+            raise write_failure(error, self.path) from error
+
+
+def _plain(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a request as it comes back from JSON."""
+    plain: dict[str, Any] = json.loads(json.dumps(dict(request)))
+    return plain
+
+
+def _difference(saved: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
+    """Return in what the first of all differing parts differ, empty where two requests are one."""
+    for name in dict.fromkeys([*saved, *asked]):
+        if saved.get(name) != asked.get(name):
+            if name.startswith("content of"):
+                return f"for which the {name} was another"
+            before, now = (_said(each.get(name)) for each in (saved, asked))
+            return f"with {name} {before} and not {now}"
+    return ""
+
+
+def _said(value: object) -> str:
+    if value is None:
+        return "not given"
+    return shown(",".join(map(str, value)) if isinstance(value, list) else value)

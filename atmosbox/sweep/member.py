@@ -1,0 +1,86 @@
+"""One run of a sweep, and what is kept of it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+from atmosbox import runner
+from atmosbox.errors import AtmosboxError
+from atmosbox.sweep.plan import Task
+
+__all__ = ["COMPLETE", "FAILED", "Progress", "Record", "failure", "run"]
+
+COMPLETE, FAILED = "complete", "failed"
+
+Record = dict[str, Any]
+"""What is kept of a run, as JSON can hold it."""
+
+Progress = Callable[[float, str], None]
+
+_KEPT = ("name", "value", "standard_error", "theory", "tolerance", "reason", "unit", "display_unit", "label")
+
+
+def run(task: Task, progress: Progress | None = None) -> Record:
+    """Run one member of a sweep; a failure becomes part of what is returned.
+
+    Parameters
+    ----------
+    task
+        The run.
+    progress
+        Called with the share that is done and a word on what goes on.
+
+    Returns
+    -------
+    dict
+        ``point``, ``member``, ``seed`` and ``status``; of a complete run ``ledger``, ``headlines`` and the
+        ``warnings`` that it gave, of one that failed the ``reason``.
+
+    Raises
+    ------
+    runner.Interrupted
+        After Ctrl-C.
+
+    Examples
+    --------
+    >>> box = Task(1, 1, "elastic-collisions", {"duration": 5.0, "seed": 3}, None, None)
+    >>> made = run(box)
+    >>> made["status"], made["ledger"] < 1e-10, made["headlines"][0]["name"]
+    ('complete', True, 'energy_of_light_discs')
+    """
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            prepared = runner.prepare(task.scene, task.settings, engine=task.engine, accuracy=task.accuracy)
+            outcome = runner.execute(prepared, progress=progress)
+    except AtmosboxError as error:
+        return failure(task, str(error))
+    except MemoryError:
+        return failure(task, "The computer has not enough memory for it.")
+    except Exception as error:
+        return failure(task, f"This is a bug in atmosbox or in your own scene ({type(error).__name__}: {error}).")
+    if not outcome.headlines:
+        return failure(task, "The run was too short for any of its headlines to be measured.")
+    return {
+        **_about(task, COMPLETE),
+        "ledger": outcome.ledger,
+        "headlines": [{name: getattr(each, name) for name in _KEPT} for each in outcome.headlines],
+        "warnings": sorted({str(each.message) for each in caught}),
+    }
+
+
+def failure(task: Task, reason: str) -> Record:
+    """Return the record of a run that failed.
+
+    Examples
+    --------
+    >>> failure(Task(2, 1, "temperature", {"seed": 3}, None, None), "It stalled.")["reason"]
+    'It stalled.'
+    """
+    return {**_about(task, FAILED), "reason": " ".join(reason.split())}
+
+
+def _about(task: Task, status: str) -> Record:
+    return {"point": task.point, "member": task.member, "seed": task.settings["seed"], "status": status}

@@ -1,0 +1,48 @@
+"""What a class is shown: the page of a run, as a browser draws it, and two runs in one figure."""
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from jobs.registry import Findings, job
+
+import atmosbox
+from atmosbox.cli.compare import lines
+from atmosbox.compare import compared, naming
+from atmosbox.page import save
+from atmosbox.plot.comparison import figure
+
+WIDTH, HEIGHT = 1280, 720
+FLAGS = "--no-sandbox --disable-gpu --disable-background-networking --enable-unsafe-swiftshader --use-angle=swiftshader"
+
+
+@job("compared")
+def warm_and_cold(found: Findings) -> None:
+    """Lift warm and cold air."""
+    files = ["cold.nc", "warm.nc"]
+    runs = [atmosbox.run("lifting-dry", temperature=f"{celsius} degC") for celsius in (5, 25)]
+    names = naming(runs, [Path(file).stem for file in files])
+    table = "\n".join(lines(files, names, compared(runs), 100))
+    found.text(f"```console\n$ atmosbox compare cold.nc warm.nc\n{table}\n```")
+    found.figure(figure(runs, names.labels, names.title), "compared", 115)
+
+
+@job("page")
+def page(found: Findings) -> None:
+    """Open the page of a run in a browser, two thirds through."""
+    from playwright.sync_api import sync_playwright
+
+    named = (os.environ.get("ATMOSBOX_BROWSER"), shutil.which("chromium"), shutil.which("google-chrome"))
+    run = atmosbox.run("condensation", save_molecules=True, molecules=1500, drops=6, humidity=400, duration="60 ns")
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        file = save([run], Path(folder, "page.html"))
+        browser = playwright.chromium.launch(executable_path=next(filter(None, named), None), args=FLAGS.split())
+        shown = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT}, reduced_motion="reduce")
+        shown.goto(file.as_uri())
+        shown.wait_for_selector("body[data-ready]")
+        shown.locator("input[type=range]").first.fill("170")
+        shown.get_by_role("button", name="Kind").click()
+        shown.wait_for_timeout(1500)
+        found.picture(shown.screenshot(), "page")
+        browser.close()

@@ -1,0 +1,193 @@
+"""What is changed by hand: the books close, molecules learn of it, and a box that nobody touches is as it was."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, RefusedError, Specular
+from atmosbox.engine.classic import ClassicParcel
+from atmosbox.engine.dsmc_parcel import DsmcParcel
+from atmosbox.engine.liquid import Drops, Mist, Substance
+from atmosbox.engine.moist_parcelset import MoistParcelSet
+from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine.stepped_parcel import SteppedParcel
+
+ENGINES = (ParcelSet, SteppedParcel, DsmcParcel, ClassicParcel)
+BATHS = (HeatBath(1.0),) * 6
+COLUMN = (Periodic(),) * 4 + (HeatBath(1.0), Specular())
+WATER = Substance(mass=1.0, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+
+
+def box(engine, *, number=200, side=12.0, seed=1, **more):
+    """Return a gas at kT = 1."""
+    rng = np.random.default_rng(seed)
+    length = (side,) * 3
+    if engine is SteppedParcel:
+        more.setdefault("delta", 0.01)
+    walls = more.setdefault("walls", BATHS)
+    turns = tuple(isinstance(wall, Periodic) for wall in walls[::2])
+    place = random_positions(length, np.ones(number), rng, periodic=turns)
+    return engine(place, maxwell_velocities(1.0, np.ones(number), rng), length=length, seed=seed, **more)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_molecules_become_as_warm_as_walls_that_are_made_warmer(engine):
+    gas = box(engine)
+    gas.advance(5.0)
+    gas.set_wall_kT(3.0)
+    gas.advance(40.0)
+    seen = []
+    for t in range(42, 202, 2):
+        gas.advance(float(t))
+        seen.append(2.0 * gas.energy()[0] / (3.0 * gas.number))
+    # the gas forgets its energy at the walls within 4 V / A c = 2.7 units of time, and a block lasts 8
+    blocks = np.mean(np.reshape(seen, (20, 4)), axis=1)
+    error = blocks.std(ddof=1) / math.sqrt(20)
+    assert abs(blocks.mean() - 3.0) < 4.0 * error + 0.02  # 4 errors of 20 blocks: 1 false alarm in 1300; steps: 0.02
+    assert gas.ledger() < 1e-12
+    assert gas.wall_kT().tolist() == [3.0] * 6
+    assert not gas.escaped()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_change_of_gravity_is_in_the_ledger_and_moves_nobody(engine):
+    gas = box(engine, walls=COLUMN, gravity=0.1)
+    gas.advance(20.0)
+    before = gas.snapshot()
+    potential = gas.energy()[2]
+    gas.set_gravity(0.25)
+    after = gas.snapshot()
+    assert np.allclose(before.position, after.position, rtol=0.0, atol=1e-12)
+    assert np.array_equal(before.velocity, after.velocity)
+    assert gas.gravity_work == pytest.approx(1.5 * potential, rel=1e-12)
+    gas.advance(60.0)
+    gas.set_gravity(0.05)
+    gas.advance(80.0)
+    assert gas.ledger() < 1e-12
+    assert not gas.escaped()
+    assert gas.gravity == 0.05
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_gravity_can_be_switched_off_and_on(engine):
+    gas = box(engine, walls=COLUMN, gravity=0.2)
+    gas.advance(10.0)
+    gas.set_gravity(0.0)
+    speeds = np.sum(gas.snapshot().velocity ** 2)
+    assert gas.energy()[2] == 0.0
+    gas.advance(20.0)
+    gas.set_gravity(0.2)
+    gas.advance(30.0)
+    assert speeds > 0.0
+    assert gas.ledger() < 1e-12
+    assert not gas.escaped()
+
+
+def test_a_stronger_gravity_makes_the_column_lower():
+    gas = box(ParcelSet, walls=COLUMN, gravity=0.05, number=100)
+    gas.advance(100.0)
+    high = np.mean([gas.snapshot().position[:, 2].mean() for t in range(101, 141) if gas.advance(float(t)) is None])
+    gas.set_gravity(1.0)
+    gas.advance(240.0)
+    low = np.mean([gas.snapshot().position[:, 2].mean() for t in range(241, 281) if gas.advance(float(t)) is None])
+    assert low < 0.5 * high
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_is_set_to_what_it_is_changes_not_a_bit(engine):
+    left, touched = (box(engine, walls=COLUMN, gravity=0.1, seed=4) for _ in range(2))
+    for t in (1.0, 2.5, 6.0):
+        left.advance(t)
+        touched.advance(t)
+        touched.set_gravity(0.1)
+        touched.set_wall_kT(1.0)
+    left.advance(20.0)
+    touched.advance(20.0)
+    for ours, theirs in zip(left.snapshot()[1:], touched.snapshot()[1:], strict=True):
+        assert np.array_equal(ours, theirs)
+    assert np.array_equal(left.wall_heat, touched.wall_heat)
+
+
+def test_a_mist_between_warmer_walls_evaporates_and_its_books_close():
+    rng = np.random.default_rng(2)
+    length = (12.0,) * 3
+    moist = MoistParcelSet(
+        random_positions(length, np.ones(100), rng),
+        maxwell_velocities(1.0, np.ones(100), rng),
+        length=length,
+        walls=BATHS,
+        liquid=Mist(
+            replace(WATER, binding_energy=5.0, heat_capacity=3.0, volatility=100.0), number=200, kT=1.0, area=10.0
+        ),
+    )
+    moist.advance(100.0)
+    before = moist.liquid
+    moist.set_wall_kT(2.0)
+    moist.advance(300.0)
+    assert moist.liquid < before - 50
+    assert moist.ledger() < 1e-11
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_without_collisions_molecules_meet_walls_alone(engine):
+    gas = box(engine, collisions=False)
+    gas.advance(20.0)
+    assert gas.contacts == 0
+    assert gas.wall_hits.sum() > 100
+    assert gas.ideal
+    assert gas.ledger() < 1e-12
+    assert not gas.escaped()
+    assert box(engine).ideal is (engine is DsmcParcel)
+
+
+def test_drops_need_collisions():
+    from atmosbox.engine.drop_parcelset import DropParcelSet
+
+    drops = Drops(WATER, nuclei=5.0, position=((3.0, 3.0, 3.0),))
+    with pytest.raises(RefusedError, match="leave collisions on"):
+        DropParcelSet([[1, 1, 1]], [[1, 1, 1]], length=(6, 6, 6), rotation=3.0, liquid=drops, collisions=False)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda gas: gas.set_wall_kT(0.0), "not positive"),
+        (lambda gas: gas.set_wall_kT(math.nan), "finite"),
+        (lambda gas: gas.set_wall_kT(1.0, wall=5), "z_high is no heat bath"),
+        (lambda gas: gas.set_wall_kT(1.0, wall=9), "9 is no heat bath"),
+        (lambda gas: gas.set_gravity(-1.0), "from 0 up"),
+        (lambda gas: gas.set_gravity(math.inf), "finite"),
+    ],
+)
+def test_an_impossible_change_is_refused_and_changes_nothing(change, words):
+    gas = box(ParcelSet, walls=COLUMN, gravity=0.1)
+    gas.advance(1.0)
+    with pytest.raises(RefusedError, match=words):
+        change(gas)
+    assert gas.gravity == 0.1
+    assert gas.wall_kT()[4] == 1.0
+
+
+def test_a_box_that_cannot_have_it_says_so():
+    smooth = box(ParcelSet, walls=(Specular(),) * 5 + (Piston(),))
+    with pytest.raises(RefusedError, match="make one a HeatBath"):
+        smooth.set_wall_kT(2.0)
+    endless = box(ParcelSet, walls=(Periodic(),) * 6)
+    with pytest.raises(RefusedError, match="fall for ever"):
+        endless.set_gravity(1.0)
+    moist = MoistParcelSet([], [], length=(4, 4, 4), liquid=Mist(WATER, number=1, kT=1.0))
+    with pytest.raises(RefusedError, match="no gravity"):
+        moist.set_gravity(1.0)
+
+
+@pytest.mark.parametrize("engine", ENGINES[1:])
+def test_a_step_that_would_become_too_long_is_refused(engine):
+    gas = box(engine, walls=COLUMN, gravity=0.1)
+    with pytest.raises(RefusedError, match="too hot for the step"):
+        gas.set_wall_kT(100.0)
+    with pytest.raises(RefusedError, match="within a step"):
+        gas.set_gravity(1e6)
+    gas.advance(1.0)
+    assert gas.gravity == 0.1

@@ -1,0 +1,140 @@
+"""Runs that were never computed, and their pages."""
+
+import functools
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from atmosbox import diagnostics
+from atmosbox.instruments import LAWS
+from atmosbox.page import save
+from atmosbox.panels import Line, Panel, to_json
+from atmosbox.provenance import global_attributes
+from atmosbox.units import BOLTZMANN, DRY_AIR, WATER
+
+SIDE = 2e-8
+
+PANELS = (
+    Panel(
+        "line",
+        "It warms",
+        (
+            Line("elapsed_time", "air_temperature", "molecules"),
+            Line("elapsed_time", "air_temperature_theory", "walls", "theory", error="air_temperature_noise"),
+        ),
+        x_label="time",
+        y_label="temperature",
+        y_unit="degC",
+        headlines=("final_temperature",),
+    ),
+    Panel(
+        "profile",
+        "Pressure against height",
+        (Line("air_pressure", "air_temperature", "air"),),
+        x_unit="hPa",
+        y_scale="log",
+        y_invert=True,
+    ),
+)
+
+
+def made(frames=20, molecules=60, *, scene="temperature", settings=None, walls=("heat_bath",) * 6, water=0, **more):
+    """Return a run as `atmosbox run --save-molecules` would have saved it, with molecules placed by chance."""
+    rng = np.random.default_rng(frames * molecules + 7)
+    kelvin = np.linspace(150.0, 300.0, frames)
+    spread = np.sqrt(BOLTZMANN * kelvin / DRY_AIR.molecule_mass)
+    velocity = rng.normal(size=(frames, molecules, 3)) * spread[:, None, None]
+    position = rng.uniform(0.02, 0.98, (frames, molecules, 3)) * SIDE
+    speed = np.linalg.norm(velocity, axis=2)
+    species = np.arange(molecules) < water
+    readings = {
+        "molecule_position": position,
+        "molecule_speed": speed,
+        "molecule_mass": np.where(species, WATER.molecule_mass, DRY_AIR.molecule_mass),
+        "molecule_diameter": np.full(molecules, DRY_AIR.diameter),
+        "box_side": np.full((frames, 3), SIDE),
+        "wall_law": [LAWS.index(law) for law in walls],
+        "wall_temperature": np.tile([300.0 if law == "heat_bath" else np.nan for law in walls], (frames, 1)),
+        "air_temperature": kelvin,
+        "air_temperature_theory": np.full(frames, 300.0),
+        "air_temperature_noise": np.full(frames, 12.0),
+        "air_pressure": 1e5 * kelvin / 300.0,
+        "potential_energy": np.zeros(frames),
+    }
+    if water:
+        gone = np.linspace(0, water, frames).astype(int)
+        for frame, number in enumerate(gone):
+            position[frame, :number], speed[frame, :number] = np.nan, np.nan
+        readings |= {"species": species.astype(np.int8), "liquid_molecule_count": gone}
+    parameters = {
+        "scene": scene,
+        "settings": {"molecules": molecules, "temperature": 27.0, "seed": 3, **(settings or {})},
+        "engine": "exact",
+        "version": "1.0",
+    }
+    attributes = global_attributes(
+        parameters, title="Warmth", command="a test", comment="Warm walls. Modelled: spheres.", panels=to_json(PANELS)
+    )
+    times = {"elapsed_time": np.arange(1.0, frames + 1.0) * 0.01}
+    return diagnostics.dataset(readings | more, times, attributes)
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory):
+    """Return a function that writes the page of some runs, once, and gives its address."""
+    folder = tmp_path_factory.mktemp("pages")
+
+    @functools.cache
+    def address(name):
+        runs = {
+            "warm": lambda: [made()],
+            "pair": lambda: [made(), made(settings={"temperature": 60.0})],
+            "moist": lambda: [made(water=30, molecules=120, scene="./own.py", walls=("heat_bath",) * 6)],
+            "large": lambda: [made(6, 5000)],
+            "heated": lambda: [made(wall_temperature=np.tile(np.linspace(230.0, 340.0, 20)[:, None], (1, 6)))],
+            "still": lambda: [made(1, 1)],
+        }[name]()
+        return save(runs, Path(folder, f"{name}.html")).as_uri()
+
+    return address
+
+
+@pytest.fixture
+def opened(browser, site):
+    """Return a function that opens a page without a network; whatever goes wrong in it fails the test."""
+    contexts, faults = [], []
+
+    def page(name, size=(1280, 720), scheme="light"):
+        context = browser.new_context(
+            viewport={"width": size[0], "height": size[1]},
+            color_scheme=scheme,
+            offline=True,
+            has_touch=size[0] < 600,
+            reduced_motion="reduce",
+        )
+        contexts.append(context)
+        shown = context.new_page()
+        shown.set_default_timeout(15_000)
+        shown.on("pageerror", lambda error: faults.append(str(error)))
+        shown.on("console", lambda said: faults.append(said.text) if said.type == "error" else None)
+        shown.on("request", lambda asked: faults.append(asked.url) if is_outside(asked.url) else None)
+        shown.goto(site(name))
+        shown.wait_for_selector("body[data-ready]")
+        return shown
+
+    yield page
+    for context in contexts:
+        context.close()
+    assert faults == []
+
+
+@pytest.fixture(scope="session")
+def run():
+    """Return a function that makes up a run."""
+    return made
+
+
+def is_outside(address):
+    """Tell whether an address is neither the page's own file nor something that it holds."""
+    return not address.startswith(("file:", "blob:", "data:"))

@@ -1,0 +1,347 @@
+"""The page in a real browser, opened from disk and without a network."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from atmosbox.page import live_page
+from atmosbox.page.document import _text
+from atmosbox.page.run import pages
+from atmosbox.panels import from_json
+from atmosbox.plot.curve import curve
+
+PHONE = (390, 844)
+
+
+def data(page, name):
+    """Return what the page says of its state."""
+    return page.evaluate(f"document.body.dataset.{name}")
+
+
+def time(page):
+    return float(data(page, "time"))
+
+
+def picture(page):
+    """Return what the box looks like, once it has been drawn anew."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return page.locator(".box canvas").first.screenshot()
+
+
+def until(page, condition):
+    """Wait for a condition; the page itself forbids what playwright would wait with."""
+    for _ in range(300):
+        if page.evaluate(condition):
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"it never came true that {condition}")
+
+
+def test_space_lets_the_molecules_fly_and_stops_them(opened):
+    page = opened("warm")
+    before = picture(page)
+    page.keyboard.press("Space")
+    until(page, "Number(document.body.dataset.time) > 0.015")
+    assert data(page, "playing") == "true"
+    page.keyboard.press("Space")
+    assert data(page, "playing") == "false"
+    stopped = time(page)
+    assert picture(page) != before
+    assert time(page) == stopped
+
+
+def test_arrows_step_through_the_frames_and_change_the_pace(opened):
+    page = opened("warm")
+    page.keyboard.press("ArrowRight")
+    assert time(page) == pytest.approx(0.02)
+    page.keyboard.press("Shift+ArrowRight")
+    assert time(page) == pytest.approx(0.12)
+    page.keyboard.press("ArrowLeft")
+    assert time(page) == pytest.approx(0.11)
+    page.keyboard.press("End")
+    page.keyboard.press("ArrowRight")
+    assert time(page) == pytest.approx(0.2)
+    page.keyboard.press("Home")
+    assert time(page) == pytest.approx(0.01)
+    pace = page.inner_text("#pace")
+    page.keyboard.press("ArrowDown")
+    assert page.inner_text("#pace").startswith("1/2×")
+    page.keyboard.press("ArrowUp")
+    assert page.inner_text("#pace") == pace
+
+
+def test_one_to_four_choose_where_to_look_from(opened):
+    page = opened("warm")
+    seen = set()
+    for key in "1234":
+        page.keyboard.press(key)
+        pressed = page.locator("#cameras button[aria-pressed=true]")
+        assert pressed.count() == 1
+        assert pressed.inner_text().startswith(key)
+        seen.add(picture(page))
+    assert len(seen) == 4
+
+
+def test_a_molecule_is_followed_by_a_click_and_by_a_key(opened):
+    page = opened("warm")
+    assert page.inner_text("#status") == ""
+    page.keyboard.press("t")
+    assert data(page, "traced") != ""
+    assert "Following a molecule of dry air" in page.inner_text("#status")
+    page.keyboard.press("ArrowRight")
+    assert "m/s" in page.inner_text("#status")
+    page.keyboard.press("t")
+    assert data(page, "traced") == ""
+    box = page.locator(".box canvas").bounding_box()
+    found = set()
+    for step in range(40):  # somewhere near the middle there is a molecule
+        page.mouse.click(box["x"] + box["width"] * (0.3 + 0.01 * step), box["y"] + box["height"] * 0.5)
+        found.add(data(page, "traced"))
+        if found - {""}:
+            break
+    assert found - {""}
+
+
+def test_a_click_on_a_graph_over_time_goes_there_and_what_is_to_come_is_veiled(opened):
+    page = opened("warm")
+    over = page.locator(".graph.line .u-over").first
+    size = over.bounding_box()
+    over.click(position={"x": 0.5 * size["width"], "y": 20})
+    assert 0.08 < time(page) < 0.13
+    veil = page.locator(".graph.line .veil").first.bounding_box()
+    assert veil["x"] == pytest.approx(size["x"] + 0.5 * size["width"], abs=3)
+    assert page.locator(".graph.profile .dot").first.is_visible()
+
+
+def test_axes_carry_names_and_units_and_the_caption_says_how_it_is_drawn(opened):
+    page = opened("warm")
+    labels = page.locator(".labels span.axis").all_inner_texts()
+    assert {"x (nm)", "y (nm)", "height z (nm)"} == set(labels)
+    units = page.locator(".graph .unit").all_inner_texts()
+    assert {"temperature (°C)", "time (ns)", "speed (m/s)", "share of molecules (%)"} <= set(units)
+    page.click(".more")
+    words = page.inner_text("#caption")
+    assert "Warm walls." in words
+    assert "times as wide as they are" in words
+    assert "atmosbox 1.0 · temperature · 60 molecules · seed 3" in words
+
+
+def test_two_runs_stand_side_by_side_on_one_clock(opened):
+    page = opened("pair")
+    assert page.locator(".box canvas").count() == 2
+    assert page.locator(".box h2").all_inner_texts() == ["Atemperature 27 °C", "Btemperature 60 °C"]
+    left, right = (page.locator(".box").nth(number).bounding_box() for number in range(2))
+    assert left["y"] == right["y"]
+    assert left["x"] + left["width"] <= right["x"]
+    assert page.locator("#line").count() == 1
+    assert page.locator(".graph.line").count() == 1  # with the curves of both
+    before = [page.locator(".box canvas").nth(number).screenshot() for number in range(2)]
+    page.keyboard.press("ArrowRight")
+    picture(page)
+    after = [page.locator(".box canvas").nth(number).screenshot() for number in range(2)]
+    assert before[0] != after[0]
+    assert before[1] != after[1]
+
+
+def test_water_is_told_from_air_and_c_changes_what_colours_mean(opened):
+    page = opened("moist")
+    assert page.locator("#legend .chip").all_inner_texts() == ["dry air", "water", "liquid water"]
+    kinds = picture(page)
+    page.keyboard.press("c")
+    assert "speed (m/s)" in page.inner_text("#legend")
+    assert picture(page) != kinds
+    page.keyboard.press("End")
+    page.click(".more")
+    assert "clumps" in page.inner_text("#caption")
+
+
+def test_a_projector_shows_all_at_once(opened):
+    page = opened("warm")
+    size = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    assert size == [1280, 720]
+    box = page.locator(".box").bounding_box()
+    assert box["width"] >= 560
+    assert box["height"] >= 400
+    for graph in page.locator(".graph").all():
+        frame = graph.bounding_box()
+        assert frame["y"] + frame["height"] <= 720
+
+
+def test_a_phone_needs_no_scrolling_sideways_and_has_the_bar_at_hand(opened):
+    page = opened("warm", PHONE)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE[0]
+    bar = page.locator("#play").bounding_box()
+    assert bar["y"] + bar["height"] <= PHONE[1]
+    assert min(bar["width"], bar["height"]) >= 40
+    page.locator("#play").tap()
+    until(page, "Number(document.body.dataset.time) > 0.011")
+    assert page.locator(".box").bounding_box()["width"] <= PHONE[0]
+
+
+def test_the_page_takes_the_colours_that_the_reader_prefers_and_d_turns_them(opened):
+    def lightness(page):
+        text = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        return sum(int(part) for part in text[4:-1].split(",")) / 765
+
+    light, dark = opened("warm"), opened("warm", scheme="dark")
+    assert lightness(light) > 0.9
+    assert lightness(dark) < 0.2
+    assert picture(light) != picture(dark)
+    light.keyboard.press("d")
+    assert lightness(light) < 0.2
+
+
+def warmth(page):
+    """Return by how much the picture is more red than blue."""
+    red, _, blue = imread(io.BytesIO(picture(page)))[..., :3].mean(axis=(0, 1))
+    return red - blue
+
+
+def test_walls_look_warmer_when_they_are(opened):
+    page = opened("heated")
+    cold = warmth(page)
+    page.keyboard.press("End")
+    assert warmth(page) > cold + 0.02
+
+
+def test_a_run_of_one_molecule_and_one_frame_opens_and_stands_still(opened):
+    page = opened("still")
+    page.keyboard.press("Space")
+    page.keyboard.press("ArrowRight")
+    assert time(page) == pytest.approx(0.01)
+
+
+def test_five_thousand_molecules_can_be_stepped_through(opened):
+    page = opened("large")
+    before = picture(page)
+    page.keyboard.press("ArrowRight")
+    assert picture(page) != before
+
+
+def test_the_list_of_keys_opens_and_closes(opened):
+    page = opened("warm")
+    page.keyboard.press("?")
+    assert page.locator("dialog").is_visible()
+    assert "play or pause" in page.inner_text("dialog")
+    page.keyboard.press("Escape")
+    assert not page.locator("dialog").is_visible()
+
+
+def test_the_page_draws_the_same_numbers_as_the_figure_of_the_run(browser, run):
+    dataset = run()
+    (shown,) = pages([dataset])
+    context = browser.new_context()
+    page = context.new_page()
+    page.route("http://page.test/**", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))
+    page.route(
+        "http://page.test/*.js",
+        lambda route: route.fulfill(
+            body=_text("web", route.request.url.rpartition("/")[2]), content_type="text/javascript"
+        ),
+    )
+    page.goto("http://page.test/")
+    told = {"panels": shown.record["stage"]["panels"], "numbers": {k: shown.record[k] for k in ("values", "timed")}}
+    drawn = page.evaluate(
+        """async ({ panels, numbers }) => {
+             const { curvesOf, Numbers } = await import("http://page.test/curves.js");
+             return panels.map((panel) => curvesOf(panel, new Numbers(numbers)));
+           }""",
+        told,
+    )
+    context.close()
+    compared = 0
+    for panel, curves in zip(from_json(dataset.attrs["atmosbox_panels"]), drawn, strict=True):
+        for line, found in zip(panel.lines, curves, strict=True):
+            expected = curve(dataset, panel, line)
+            np.testing.assert_allclose(found["x"], expected.x, rtol=2e-5)
+            np.testing.assert_allclose(found["y"], expected.y, rtol=2e-5, atol=2e-3)
+            if expected.error is not None:
+                np.testing.assert_allclose(found["error"], expected.error, rtol=2e-5)
+            compared += 1
+    assert compared == 3
+
+
+CONTROLS = [
+    {"name": "temperature", "label": "temperature of the walls", "unit": "degC", "kind": "number", "low": -100.0,
+     "high": 500.0, "step": 1.0, "value": 27.0, "restarts": False, "help": "of all six"},
+    {"name": "start", "label": "speeds at the start", "unit": "", "kind": "choice", "choices": ["maxwell", "equal"],
+     "value": "maxwell", "restarts": True, "help": ""},
+]  # fmt: skip
+
+
+@pytest.fixture
+def live(browser, run):
+    """Return the live page, the sockets that it opened, and what it said, fed by the frames of a made-up run."""
+    (shown,) = pages([run()])
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    page = context.new_page()
+    page.set_default_timeout(15_000)
+    faults, sockets, heard = [], [], []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.route("http://box.test/", lambda route: route.fulfill(body=live_page(), content_type="text/html"))
+
+    def connect(socket):
+        sockets.append(socket)
+        socket.on_message(lambda message: heard.append(json.loads(message)))
+        state = {"playing": True, "pace": 1.0, "recording": None, "frame": 0}
+        opening = {"type": "stage", "stage": shown.record["stage"], "controls": CONTROLS, "state": state}
+        socket.send(json.dumps(opening))
+        for frame in shown.frames[:5]:
+            socket.send(frame)
+        values = shown.record["values"]
+        series = {"air_temperature": values["air_temperature"][:5]}
+        socket.send(
+            json.dumps({"type": "series", "reset": False, "time": values["elapsed_time"][:5], "values": series})
+        )
+
+    page.route_web_socket("ws://box.test/socket", connect)
+    page.goto("http://box.test/")
+    page.wait_for_selector("body[data-ready]")
+    yield page, sockets, heard
+    context.close()
+    assert faults == []
+
+
+def test_a_live_box_is_shown_and_what_one_turns_goes_back(live):
+    page, _, heard = live
+    until(page, "Number(document.body.dataset.time) > 0.04")
+    page.fill("#controls input[type=number]", "60")
+    page.keyboard.press("Enter")
+    page.locator("#controls summary").click()
+    page.locator("#controls select").select_option("equal")
+    page.click("#play")
+    page.click("#on")
+    page.fill("#seed", "8")
+    page.click("#reset")
+    page.click("#faster")
+    page.fill("#file", "mine.nc")
+    page.click("#record")
+    until(page, "document.querySelectorAll('.graph').length === 3")
+    assert heard == [
+        {"type": "set", "name": "temperature", "value": 60},
+        {"type": "set", "name": "start", "value": "equal"},
+        {"type": "pause"},
+        {"type": "step"},
+        {"type": "reset", "seed": 8},
+        {"type": "pace", "value": 2},
+        {"type": "record", "file": "mine.nc"},
+    ]
+
+
+def test_a_refusal_is_said_in_words_and_a_lost_line_is_taken_up_again(live):
+    page, sockets, _ = live
+    page.fill("#controls input[type=number]", "999")
+    page.keyboard.press("Enter")
+    sockets[0].send(json.dumps({"type": "note", "level": "error", "text": "temperature = 999 is too high: give less."}))
+    page.wait_for_selector(".note.error")
+    assert "Refused: temperature = 999 is too high: give less." in page.inner_text("#notes")
+    assert page.input_value("#controls input[type=number]") == "27"
+    sockets[0].close()
+    page.wait_for_selector("body[data-line=lost]")
+    assert "connection to atmosbox is lost" in page.inner_text("#notes")
+    page.wait_for_selector("body[data-line=open]")
+    assert len(sockets) == 2
+    assert "lost" not in page.inner_text("#notes")

@@ -1,0 +1,210 @@
+"""The page as one document, and the file it becomes."""
+
+import hashlib
+import json
+import os
+import re
+from importlib import resources
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from atmosbox.errors import FileError, SettingError
+from atmosbox.page import live_page, save, view_page
+from atmosbox.page.document import MODULES
+from atmosbox.page.run import pages
+
+PACKAGE = resources.files("atmosbox.page")
+
+
+def told(page):
+    """Return what a page was told of its runs."""
+    _, _, rest = page.partition('<script type="application/json" id="told">')
+    return json.loads(rest.partition("</script>")[0])["runs"]
+
+
+def test_the_libraries_are_as_published():
+    listed = {}
+    for line in PACKAGE.joinpath("vendor", "VERSIONS").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            _, _, name, digest = line.split()
+            listed[name] = digest
+    held = {
+        f"{folder.name}/{file.name}": hashlib.sha256(file.read_bytes()).hexdigest()
+        for folder in PACKAGE.joinpath("vendor").iterdir()
+        if folder.is_dir()
+        for file in folder.iterdir()
+    }
+    assert held == listed
+    assert {"three/LICENSE", "uplot/LICENSE"} <= set(held)
+
+
+def test_every_script_stands_after_those_that_it_imports_and_none_is_forgotten():
+    scripts = {file.name: file.read_text(encoding="utf-8") for file in PACKAGE.joinpath("web").iterdir()}
+    scripts = {name: text for name, text in scripts.items() if name.endswith(".js") and name != "boot.js"}
+    for page, entry in ((view_page([], []), "view.js"), (live_page(), "live.js")):
+        order = re.findall(r'data-module="([\w.]+)"', page)
+        assert order[-1] == entry
+        for place, name in enumerate(order):
+            wanted = re.findall(r'^import .* from "\./([\w.]+)"', scripts.get(name, ""), re.MULTILINE)
+            assert set(wanted) <= set(order[:place]), name
+    assert set(MODULES) <= set(scripts)
+    assert all(len(text.splitlines()) <= 300 for text in scripts.values())
+
+
+@pytest.mark.parametrize("page", [view_page([], []), live_page()])
+def test_a_page_asks_for_nothing_outside_of_itself(page):
+    assert re.findall(r'<(?:script|img|link|iframe)[^>]*(?:src|href)="(?!data:)', page) == []
+    assert "default-src 'none'" in page
+    assert "@import" not in page
+    assert page.count("Permission is hereby granted, free of charge") == 2
+
+
+def test_words_of_a_run_cannot_break_out_of_the_page(run):
+    wicked = '</script><script>alert("1")</script><!--'
+    dataset = run(3, 4)
+    dataset.attrs["title"] = dataset.attrs["comment"] = wicked
+    (page,) = pages([dataset])
+    text = view_page([page.record], [""])
+    assert "alert(" in text
+    assert "<script>alert" not in text
+    assert told(text)[0]["stage"]["title"] == wicked
+
+
+def test_the_same_run_gives_the_same_bytes(run, tmp_path):
+    first, second = (save([run(5, 9)], tmp_path / name).read_bytes() for name in ("a.html", "b.html"))
+    assert first == second
+
+
+def test_eight_hundred_molecules_in_four_hundred_frames_are_ten_megabytes_at_most(run, tmp_path):
+    path = save([run(400, 800)], tmp_path / "page.html")
+    assert path.stat().st_size <= 10_000_000
+    (record,) = told(path.read_text(encoding="utf-8"))
+    assert record["stage"]["molecules_shown"] == 800
+    assert not any("frames are drawn" in note for note in record["notes"])
+
+
+def test_a_run_that_is_larger_than_a_page_is_thinned_and_the_page_says_so(run, tmp_path):
+    path = save([run(400, 6000)], tmp_path / "page.html")
+    assert path.stat().st_size <= 10_000_000
+    (record,) = told(path.read_text(encoding="utf-8"))
+    shown = record["stage"]["molecules_shown"]
+    assert f"{shown} of the 6000 molecules are drawn." in record["notes"]
+    assert any(note.startswith("240 of the 400 frames are drawn") for note in record["notes"])
+    assert len(record["values"]["air_temperature"]) == 400
+
+
+def test_the_caption_says_that_collisions_between_frames_are_not_seen(run):
+    (page,) = pages([run(5, 50)])
+    assert any("drawn on a straight line" in note for note in page.record["notes"])
+
+
+def test_mist_is_drawn_as_clumps_and_the_page_says_who_chose_their_places(run):
+    (page,) = pages([run(5, 50, water=20)])
+    assert any("clumps" in note for note in page.record["notes"])
+    assert [kind["name"] for kind in page.record["stage"]["species"]] == ["dry air", "water"]
+
+
+def test_two_runs_are_headed_by_what_was_changed_and_share_a_scale_of_colours(run):
+    warm = run(settings={"temperature": 60.0})
+    warm["molecule_speed"] = warm.molecule_speed * 1.5
+    first, second = pages([run(), warm])
+    assert [first.record["heading"], second.record["heading"]] == ["temperature 27 °C", "temperature 60 °C"]
+    assert first.record["stage"]["speed"] == second.record["stage"]["speed"]
+
+
+def test_two_runs_that_are_alike_are_numbered(run):
+    assert [page.record["heading"] for page in pages([run(), run()])] == ["run 1", "run 2"]
+
+
+def test_runs_of_two_scenes_are_headed_by_their_titles(run):
+    other = run(scene="./other.py")
+    other.attrs["title"] = "Another"
+    assert [page.record["heading"] for page in pages([run(), other])] == ["Warmth", "Another"]
+
+
+def test_values_that_are_not_known_are_null(run):
+    dataset = run()
+    dataset["air_temperature"][3] = np.nan
+    (page,) = pages([dataset])
+    assert page.record["values"]["air_temperature"][3] is None
+
+
+def test_a_run_that_was_stopped_before_theory_is_shown_without(run):
+    (page,) = pages([run().drop_vars("air_temperature_theory")])
+    (panel, _) = page.record["stage"]["panels"]
+    assert [line["label"] for line in panel["lines"]] == ["molecules"]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (
+            lambda run: run.drop_vars("molecule_position"),
+            r"no molecules: type atmosbox run temperature --save-molecules\.",
+        ),
+        (lambda run: run.drop_vars("box_side"), "earlier atmosbox and lacks box_side"),
+        (lambda run: run.isel(elapsed_time=slice(0)), "holds no frame"),
+        (lambda run: run.expand_dims(rung=2), "comparison of engines"),
+        (lambda run: run.drop_attrs(), "does not say which run it holds"),
+        (lambda run: xr.Dataset(), "does not say which run it holds"),
+    ],
+)
+def test_a_run_that_cannot_be_shown_is_refused_with_what_to_type(run, tmp_path, spoil, said):
+    with pytest.raises(FileError, match=said):
+        save([spoil(run())], tmp_path / "page.html")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_is_not_replaced_unless_asked(run, tmp_path):
+    path = save([run(2, 3)], tmp_path / "page.html")
+    before = path.read_bytes()
+    with pytest.raises(FileError, match="--force"):
+        save([run(3, 4)], path)
+    assert path.read_bytes() == before
+    assert save([run(3, 4)], path, force=True).read_bytes() != before
+
+
+def test_a_page_that_cannot_be_written_leaves_nothing(run, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(FileError, match="no room"):
+        save([run(2, 3)], tmp_path / "page.html")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_theme_is_refused(run, tmp_path):
+    with pytest.raises(SettingError, match="pink"):
+        save([run(2, 3)], tmp_path / "page.html", theme="pink")
+
+
+def test_runs_whose_clocks_count_differently_are_not_shown_together(run):
+    slow = run()
+    slow["elapsed_time"].attrs["units"] = "s"
+    with pytest.raises(FileError, match="in ns and s, and cannot share a clock: view one by one"):
+        pages([run(), slow])
+
+
+def test_a_single_molecule_at_rest_is_a_page_too(run):
+    still = run(3, 1)
+    still["molecule_speed"] = 0.0 * still.molecule_speed
+    (page,) = pages([still])
+    assert page.record["stage"]["speed"]["high"] == 1.0
+
+
+def test_water_that_is_all_in_the_liquid_has_no_speed_and_nothing_warns(run):
+    dry = run(3, 4, water=4)
+    dry["molecule_speed"] = np.nan * dry.molecule_speed
+    dry["molecule_position"] = np.nan * dry.molecule_position
+    (page,) = pages([dry])
+    assert len(page.frames) == 3
+
+
+def test_the_page_names_the_run_that_would_show_collisions(run):
+    (page,) = pages([run(5, 50, settings={"duration": 0.05})])
+    assert any(
+        "A run with --set duration=" in note and note.endswith("ns shows them.") for note in page.record["notes"]
+    )

@@ -1,0 +1,100 @@
+"""Moments as bytes."""
+
+import base64
+import struct
+import zlib
+
+import numpy as np
+import pytest
+
+from atmosbox.page.frame import encode, pack
+from atmosbox.page.liquid import clumps, layer
+from atmosbox.page.thinning import MOST, chosen, share
+
+NO_DROPS = np.zeros((0, 4))
+
+
+def read(frame):
+    """Return what the bytes of a frame say, read by the words of its docstring."""
+    sequence, time, x, y, z, number = struct.unpack_from("<Id3fI", frame)
+    place = np.frombuffer(frame, "<u2", 3 * number, 28).reshape(-1, 3)
+    speed = np.frombuffer(frame, np.uint8, number, 28 + 6 * number)
+    state = np.frombuffer(frame, np.uint8, number, 28 + 7 * number)
+    (drops,) = struct.unpack_from("<I", frame, 28 + 8 * number)
+    wet = np.frombuffer(frame, "<f4", 4 * drops, 32 + 8 * number).reshape(-1, 4)
+    assert len(frame) == 32 + 8 * number + 16 * drops
+    return sequence, time, (x, y, z), place, speed, state, wet
+
+
+def test_a_frame_says_where_everything_is_and_how_fast():
+    rng = np.random.default_rng(1)
+    length = np.array([2.0, 3.0, 5.0])
+    position, speed = rng.random((50, 3)) * length, rng.random(50) * 900.0
+    drops = np.array([[1.0, 2.0, 3.0, 0.5]])
+    sequence, time, sides, place, fast, state, wet = read(encode(4, 1.25, length, position, speed, 900.0, drops))
+    assert (sequence, time, sides) == (4, 1.25, (2.0, 3.0, 5.0))
+    np.testing.assert_allclose(place / 65535.0 * length, position, atol=5.0 / 65535.0)
+    np.testing.assert_allclose(fast / 255.0 * 900.0, speed, atol=900.0 / 255.0)
+    assert not state.any()
+    np.testing.assert_array_equal(wet, drops)
+
+
+def test_a_molecule_without_a_place_is_marked_and_nothing_warns():
+    position = np.array([[0.5, 0.5, 0.5], [np.nan, np.nan, np.nan]])
+    *_, state, _ = read(encode(0, 0.0, np.ones(3), position, np.array([1.0, np.nan]), 2.0, NO_DROPS))
+    assert state.tolist() == [0, 1]
+
+
+def test_what_is_too_fast_or_just_outside_by_rounding_stays_on_the_scale():
+    position = np.array([[1.0 + 1e-12, -1e-12, 0.5]])
+    _, _, _, place, fast, *_ = read(encode(0, 0.0, np.ones(3), position, np.array([5.0]), 2.0, NO_DROPS))
+    assert place[0, 0] == 65535
+    assert place[0, 1] == 0
+    assert fast[0] == 255
+
+
+def test_frames_are_packed_the_same_every_time():
+    frames = [encode(n, n, np.ones(3), np.full((4, 3), 0.1 * n), np.ones(4), 2.0, NO_DROPS) for n in range(5)]
+    assert pack(frames) == pack(iter(frames))
+    assert zlib.decompress(base64.b64decode(pack(frames))) == b"".join(frames)
+
+
+@pytest.mark.parametrize(("molecules", "frames"), [(800, 400), (10, 10), (1, 1), (5000, 100)])
+def test_a_run_of_a_lecture_is_kept_whole(molecules, frames):
+    assert share(molecules, frames) == (molecules, frames)
+
+
+@pytest.mark.parametrize("molecules", [1, 300, 4999, 30_000, 1_000_000])
+@pytest.mark.parametrize("frames", [1, 240, 1000, 1_000_000])
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_large_run_is_thinned_to_its_share_of_the_page(molecules, frames, runs):
+    kept = share(molecules, frames, runs)
+    assert 1 <= kept.molecules <= min(molecules, MOST)
+    assert 1 <= kept.frames <= frames
+    assert kept.molecules * kept.frames * runs <= 850_000
+
+
+def test_water_is_drawn_before_air():
+    water = np.arange(1000) % 50 == 0
+    found = chosen(1000, 100, water)
+    assert len(found) == 100
+    assert np.isin(np.flatnonzero(water), found).all()
+    assert (np.diff(found) > 0).all()
+
+
+def test_where_all_is_water_as_many_are_drawn_as_there_is_room_for():
+    assert len(chosen(1000, 100, np.ones(1000, bool))) == 100
+    assert len(chosen(50, 100, np.ones(50, bool))) == 50
+
+
+def test_clumps_stay_where_they_are_while_they_grow_and_lie_in_the_box():
+    length = np.array([2.0, 1.0, 4.0])
+    few, many = clumps(40, 600, length, 0.01), clumps(600, 600, length, 0.01)
+    np.testing.assert_array_equal(few[:, :3], many[:, :3])
+    np.testing.assert_allclose((many[:, 3] / few[:, 3]) ** 3, 15.0)
+    assert ((many[:, :3] > 0.0) & (many[:, :3] < length)).all()
+    assert len(clumps(3, 600, length, 0.01)) == 3
+
+
+def test_no_liquid_is_not_drawn():
+    assert clumps(0, 100, np.ones(3), 0.1).shape == layer(0, 100).shape == layer(5, 0).shape == (0, 4)

@@ -1,0 +1,96 @@
+"""What `atmosbox run --save-molecules` keeps of the box, and what a page makes of it."""
+
+import numpy as np
+import pytest
+
+from atmosbox import runner
+from atmosbox.output import read, write
+from atmosbox.page.moment import moments
+from atmosbox.page.run import pages
+from atmosbox.units import DRY_AIR, WATER
+
+RUNS = {
+    "temperature": {"molecules": 20, "duration": 0.1},
+    "lifting-dry": {"molecules": 100, "ascent": 20.0},
+    "evaporation": {"molecules": 300, "pool": 40, "duration": 0.5},
+    "condensation": {"molecules": 400, "drops": 3, "duration": 0.5, "humidity": 300.0},
+}
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory):
+    """Return a function that runs a scene in small, once, and reads its file."""
+    folder, known = tmp_path_factory.mktemp("runs"), {}
+
+    def run(scene):
+        if scene not in known:
+            outcome = runner.execute(runner.prepare(scene, RUNS[scene], save_molecules=True))
+            known[scene] = read(write(outcome.dataset, folder / f"{scene}.nc"))
+        return known[scene]
+
+    return run
+
+
+@pytest.mark.parametrize("scene", RUNS)
+def test_every_molecule_is_in_the_box_of_its_frame(saved, scene):
+    run = saved(scene)
+    side, place = run.box_side.values[:, None, :], run.molecule_position.values
+    known = np.isfinite(place)
+    assert known.any()
+    rounding = 1e-6 * side
+    assert ((place >= -rounding) | ~known).all()
+    assert ((place <= side + rounding) | ~known).all()
+
+
+@pytest.mark.parametrize("scene", RUNS)
+def test_a_run_of_the_scene_becomes_a_page(saved, scene):
+    (page,) = pages([saved(scene)])
+    assert len(page.frames) == saved(scene).sizes["elapsed_time"]
+    assert len(page.record["stage"]["panels"]) >= 3
+
+
+def test_the_ceiling_of_a_lifted_parcel_is_where_its_piston_is(saved):
+    run = saved("lifting-dry")
+    np.testing.assert_allclose(run.box_side.sel(axis="z"), run.piston_height, rtol=1e-12)
+    height = run.box_side.sel(axis="z").values
+    assert height[-1] > 1.5 * height[0]
+    seen = moments(run)
+    assert seen.box.walls == ("specular",) * 5 + ("piston",)
+    assert seen.box.reach == height.max()
+
+
+def test_heat_baths_are_known_with_their_temperatures(saved):
+    seen = moments(saved("temperature"))
+    assert seen.box.walls == ("heat_bath",) * 6
+    np.testing.assert_allclose(seen.box.wall_temperature, 298.15)
+    assert not seen.box.gravity
+    assert not seen.box.planar
+
+
+def test_the_floor_under_a_pool_is_a_pool_and_its_molecules_are_water_from_the_start(saved):
+    run = saved("evaporation")
+    seen = moments(run)
+    assert seen.box.walls[4:] == ("pool", "piston")
+    assert seen.water.sum() == int(run.vapor_molecule_count[0] + run.liquid_molecule_count[0])
+    np.testing.assert_allclose(run.molecule_mass.values[seen.water], WATER.molecule_mass)
+    np.testing.assert_allclose(run.molecule_mass.values[~seen.water], DRY_AIR.molecule_mass)
+    assert (run.molecule_diameter.values > 0.0).all()
+
+
+def test_drops_have_places_inside_the_box_and_as_many_as_there_are(saved):
+    run = saved("condensation")
+    radius, place = run.drop_radius.values, run.drop_position.values
+    alive = np.isfinite(radius)
+    assert (alive.sum(axis=1) == run.drop_count.values).all()
+    np.testing.assert_allclose(np.nanmax(radius, axis=1), run.largest_drop_radius)
+    inside = (place >= radius[:, :, None]) & (place <= run.box_side.values[:, None, :] - radius[:, :, None])
+    assert (inside | ~alive[:, :, None]).all()
+
+
+def test_flat_scenes_keep_their_discs_without_being_asked(tmp_path):
+    outcome = runner.execute(runner.prepare("elastic-collisions", {"duration": "2 s"}))
+    seen = moments(read(write(outcome.dataset, tmp_path / "discs.nc")))
+    assert seen.discs
+    assert seen.box.planar
+    assert seen.box.unit == "m"
+    assert seen.position.shape[1:] == (60, 3)

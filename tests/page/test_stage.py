@@ -1,0 +1,91 @@
+"""What a page is told of a run."""
+
+import numpy as np
+import pytest
+
+from atmosbox.page import Box, stage
+from atmosbox.page.panel import declared, panel_record
+from atmosbox.panels import Line, Panel
+from atmosbox.units import DRY_AIR, WATER
+
+NANO = Box(length=(2e-8, 2e-8, 2e-8))
+
+
+def air(count=50, diameter=DRY_AIR.diameter, box=NANO, **more):
+    mass = np.full(count, DRY_AIR.molecule_mass)
+    arguments = {"scene": "s", "title": "t", "mass": mass, "diameter": np.full(count, diameter), "fastest": 900.0}
+    return stage(box=box, **arguments | more)
+
+
+def test_how_much_wider_molecules_are_drawn_is_what_the_stage_says():
+    told = air(800).record
+    (kind,) = told["species"]
+    factor = kind["drawn"] / kind["diameter"]
+    assert told["exaggeration"] == f"Molecules are drawn {factor:g} times as wide as they are."
+
+
+def test_molecules_that_are_large_enough_are_drawn_as_they_are():
+    told = air(diameter=1.2e-9).record
+    assert told["species"][0]["drawn"] == told["species"][0]["diameter"]
+    assert told["exaggeration"] == (
+        "Molecules collide as if 3.2 times as wide as those of air, and are drawn as wide as they collide."
+    )
+
+
+def test_molecules_without_a_size_are_drawn_and_the_stage_says_that_they_have_none():
+    assert "points" in air(diameter=0.0).record["exaggeration"]
+
+
+def test_water_is_drawn_smaller_by_the_cube_root_of_its_mass():
+    water = np.arange(10) < 4
+    mass = np.where(water, WATER.molecule_mass, DRY_AIR.molecule_mass)
+    dry, wet = air(10, mass=mass, water=water).record["species"]
+    assert [dry["name"], wet["name"]] == ["dry air", "water"]
+    assert [dry["count"], wet["count"]] == [6, 4]
+    ratio = (WATER.molecule_mass / DRY_AIR.molecule_mass) ** (1.0 / 3.0)
+    np.testing.assert_allclose(wet["drawn"] / dry["drawn"], ratio, rtol=1e-5)
+
+
+def test_discs_keep_their_own_sizes_and_are_halves_by_mass():
+    told = air(
+        4, mass=[1.0, 2.0, 8.0, 9.0], diameter=[0.1, 0.1, 0.2, 0.2], box=Box((1.0, 0.1, 1.0), planar=True), discs=True
+    )
+    assert told.record["size"] == [0.1, 0.1, 0.2, 0.2]
+    assert told.record["kind"] == [0, 0, 1, 1]
+    assert told.record["particle"] == "disc"
+
+
+@pytest.mark.parametrize(("floor", "drops"), [("pool", 1), ("specular", 2)])
+def test_a_pool_is_a_layer_and_a_mist_is_clumps(floor, drops):
+    box = Box(NANO.length, walls=("specular",) * 4 + (floor, "specular"))
+    told = air(box=box, water=np.arange(50) < 20)
+    place, speed = np.full((50, 3), 1e-8), np.ones(50)
+    still = told.frame(0, 0.0, NANO.length, place, speed)
+    wet = told.frame(0, 0.0, NANO.length, place, speed, liquid=10)
+    rainy = told.frame(0, 0.0, NANO.length, place, speed, liquid=10, rained=2)
+    assert len(wet) == len(still) + 16 * drops
+    assert len(rainy) == len(wet) + 16
+
+
+def test_a_frame_takes_molecules_of_all_and_keeps_those_that_are_shown():
+    told = air(100, most=10)
+    assert len(told.shown) == told.record["molecules_shown"] == 10
+    assert told.record["molecules"] == 100
+    assert len(told.frame(0, 0.0, NANO.length, np.full((100, 3), 1e-8), np.ones(100))) == 32 + 8 * 10
+
+
+@pytest.mark.parametrize("fastest", [0.0, np.nan])
+def test_molecules_at_rest_have_a_scale_of_speeds_nevertheless(fastest):
+    assert air(fastest=fastest).record["speed"]["high"] == 1.0
+
+
+def test_a_wall_without_a_temperature_has_none():
+    box = Box(NANO.length, wall_temperature=(300.0, float("nan"), None, 1.0, 2.0, 3.0))
+    assert air(box=box).record["box"]["wall_temperature"] == [300.0, None, None, 1.0, 2.0, 3.0]
+
+
+def test_a_misfit_in_degrees_is_read_in_kelvins():
+    line = Line("air_temperature", "air_pressure", "air", minus="air_temperature_theory")
+    told = panel_record(Panel("profile", "Misfit", (line,), x_unit="degC", y_unit="hPa"), declared)
+    assert told["x"]["unit"] == "K"
+    assert told["lines"][0]["minus"] == {"name": "air_temperature_theory", "factor": 1.0, "offset": -273.15}

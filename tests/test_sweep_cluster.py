@@ -1,0 +1,137 @@
+"""Sweeps on a Dask cluster: a worker that is killed half-way, and clusters that cannot be used."""
+
+import os
+import signal
+import sys
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from atmosbox.errors import EngineError, SettingError
+from atmosbox.output import read
+from atmosbox.sweep import SweepInterrupted, cluster, plan, sweep
+
+distributed = pytest.importorskip("distributed")
+
+SCENE = '''"""Discs that leave a file for each run they begin."""
+
+import time
+from pathlib import Path
+
+from atmosbox.engines import EXACT
+from atmosbox.scenarios.elastic_collisions import Settings, headlines, panels, theory
+from atmosbox.scenarios import elastic_collisions as discs
+
+title = "Discs"
+assert headlines and panels and theory and Settings
+
+
+def build(settings, engine=EXACT):
+    (Path(__file__).parent / f"run-{settings.seed}-{time.monotonic_ns()}").touch()
+    time.sleep(0.2)
+    return discs.build(settings, engine)
+'''
+UNUSED = "tcp://127.0.0.1:1"
+
+
+@pytest.fixture(scope="module")
+def workers():
+    """A cluster of two processes on this machine."""
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0", memory_limit=None
+    ) as made:
+        yield made
+
+
+def discs(**words):
+    return plan("elastic-collisions", ["molecules=10,20"], settings={"duration": 2.0}, **words)
+
+
+def test_a_sweep_outlives_a_killed_worker_and_computes_nothing_twice_that_was_saved(workers, tmp_path):
+    scene, file = tmp_path / "discs.py", tmp_path / "discs.nc"
+    scene.write_text(SCENE, encoding="utf-8")
+    grid = plan(scene, ["molecules=10,20,30"], settings={"duration": 2.0}, members=3)
+    at_the_kill = []
+
+    def show(share, word):
+        if share >= 0.33 and not at_the_kill:
+            lines = file.with_name("discs.part.jsonl").read_text(encoding="utf-8").split("\n")[1:-1]
+            at_the_kill.extend(line.partition('"seed": ')[2].partition(",")[0] for line in lines)
+            os.kill(next(iter(workers.workers.values())).pid, signal.SIGKILL)
+
+    swept = sweep(grid, file, scheduler=workers.scheduler_address, progress=show)
+    assert swept.computed == 9
+    assert swept.failures == ()
+    assert 3 <= len(at_the_kill) < 9
+    begun = Counter(path.name.split("-")[1] for path in tmp_path.glob("run-*"))
+    assert len(begun) == 9
+    assert all(begun[seed] == 1 for seed in at_the_kill)
+    assert sum(begun.values()) <= 9 + 2, "only what the killed worker was at, and had not handed over, is run again"
+    alone = sweep(grid, jobs=1).dataset
+    assert alone.drop_attrs().identical(read(file).drop_attrs())
+
+
+def test_ctrl_c_keeps_what_the_cluster_has_sent_and_the_rest_is_run_here(workers, tmp_path):
+    def show(share, word):
+        if share >= 0.25:
+            raise KeyboardInterrupt
+
+    grid = discs(members=4)
+    with pytest.raises(SweepInterrupted):
+        sweep(grid, tmp_path / "a.nc", scheduler=workers.scheduler_address, progress=show)
+    done = sweep(grid, tmp_path / "a.nc", jobs=1)
+    assert done.recalled >= 2
+    assert done.computed + done.recalled == 8
+    assert np.isfinite(done.dataset.energy_of_light_discs_by_member.values).all()
+
+
+def test_workers_with_another_atmosbox_are_refused(workers, monkeypatch):
+    monkeypatch.setattr(cluster, "__version__", "99.0")
+    with pytest.raises(SettingError, match=r"has the worker tcp://.* with atmosbox .*, and this is 99\.0"):
+        sweep(discs(), scheduler=workers.scheduler_address)
+
+
+def test_a_worker_that_joins_later_with_another_atmosbox_is_refused(workers, monkeypatch):
+    monkeypatch.setattr(cluster, "__version__", "99.0")
+    monkeypatch.setattr(cluster, "_check_workers", lambda client, address: None)
+    with pytest.raises(SettingError, match="pip install atmosbox==99"):
+        sweep(discs(), scheduler=workers.scheduler_address)
+
+
+def test_a_cluster_without_workers_is_refused(monkeypatch):
+    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    with (
+        distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as empty,
+        pytest.raises(SettingError, match="has no workers: start some with dask worker "),
+    ):
+        sweep(discs(), scheduler=empty.scheduler_address)
+
+
+def test_a_scheduler_that_is_lost_on_the_way_costs_nothing_that_was_saved(tmp_path):
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as lost:
+
+        def show(share, word):
+            if share > 0.0:
+                lost.close()
+
+        grid = discs(members=6)
+        with pytest.raises(EngineError, match="was lost: type the same again"):
+            sweep(grid, tmp_path / "a.nc", scheduler=lost.scheduler_address, progress=show)
+    done = sweep(grid, tmp_path / "a.nc", jobs=1)
+    assert 1 <= done.recalled < 12
+    assert done.recalled + done.computed == 12
+
+
+def test_without_the_library_it_is_said_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(SettingError, match=r"type pip install 'atmosbox\[cluster\]'"):
+        sweep(discs(), scheduler=UNUSED)
+
+
+@pytest.mark.parametrize("address", [UNUSED, "nonsense://here", "tcp://no-such-host.invalid:8786"])
+def test_a_scheduler_that_does_not_answer_is_said(monkeypatch, address):
+    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    with pytest.raises(SettingError, match="does not answer") as refused:
+        sweep(discs(), scheduler=address)
+    assert address in str(refused.value)

@@ -1,0 +1,143 @@
+"""The figure of a sweep: curves, families, fields, words, and what cannot be drawn."""
+
+import numpy as np
+import pytest
+
+from atmosbox.errors import FileError
+from atmosbox.output import read, write
+from atmosbox.plot import save
+from atmosbox.plot.sweep import figure, is_sweep
+from atmosbox.sweep import plan
+from atmosbox.sweep.result import assemble
+
+LABELS = {"mean_temperature": ("K", "degC", "temperature"), "mean_pressure": ("Pa", "hPa", "pressure")}
+
+
+def swept(vary, members=4, law=lambda values: (300.0, 1e5), theory=True, settings=None):
+    """Return a sweep whose runs scatter about a law of the settings."""
+    grid = plan("temperature", vary, members=members, settings=settings)
+    rng = np.random.default_rng(1)
+    records = []
+    for task in grid.tasks():
+        answers = law(grid.values(task.point))
+        headlines = []
+        for (name, (unit, shown, label)), answer in zip(LABELS.items(), answers, strict=True):
+            error = 0.01 * answer
+            headlines.append(
+                {
+                    "name": name, "value": answer + error * rng.normal(), "standard_error": error,
+                    "theory": answer if theory else None, "tolerance": 0.0, "reason": "none", "unit": unit,
+                    "display_unit": shown, "label": label,
+                }
+            )  # fmt: skip
+        about = {"point": task.point, "member": task.member, "seed": task.settings["seed"], "status": "complete"}
+        records.append({**about, "ledger": 1e-15, "headlines": headlines})
+    return assemble(grid, records, history=["then: atmosbox sweep"])
+
+
+def by_temperature(values):
+    return values["temperature"] + 273.15, 1e5 * (values["temperature"] + 273.15) / 300.0
+
+
+def curves(axes):
+    """Return the numbers of the dashed curves of some axes."""
+    return [line.get_ydata() for line in axes.lines if line.is_dashed()]
+
+
+def texts(drawing):
+    return " ".join(text.get_text() for axes in drawing.axes for text in (*axes.texts, *axes.get_legend().get_texts()))
+
+
+def test_one_setting_becomes_points_with_bars_and_theory_dashed():
+    found = swept(["temperature=-10degC:40degC:6"], members=8, law=by_temperature)
+    assert is_sweep(found)
+    drawing = figure(found)
+    first, second = drawing.axes
+    assert (first.get_ylabel(), second.get_ylabel()) == ("temperature (°C)", "pressure (hPa)")
+    assert second.get_xlabel() == "temperature of the walls (°C)"
+    assert (second.get_xscale(), second.get_yscale()) == ("linear", "linear")
+    (dashed,) = curves(first)
+    assert np.allclose(dashed, [-10.0, 0.0, 10.0, 20.0, 30.0, 40.0])
+    assert len(first.containers[0]) == 3, "points, caps and bars"
+    said = texts(drawing)
+    assert "mean of 8 runs" in said
+    assert "theory, joined" in said
+    assert "worst misfit (at " in said
+    assert "±" in said
+
+
+def test_molecules_in_even_ratios_stand_on_a_logarithmic_axis():
+    drawing = figure(swept(["molecules=50:5000:5log"]))
+    assert drawing.axes[-1].get_xscale() == "log"
+    assert drawing.axes[-1].get_xlabel() == "number of molecules"
+    assert "(at molecules " in texts(drawing)
+
+
+def test_a_second_setting_of_few_values_becomes_a_family_of_curves():
+    drawing = figure(swept(["molecules=100,200", "temperature=0:40:5"], law=by_temperature))
+    said = texts(drawing)
+    assert "molecules 100" in said
+    assert "molecules 200" in said
+    assert len(curves(drawing.axes[0])) == 1, "theories that are the same are drawn once"
+    assert drawing.axes[1].get_xlabel() == "temperature of the walls (°C)"
+    apart = figure(swept(["pressure=500,1000", "temperature=0:40:5"], law=lambda v: (300.0, 1e2 * v["pressure"])))
+    assert len(curves(apart.axes[1])) == 2
+    assert "theory, pressure 500 hPa" in texts(apart)
+
+
+def test_words_stand_on_the_axis_or_in_the_legend():
+    found = swept(["start=equal,maxwell"])
+    drawing = figure(found)
+    assert [tick.get_text() for tick in drawing.axes[-1].get_xticklabels()] == ["equal", "maxwell"]
+    assert drawing.axes[-1].get_xlabel() == "start"
+    both = figure(swept(["start=equal,maxwell", "temperature=0,20,40"], law=by_temperature))
+    assert "start maxwell" in texts(both)
+    assert both.axes[1].get_xlabel() == "temperature of the walls (°C)"
+
+
+def test_many_values_of_two_settings_become_fields_with_contours_of_theory():
+    drawing = figure(swept(["pressure=400:1000:4", "temperature=0:40:5"], law=by_temperature))
+    fields = [axes for axes in drawing.axes if axes.get_xlabel()]
+    assert len(fields) == 2
+    assert all(axes.collections[0].get_cmap().name == "cividis" for axes in fields)
+    assert len(fields[0].collections) > 1, "contours"
+    assert fields[0].get_xlabel() == "temperature of the walls (°C)"
+    assert "(hPa)" in fields[0].get_ylabel()
+
+
+@pytest.mark.parametrize(
+    ("vary", "words", "theme"),
+    [
+        (["temperature=20"], {}, "notes"),
+        (["temperature=0,20"], {"members": 1}, "slides"),
+        (["start=equal,maxwell", "molecules=100"], {}, "notes"),
+        (["start=equal,maxwell", "temperature=0:40:2"], {"theory": False}, "slides"),
+        (["molecules=10,100,1000,10000", "pressure=1:1000:4log"], {"theory": False}, "slides"),
+        (["molecules=10:100:4", "temperature=0:40:4"], {"law": by_temperature}, "notes"),
+    ],
+)
+def test_every_kind_of_sweep_can_be_drawn_the_same_to_the_byte(tmp_path, vary, words, theme):
+    found = swept(vary, **words)
+    first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
+    again = read(write(found, tmp_path / "sweep.nc"))
+    assert save(again, tmp_path / "second.svg", theme=theme).read_bytes() == first
+
+
+def test_values_that_span_powers_of_ten_stand_on_a_logarithmic_axis():
+    drawing = figure(swept(["duration=1ns,10ns,20ns"], law=lambda v: (300.0, 10.0 ** (v["duration"] / 3.0))))
+    assert drawing.axes[1].get_yscale() == "log"
+
+
+def test_a_failed_point_is_left_out_and_the_rest_is_drawn():
+    found = swept(["temperature=0,20,40"], law=by_temperature)
+    for name in LABELS:
+        for part in (name, f"{name}_se", f"{name}_theory"):
+            found[part][1] = np.nan
+    assert np.isfinite(curves(figure(found).axes[0])[0]).sum() == 2
+
+
+def test_what_cannot_be_drawn_is_said():
+    with pytest.raises(FileError, match="at most two settings"):
+        figure(swept(["temperature=0,20", "molecules=10,20", "start=equal,maxwell"]))
+    with pytest.raises(FileError, match="no run of this sweep has measured anything"):
+        figure(assemble(plan("temperature", ["temperature=0,20"]), []))
