@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from atmosbox.runner import Card, Outcome
 
 _VERDICT = {True: "yes", False: "no", None: "-"}
+_ALIKE = {1: "", 2: "both "}
 
 
 def next_command(command: str, path: Path) -> str:
@@ -72,11 +73,12 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
     quantity            measured    theory  misfit       within error?
     temperature [degC]  17.9 ± 2.0  14.9    +3.0 (1.5σ)  yes
     """
-    rows, notes = [], []
+    rows: list[list[str]] = []
+    notes: dict[str, list[str]] = {}
     for headline in headlines:
         shown = _shown(headline)
         value, error = shown["value"], shown["standard_error"]
-        decimals, power = digits(value, error)
+        decimals, power = digits(value, error if error > 0.0 else shown["tolerance"])
         theory = misfit = "-"
         if shown["theory"] is not None:
             theory = number(shown["theory"], decimals, power)
@@ -89,13 +91,15 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
                 if headline.excused:
                     may_be = number(shown["bias"], decimals, power, "+")
                     reason = "so far off was this engine measured to be"
-                notes.append(f"{headline.label}: up to {may_be}{_unit(headline)} off, for {reason}.")
+                notes.setdefault(reason, []).append(f"{headline.label}: up to {may_be}{_unit(headline)} off")
         unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
         verdict = "known bias" if headline.excused else _VERDICT[headline.agrees]
-        rows.append([headline.label + unit, measurement(value, error), theory, misfit, verdict])
+        found = measurement(value, error) if error > 0.0 else number(value, decimals, power)
+        rows.append([headline.label + unit, found, theory, misfit, verdict])
     header = ["quantity", "measured", "theory", "misfit", "within error?"]
     lines = table(header, rows, width) if rows else ["No frame is late enough for an average."]
-    return [*lines, *(line for note in notes for line in wrapped(note, width))]
+    told = [f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}for {reason}." for reason, which in notes.items()]
+    return [*lines, *(line for note in told for line in wrapped(note, width))]
 
 
 def _unit(headline: Headline) -> str:

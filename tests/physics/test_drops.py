@@ -46,7 +46,7 @@ def box(drops, seed, kT=1.0, **options):
     )
 
 
-def log_room(drops, molecules):
+def log_room(drops, molecules, air=AIR):
     """Return the logarithm of the room that molecules of vapour and of air have, for n = 0, 1, ... in the liquid.
 
     Each of them has the box less the ball that a drop keeps its centre out of.
@@ -56,7 +56,7 @@ def log_room(drops, molecules):
     for _ in drops.position:
         reach = np.cbrt(drops.nucleus**3 + n * drops.molecule_radius**3) + 0.5 * SMALL
         volume -= 4.0 / 3.0 * math.pi * reach**3
-    return (molecules - n + AIR) * np.log(volume)
+    return (molecules - n + air) * np.log(volume)
 
 
 def log_ways(drops, molecules):
@@ -91,11 +91,11 @@ def microcanonical(total, molecules, drops):
     return normal(log_weight), left * capacity / shape
 
 
-def canonical(molecules, drops, e_s):
+def canonical(molecules, drops, e_s, air=AIR):
     """Return the probability of n molecules in the liquid between heat baths of kT = 1."""
     v = molecules - np.arange(molecules + 1)
     log_weight = v * math.log(e_s) - special.gammaln(v + 1.0)
-    return normal(log_weight + log_room(drops, molecules) + log_ways(drops, molecules))
+    return normal(log_weight + log_room(drops, molecules, air) + log_ways(drops, molecules))
 
 
 def sampled(parcel, step, samples, read):
@@ -210,6 +210,38 @@ def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
         assert vapour / room == pytest.approx(drops.substance.saturation_pressure(1.0), rel=1e-6)
     rows = sampled(parcel, 4.0, 12_000, lambda box: (box.vapour, box.liquid_kT))
     agrees(rows, np.array([vapour, 1.0]), 0.015 * np.array([vapour, 1.0]))
+
+
+def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
+    # forty molecules of air, each of which has 0.8 % less room for every molecule that joins the drop
+    molecules, air, rng = 30, 40, np.random.default_rng(5)
+    drops = Drops(
+        water(20.0),
+        number=molecules,
+        nuclei=50.0,
+        position=MIDDLE,
+        nucleus=0.2,
+        nucleus_mass=PINNED,
+        molecule_radius=0.12,
+    )
+    shelf = np.linspace(0.1, 0.9, 5)
+    parcel = DropParcelSet(
+        np.array([(x, y, z) for z in (0.02, 0.98) for x in shelf for y in shelf[:4]]),
+        rng.standard_normal((air, 3)),
+        length=(1.0, 1.0, 1.0),
+        mass=AIR_MASS,
+        diameter=SMALL,
+        rotation=2.0,
+        rotational_energy=rng.standard_gamma(1.0, air),
+        liquid=drops,
+        seed=5,
+        walls=BATHS,
+    )
+    chance = canonical(molecules, drops, drops.substance.saturation_pressure(1.0), air)
+    free = canonical(molecules, drops, drops.substance.saturation_pressure(1.0), 0)
+    n = np.arange(molecules + 1)
+    assert n @ free - n @ chance > 3.0
+    agrees(sampled(parcel, 2.0, 4000, lambda box: [box.liquid]), np.array([n @ chance]), 0.12)
 
 
 @pytest.mark.parametrize(("mass", "ball"), [(0.5, 0.0), (0.5, 0.15), (10.0, 0.15)])
