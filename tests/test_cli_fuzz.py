@@ -16,7 +16,7 @@ NAMES = sorted({p.name for name in scenarios.names() for p in scenarios.load(nam
 
 # All that an operating system can pass: any bytes but zero.
 typed = st.one_of(
-    st.text(st.characters(exclude_characters="\0"), max_size=40),
+    st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=40),
     st.binary(max_size=20).map(lambda raw: os.fsdecode(raw.replace(b"\0", b""))),
 )
 numbers = st.one_of(

@@ -69,7 +69,7 @@ def bins(name, count, width):
 def filled(names, coords, companions=("_se", "_count", "_theory", "_tolerance"), **sizes):
     """Return an array for every variable named, and for its companions where it is measured."""
     random = np.random.default_rng(1)
-    sizes = {"wall": 6, "axis": 3} | {name: len(values) for name, values in coords.items()} | sizes
+    sizes = {"wall": 6, "axis": 3, "drop": 5} | {name: len(values) for name, values in coords.items()} | sizes
     frames = {}
     for name in names:
         shape = [sizes[dim] for dim in VARIABLES[name].dims]
@@ -109,7 +109,7 @@ def column():
     coords = times(4, 0.5) | bins("height", 20, 500.0)
     names = [
         *ALWAYS,
-        "numerical_heat",
+        *("numerical_heat", "gravity", "work_by_gravity"),
         *(name for name in VARIABLES if name.startswith(("number_density", "air_density", "layer"))),
     ]
     frames = filled(names, coords)
@@ -134,7 +134,8 @@ def discs():
 
 def molecules():
     coords = times(130) | {"molecule": np.arange(40)}
-    frames = filled([*ALWAYS, "molecule_position", "molecule_speed", "species"], coords)
+    names = [name for name in VARIABLES if name.startswith(("molecule_", "species", "wall_law"))]
+    frames = filled([*ALWAYS, *names], coords)
     frames["molecule_position"][5, 7] = np.nan
     return dataset(frames, coords, attributes())
 

@@ -46,12 +46,10 @@ def test_a_series_of_what_no_engine_knows_is_refused():
         rungs([], {})
 
 
-@pytest.mark.parametrize("scene", scenarios.names())
+@pytest.mark.parametrize("scene", [name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")])
 def test_the_ladder_of_a_scene_can_be_climbed(scene):
     """Every rung names an engine and settings that the scene accepts."""
     module = scenarios.load(scene)
-    if not hasattr(module, "ladder"):
-        pytest.skip("this scene declares nothing to compare")
     for rung in rungs(module.ladder, {}):
         module.Settings.from_user(rung.settings)
 

@@ -15,15 +15,15 @@ from atmosbox.statistics import block_average
 from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
 
 RUNS: dict[float, dict[str, float]] = {
-    -10.0: {"pressure": 100.0, "duration": 200.0},
-    0.0: {"pressure": 150.0, "duration": 150.0},
-    10.0: {"pressure": 300.0, "duration": 125.0},
-    20.0: {"pressure": 500.0, "duration": 82.0},
-    30.0: {"duration": 60.0},
-    40.0: {"duration": 54.0},
+    -10.0: {"pressure": 100.0, "duration": 400.0},
+    0.0: {"pressure": 150.0, "duration": 260.0},
+    10.0: {"pressure": 300.0, "duration": 200.0},
+    20.0: {"pressure": 500.0, "duration": 140.0},
+    30.0: {"duration": 95.0},
+    40.0: {"duration": 75.0},
 }
 """Settings by temperature [degC]. In the cold the air is thin: it plays no part, and more molecules are vapour."""
-FINE = 0.013
+FINE = 0.01
 """Largest standard error of a vapour pressure, as a share of it."""
 
 
