@@ -152,7 +152,7 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
                     flush=True,
                 )
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    print(f"\nMost memory of the process: {peak:.2f} GB")
+    print(f"\nMost memory of the process: {peak:.2f} GiB")
     if asked.json:
         asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     return results

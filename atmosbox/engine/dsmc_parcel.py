@@ -170,9 +170,10 @@ class DsmcParcel(MarchingParcel):
                 np.mod(position[:, axis], self._sides[axis], out=position[:, axis])
         room = self._room
         x, y, z, vx, vy, vz, self._spare = new_columns(room, 7)
-        for axis, (place, speed) in enumerate(((x, vx), (y, vy), (z, vz))):
-            place[:n] = position[:, axis]
-            speed[:n] = velocity[:, axis]
+        x[:n], y[:n], z[:n] = position.T
+        del position  # of ten million, copies take a lot of room
+        vx[:n], vy[:n], vz[:n] = velocity.T
+        del velocity
         spin = np.zeros(room if self._rotates else 1)
         spin[:n] = rotational_energy if self._rotates else 0.0
         cell, order = np.zeros(room, np.uint32), np.zeros(room, np.uint32)

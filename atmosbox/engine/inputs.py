@@ -153,7 +153,10 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
 def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
     """Return the time in which a molecule passes its neighbour's place [time]."""
     spacing = float(np.cbrt(math.prod(sides) / max(n, 1)))
-    speeds = [math.sqrt(float(np.mean(np.sum(v * v, axis=1))))] if n else []
+    square = np.zeros(n)
+    for column in v.T:
+        square += column * column
+    speeds = [math.sqrt(float(np.mean(square)))] if n else []
     if n:
         speeds += [
             math.sqrt(float(kT) / float(mass.mean()))

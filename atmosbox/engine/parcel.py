@@ -137,7 +137,9 @@ class Parcel(Adjustable):
         self._now = 0.0
         self._asked: float | None = None
         self._turn = 0
-        self._begin(x, v, spin)
+        start = [v, x]
+        del v, x  # so that an engine may let them go once it has its own
+        self._begin(start.pop(), start.pop(), spin)
         self._start_energy = sum(self.energy()) + self.condensed_energy
         self._drive()
 
