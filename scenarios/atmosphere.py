@@ -261,48 +261,35 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return density, pressure and temperature against height."""
+
+    def against_height(
+        title: str, name: str, theory: str, other: Line, label: str, unit: str, scale: str, headline: str
+    ) -> Panel:
+        measured = Line(name, "height", "molecules", error=f"{name}_se")
+        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), other
+        return Panel(
+            "profile",
+            title,
+            lines,
+            x_label=label,
+            x_unit=unit,
+            x_scale=scale,
+            y_label="height",
+            y_unit="km",
+            headlines=(headline,),
+        )
+
+    smooth, barometric = "hydrostatics with Z", "barometric law"
+    thin = Line("number_density_barometric", "height", barometric, "reference")
+    light = Line("layer_pressure_barometric", "height", barometric, "reference")
+    stirred = Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment")
     return (
-        Panel(
-            "profile",
-            "The air thins",
-            (
-                Line("number_density", "height", "molecules", error="number_density_se"),
-                Line("number_density_theory", "height", "hydrostatics with Z", "theory"),
-                Line("number_density_barometric", "height", "barometric law", "reference"),
-            ),
-            x_label="number density",
-            y_label="height",
-            y_unit="km",
-            x_scale="log",
-            headlines=("mean_height",),
+        against_height("The air thins", "number_density", smooth, thin, "number density", "", "log", "mean_height"),
+        against_height(
+            "Its weight is the pressure", "layer_pressure", smooth, light, "pressure", "hPa", "log", "weight_of_the_air"
         ),
-        Panel(
-            "profile",
-            "Its weight is the pressure",
-            (
-                Line("layer_pressure", "height", "molecules", error="layer_pressure_se"),
-                Line("layer_pressure_theory", "height", "hydrostatics with Z", "theory"),
-                Line("layer_pressure_barometric", "height", "barometric law", "reference"),
-            ),
-            x_label="pressure",
-            y_label="height",
-            x_unit="hPa",
-            y_unit="km",
-            x_scale="log",
-            headlines=("weight_of_the_air",),
+        against_height(
+            "Left alone, it is isothermal", "layer_temperature", "isothermal", stirred, "temperature", "K", "linear",
+            "mean_temperature",
         ),
-        Panel(
-            "profile",
-            "Left alone, it is isothermal",
-            (
-                Line("layer_temperature", "height", "molecules", error="layer_temperature_se"),
-                Line("layer_temperature_theory", "height", "isothermal", "theory"),
-                Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment"),
-            ),
-            x_label="temperature",
-            y_label="height",
-            x_unit="K",
-            y_unit="km",
-            headlines=("mean_temperature",),
-        ),
-    )
+    )  # fmt: skip

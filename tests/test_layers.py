@@ -31,6 +31,7 @@ LAYERS = {
     "engine": Layer("", "numpy numba llvmlite"),
     **dict.fromkeys(FOUNDATION.split(), FACTS),
     "panels": Layer(),
+    "target": Layer("errors"),
     "engines": Layer("errors parameter spelling", lazily="engine numpy xarray"),
     "accuracy": Layer("errors spelling"),
     "declaration": Layer("", "numpy"),
@@ -39,7 +40,7 @@ LAYERS = {
     "provenance": Layer("version errors", lazily="xarray"),
     "output": Layer("version engine units errors panels diagnostics provenance", "numpy xarray netCDF4"),
     "checkpoint": Layer("version engine units errors panels diagnostics output", "numpy xarray netCDF4"),
-    "plot": Layer("version theory errors panels", "numpy xarray matplotlib metpy"),
+    "plot": Layer("version theory errors panels target", "numpy xarray matplotlib metpy"),
     "instruments": Layer("engine units statistics theory", "numpy"),
     "moisture": Layer("engine units theory", "numpy"),
     "knob": Layer("conversion", "numpy", lazily="engine settings units"),
@@ -70,7 +71,7 @@ LAYERS = {
     "extremes": Layer("engine engines errors theory statistics", "numpy"),
     "tradeoff": Layer("engines errors provenance runner scene scenarios", "numpy xarray"),
     "sheet": Layer(
-        "version conversion errors headline parameter runner scenarios", "numpy", lazily="reportlab matplotlib"
+        "version conversion errors headline parameter runner scenarios target", "numpy", lazily="reportlab matplotlib"
     ),
     "live": Layer(
         "version checkpoint engine engines errors instruments knob output page panels parameter preparation provenance"
@@ -78,9 +79,9 @@ LAYERS = {
         "numpy websockets",
         lazily="xarray",
     ),
-    "page": Layer("errors panels variables units provenance", "numpy", lazily="plot output scenarios xarray"),
-    "film": Layer("errors panels plot units", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
-    "compare": Layer("conversion errors parameter plot provenance quantity scenarios", "numpy", lazily="xarray"),
+    "page": Layer("errors panels variables units provenance target", "numpy", lazily="plot output scenarios xarray"),
+    "film": Layer("errors panels plot units target", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
+    "compare": Layer("conversion errors parameter plot provenance quantity scenarios target", "numpy", lazily="xarray"),
     "sweep": Layer(
         "version checkpoint conversion declaration engines errors output parameter preparation provenance quantity"
         " runner scenarios",

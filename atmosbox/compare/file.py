@@ -12,8 +12,9 @@ from atmosbox.compare.change import Naming
 from atmosbox.errors import SettingError
 from atmosbox.plot import FORMATS
 from atmosbox.plot.comparison import MOST, figure
-from atmosbox.plot.file import named, render, write_whole
+from atmosbox.plot.file import render
 from atmosbox.plot.theme import find
+from atmosbox.target import named, write_whole
 
 if TYPE_CHECKING:
     import xarray as xr

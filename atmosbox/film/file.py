@@ -16,9 +16,9 @@ from atmosbox.film.box import box, has_discs, has_molecules
 from atmosbox.film.encoder import Picture, encode_gif, encode_mp4, movie_program
 from atmosbox.film.pace import Pace, pace
 from atmosbox.film.sheet import Sheet
-from atmosbox.plot.file import named, write_whole
 from atmosbox.plot.plane import discs
 from atmosbox.plot.theme import Theme, find, style
+from atmosbox.target import named, write_whole
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import uuid
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from atmosbox.errors import SettingError
 from atmosbox.page.document import THEMES, view_page
 from atmosbox.page.frame import pack
+from atmosbox.target import write_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,7 +55,7 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
     Traceback (most recent call last):
     atmosbox.errors.SettingError: theme = pink is unknown: give --theme auto, light or dark.
     """
-    from atmosbox.output import check_writable, write_failure
+    from atmosbox.output import check_writable
     from atmosbox.page.run import pages
 
     if theme not in THEMES:
@@ -63,13 +63,5 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
     target = check_writable(path, force)
     told = pages(runs)
     text = view_page([page.record for page in told], [pack(page.frames) for page in told], theme=theme)
-    part = target.with_name(f".{target.name}.{uuid.uuid4().hex}.part")
-    try:
-        with part.open("xb") as stream:
-            stream.write(text.encode("utf-8"))
-        os.replace(part, target)
-    except OSError as error:
-        raise write_failure(error, target) from error
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(target, text.encode("utf-8"))
     return target

@@ -11,14 +11,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.panels import Line, Panel
-from atmosbox.plot.curve import Curve, curve, read
+from atmosbox.plot.curve import read
 from atmosbox.plot.draw import Entry, draw_lines
-from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, FAINT, PALE, Theme
+from atmosbox.plot.energy import shade_energy
+from atmosbox.plot.theme import PALE, Theme
 from atmosbox.plot.tilt import ROTATION
 from atmosbox.plot.unit import convert
 
@@ -40,7 +40,6 @@ _MOIST = np.arange(-30.0, 41.0, 10.0)
 _MIXING = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
 _MIXING_TOP = 400.0  # hPa
 _HIGHEST_MOIST = 50.0  # hPa
-_ROUNDING = 1.0 + 1e-12  # of a pressure that has been through its logarithm
 
 Floats = NDArray[np.float64]
 
@@ -151,7 +150,7 @@ def draw_skewt(
     skewed, axes = skewed_axes(figure, spot)
     entries, _ = draw_lines(axes, panel, dataset, slender(theme), only)
     put_background(skewed, axes, theme)
-    return axes, entries + _shade(skewed, panel, dataset, theme)
+    return axes, entries + shade_energy(skewed, panel, dataset, levels(dataset, panel), SHADE_ORDER)
 
 
 def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
@@ -277,46 +276,3 @@ def _draw_background(skewed: Any, bottom: float, top: float, theme: Theme) -> No
         if bottom > _MIXING_TOP:
             dots = (0.0, (1.0, 2.5))
             skewed.plot_mixing_lines(_MIXING / 1e3, between(max(top, _MIXING_TOP)), linestyles=[dots], **look)
-
-
-def _shade(skewed: Any, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
-    """Shade CAPE and CIN, and return their entries of the legend; none without a level of free convection."""
-    marks = levels(dataset, panel)
-    measured, environment = (
-        next((line for line in panel.lines if line.role == role), None) for role in ("data", "environment")
-    )
-    if "LFC" not in marks or measured is None or environment is None:
-        return []
-    lfc, el = marks["LFC"], marks.get("EL", 0.0)
-    curves = [curve(dataset, panel, line) for line in (measured, environment)]
-    pressure, parcel, around = _together(curves, [lfc, el] if el else [lfc])
-    free, below = (pressure <= lfc * _ROUNDING) & (pressure * _ROUNDING >= el), pressure * _ROUNDING >= lfc
-    warmer = parcel - around
-    entries: list[Entry] = []
-    for name, part, sign, shade in (
-        ("CAPE", free, 1.0, skewed.shade_cape),
-        ("CIN", below, -1.0, skewed.shade_cin),
-    ):
-        if not (sign * warmer[part] > 0.0).any():
-            continue
-        look: dict[str, Any] = {"facecolor": AREA_COLOURS[name], "hatch": AREA_HATCHES[name]}
-        look |= {"edgecolor": FAINT, "linewidth": 0.0, "alpha": 0.7}
-        shade(pressure[part], around[part], parcel[part], zorder=SHADE_ORDER, **look)
-        entries.append(((Patch(**look),), name))
-    return entries
-
-
-def _together(curves: list[Curve], ends: list[float]) -> tuple[Floats, Floats, Floats]:
-    """Return pressures from the ground up, the ends of areas among them, and the temperatures of two curves there."""
-    columns = []
-    for temperature, pressure, _ in curves:
-        known = np.isfinite(temperature) & np.isfinite(pressure)
-        order = np.argsort(-pressure[known], kind="stable")
-        columns.append((-np.log(pressure[known][order]), temperature[known][order]))
-    if not all(height.size for height, _ in columns):
-        return np.zeros(0), np.zeros(0), np.zeros(0)
-    low, high = max(height[0] for height, _ in columns), min(height[-1] for height, _ in columns)
-    heights = np.unique(np.concatenate([*(height for height, _ in columns), -np.log(ends)]))
-    heights = heights[(heights >= low) & (heights <= high)]
-    temperatures = [np.interp(heights, *each) for each in columns]
-    return np.exp(-heights), temperatures[0], temperatures[1]

@@ -15,7 +15,8 @@ from types import ModuleType
 from typing import Any
 
 from atmosbox import scenarios
-from atmosbox.errors import ConfigError, FileError, shown
+from atmosbox.errors import ConfigError, FileError
+from atmosbox.sheet.entry import Table
 
 __all__ = ["SECTIONS", "Change", "Prediction", "Question", "Row", "SheetText", "Sketch", "read", "text_of"]
 
@@ -28,7 +29,6 @@ SECTIONS = {
 }
 """The headings of the questions by their names in the file."""
 MOST_RUNS = 4
-MOST_LINES = 12
 
 
 @dataclass(frozen=True)
@@ -210,49 +210,10 @@ def read(path: str | os.PathLike[str]) -> SheetText:
         raise FileError(f"The words of the sheet cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
-    return _sheet(_Table(os.fspath(path), "the sheet", content))
+    return _sheet(Table(os.fspath(path), "the sheet", content))
 
 
-class _Table:
-    """A table of the file, whose entries are taken one by one; what is left over is refused."""
-
-    def __init__(self, path: str, name: str, content: Any) -> None:
-        self.path, self.name = path, name
-        if not isinstance(content, dict):
-            raise self.refusal("is not a table")
-        self.content = dict(content)
-
-    def refusal(self, problem: str) -> ConfigError:
-        return ConfigError(f"{self.path}: {self.name} {problem}; see docs/sheet.md.")
-
-    def text(self, key: str, default: str | None = None) -> str:
-        """Take a text; without a default it must be there."""
-        value = self.content.pop(key, default)
-        if not isinstance(value, str) or (default is None and not value.strip()):
-            raise self.refusal(f"needs a text {key}")
-        return " ".join(value.split())
-
-    def number(self, key: str, default: int) -> int:
-        """Take a small number."""
-        value = self.content.pop(key, default)
-        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MOST_LINES:
-            raise self.refusal(f"needs a number from 0 to {MOST_LINES} for {key}")
-        return value
-
-    def tables(self, key: str, name: str) -> list[_Table]:
-        """Take an array of tables."""
-        value = self.content.pop(key, [])
-        if not isinstance(value, list):
-            raise self.refusal(f"needs [[{key}]] with two brackets")
-        return [_Table(self.path, f"{name} {number}", each) for number, each in enumerate(value, 1)]
-
-    def close(self) -> None:
-        """Refuse what nobody has taken."""
-        if self.content:
-            raise self.refusal(f"does not know {', '.join(shown(key) for key in self.content)}")
-
-
-def _sheet(table: _Table) -> SheetText:
+def _sheet(table: Table) -> SheetText:
     """Return a sheet from the table that the file is."""
     questions = {
         name: tuple(_question(each) for each in table.tables(name, f"question [[{name}]]")) for name in SECTIONS
@@ -272,20 +233,20 @@ def _sheet(table: _Table) -> SheetText:
     return found
 
 
-def _question(table: _Table) -> Question:
+def _question(table: Table) -> Question:
     found = Question(table.text("ask"), table.text("answer", ""), table.number("lines", 2))
     table.close()
     return found
 
 
-def _row(table: _Table) -> Row:
+def _row(table: Table) -> Row:
     names = table.text("headline"), table.text("label"), table.text("unit", "1")
     found = Row(*names, table.text("theory", ""), table.text("runs", ""))
     table.close()
     return found
 
 
-def _change(table: _Table) -> Change:
+def _change(table: Table) -> Change:
     settings = table.content.pop("set", None)
     if not isinstance(settings, dict) or not settings:
         raise table.refusal("needs the setting that it changes, such as set = {molecules = 800}")
@@ -294,13 +255,13 @@ def _change(table: _Table) -> Change:
     return found
 
 
-def _prediction(table: _Table) -> Prediction:
+def _prediction(table: Table) -> Prediction:
     choices = table.content.pop("choices", [])
     if not isinstance(choices, list) or not all(isinstance(each, str) for each in choices):
         raise table.refusal("needs a list of texts for choices")
     sketch = table.content.pop("sketch", None)
     if sketch is not None:
-        axes = _Table(table.path, f"the sketch of {table.name}", sketch)
+        axes = Table(table.path, f"the sketch of {table.name}", sketch)
         sketch = Sketch(axes.text("x"), axes.text("y"), axes.text("hint", ""))
         axes.close()
     lines = table.number("lines", 0 if choices or sketch else 2)

@@ -10,6 +10,7 @@ from jobs.registry import Findings, job
 import atmosbox
 from atmosbox.cli.compare import lines
 from atmosbox.compare import compared, naming
+from atmosbox.compare.file import spoken
 from atmosbox.page import save
 from atmosbox.plot.comparison import figure
 
@@ -25,7 +26,8 @@ def warm_and_cold(found: Findings) -> None:
     names = naming(runs, [Path(file).stem for file in files])
     table = "\n".join(lines(files, names, compared(runs), 100))
     found.text(f"```console\n$ atmosbox compare cold.nc warm.nc\n{table}\n```")
-    found.figure(figure(runs, names.labels, names.title), "compared", 115)
+    labels = [spoken(label) for label in names.labels]
+    found.figure(figure(runs, labels, spoken(f"Lifting dry air: {names.title}")), "compared", 115)
 
 
 @job("page")
