@@ -4,7 +4,7 @@ Cells are at least as wide as the largest molecule, so that two which overlap st
 adjacent ones. Every step the molecules are sorted by cell (a stable counting sort): each row of cells along x
 is then one stretch of memory, and three adjacent cells are one short stretch of it. A molecule looks at what
 follows it in its own row and at the four rows that follow its own, above and behind; those that precede it
-have looked already. A first look takes eight at a time, in single precision.
+have looked already. It looks at eight at a time in each of these rows, in single precision.
 """
 
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atmosbox.engine._jit import kernel
-from atmosbox.engine.window import LANES, any_within
+from atmosbox.engine.window import LANES, lowest_bit, within
 
 __all__ = ["Grid", "Records", "count_up", "file_molecules", "find_pairs", "new_records"]
 
@@ -188,6 +188,19 @@ def _row(records, grid, iy, iz, layers, cells, shift_y, shift_z):
 
 
 @kernel
+def _glance(records, radius, a, b, c, d, e, at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach):
+    """Tell who is within reach in five stretches of records; each stretch has its own `LANES` bits of the answer."""
+    x, y, z = records.x, records.y, records.z
+    return (
+        within(x, y, z, radius, a, at_x, at_y, at_z, reach)
+        | within(x, y, z, radius, b, at_x, b_y, at_z, reach) << LANES
+        | within(x, y, z, radius, c, at_x, c_y, c_z, reach) << 2 * LANES
+        | within(x, y, z, radius, d, at_x, at_y, d_z, reach) << 3 * LANES
+        | within(x, y, z, radius, e, at_x, e_y, e_z, reach) << 4 * LANES
+    )
+
+
+@kernel
 def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, modes):
     """Find all pairs nearer than their mean diameter plus a slack, whose earlier record is in a part of all.
 
@@ -213,6 +226,7 @@ def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, mo
     found = 0
     if first >= last:
         return found
+    end = np.int64(records.slot.size)
     number_x = np.int64(grid.number_x)
     cells = number_x * grid.number_y * layers
     end_x = number_x - 1
@@ -242,23 +256,48 @@ def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, mo
             reach = common
             if radius is not None:
                 reach = reach + radius[q]
+            a = q + 1
+            a_end = np.int64(start[np.uint32(own + right)])
             b = np.int64(start[np.uint32(behind + left)])
+            b_end = np.int64(start[np.uint32(behind + right)])
             c = np.int64(start[np.uint32(low + left)])
+            c_end = np.int64(start[np.uint32(low + right)])
             d = np.int64(start[np.uint32(above + left)])
+            d_end = np.int64(start[np.uint32(above + right)])
             e = np.int64(start[np.uint32(high + left)])
-            longest = np.int64(start[np.uint32(own + right)]) - q - 1
-            longest = max(longest, np.int64(start[np.uint32(behind + right)]) - b)
-            longest = max(longest, np.int64(start[np.uint32(low + right)]) - c)
-            longest = max(longest, np.int64(start[np.uint32(above + right)]) - d)
-            longest = max(longest, np.int64(start[np.uint32(high + right)]) - e)
-            some = longest > LANES
-            some |= any_within(x, y, z, radius, q + 1, at_x, at_y, at_z, reach)
-            some |= any_within(x, y, z, radius, b, at_x, at_y + behind_y, at_z, reach)
-            some |= any_within(x, y, z, radius, c, at_x, at_y + low_y, at_z + low_z, reach)
-            some |= any_within(x, y, z, radius, d, at_x, at_y, at_z + above_z, reach)
-            some |= any_within(x, y, z, radius, e, at_x, at_y + high_y, at_z + high_z, reach)
-            if modes.periodic:
-                some |= not grid.simple or (grid.wraps_x and (ix == 0 or ix == end_x))
-            if some:
+            e_end = np.int64(start[np.uint32(high + right)])
+            longest = max(max(a_end - a, b_end - b), max(c_end - c, d_end - d), e_end - e)
+            if modes.periodic and (not grid.simple or (grid.wraps_x and (ix == 0 or ix == end_x))):
                 found = _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes)
+                continue
+            b_y = at_y + behind_y if modes.periodic else at_y
+            c_y, c_z = (at_y + low_y, at_z + low_z) if modes.periodic else (at_y, at_z)
+            d_z = at_z + above_z if modes.periodic else at_z
+            e_y, e_z = (at_y + high_y, at_z + high_z) if modes.periodic else (at_y, at_z)
+            bits = _glance(
+                records, radius, a, b, c, d, e, at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach
+            )  # fmt: skip
+            beyond = 0
+            while True:
+                while bits != 0:
+                    bit = lowest_bit(bits)
+                    bits &= bits - 1
+                    window = bit // LANES
+                    begin, stop = (a, a_end) if window == 0 else ((b, b_end) if window == 1 else (c, c_end))
+                    if window > 2:
+                        begin, stop = (d, d_end) if window == 3 else (e, e_end)
+                    k = begin + beyond + bit % LANES
+                    if k < stop:
+                        if found < pairs.shape[0]:
+                            pairs[found, 0] = records.slot[q]
+                            pairs[found, 1] = records.slot[k & 0x7FFFFFFF]
+                        found += 1
+                beyond += LANES
+                if beyond >= longest:
+                    break
+                # beyond the end of a row, and of all rows, whatever is seen does not count
+                bits = _glance(
+                    records, radius, min(a + beyond, end), min(b + beyond, end), min(c + beyond, end),
+                    min(d + beyond, end), min(e + beyond, end), at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach,
+                )  # fmt: skip
     return found

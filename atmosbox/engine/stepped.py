@@ -50,7 +50,7 @@ class State(NamedTuple):
 
     ``position``, ``velocity : (axis, slot)`` [length, length/time], ``name : (slot,)`` which molecule it is,
     ``size : (slot,)`` its radius [length], ``cell : (slot,)`` where it stands, ``hitting : (slot,)`` room for those
-    that come near a wall.
+    that come near a wall, ``before : (part, 2, BLOCK)`` for where some of them were (`flight`).
     """
 
     position: Any
@@ -59,6 +59,7 @@ class State(NamedTuple):
     size: Any
     cell: Any
     hitting: Any
+    before: Any
 
 
 class Step(NamedTuple):
@@ -182,8 +183,8 @@ def specialise(modes: Modes, parallel: bool) -> Any:
                     made[0] += fall_heat * total_mass
                 for part in prange(parts):
                     numbers[part, 1] = drift(
-                        state, records.histogram[part], molecules * part // parts, molecules * (part + 1) // parts,
-                        step, layers, grid, box, modes,
+                        state, state.before[part], records.histogram[part],
+                        molecules * part // parts, molecules * (part + 1) // parts, step, layers, grid, box, modes,
                     )  # fmt: skip
                 for part in range(parts):
                     begin = molecules * part // parts

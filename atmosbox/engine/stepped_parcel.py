@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
 from atmosbox.engine.bounce import CLAMP, FLIP, FOLD, MIRROR, REWIND
-from atmosbox.engine.flight import EULER, PARABOLA, SEMI_IMPLICIT
+from atmosbox.engine.flight import BLOCK, EULER, PARABOLA, SEMI_IMPLICIT
 from atmosbox.engine.gridding import choose_cells
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
@@ -177,6 +177,7 @@ class SteppedParcel(MarchingParcel):
             size=(0.5 * self._diameter).astype(np.float32),
             cell=np.zeros(n, np.int32),
             hitting=np.zeros(n, np.uint32),
+            before=np.zeros((self._threads, 2, BLOCK)),
         )
         inverse = np.where(self._periodic, 1.0 / self._sides, 0.0)
         sides = [float(side) for side in (*self._sides, *inverse)]

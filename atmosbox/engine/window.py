@@ -1,4 +1,4 @@
-"""A glance at eight neighbours at once, which tells whether any of them is within reach.
+"""A glance at eight neighbours at once, which tells who of them is within reach.
 
 Most molecules are near nobody, and it is most of the work of a step to find that out. The processor compares
 eight single-precision numbers in one instruction; what it finds is a hint, which exact arithmetic then judges.
@@ -11,7 +11,7 @@ from numba.extending import intrinsic
 
 from atmosbox.engine._jit import COMPILED
 
-__all__ = ["LANES", "any_within"]
+__all__ = ["LANES", "lowest_bit", "within"]
 
 LANES = 8
 """How many neighbours are looked at together; arrays must be readable so far beyond their last molecule."""
@@ -19,8 +19,8 @@ LANES = 8
 if COMPILED:
 
     @intrinsic
-    def any_within(typing_context, x, y, z, radius, first, at_x, at_y, at_z, reach):
-        """Tell whether any of the records ``first`` to ``first + LANES - 1`` is within reach of a point.
+    def within(typing_context, x, y, z, radius, first, at_x, at_y, at_z, reach):
+        """Tell which of the records ``first`` to ``first + LANES - 1`` are within reach of a point.
 
         Parameters
         ----------
@@ -35,10 +35,11 @@ if COMPILED:
 
         Returns
         -------
-        bool
+        int64
+            Bit k is set if record ``first + k`` is within reach.
         """
         alone = isinstance(radius, types.NoneType)
-        signature = types.boolean(x, y, z, radius, types.int64, *[types.float32] * 4)
+        signature = types.int64(x, y, z, radius, types.int64, *[types.float32] * 4)
 
         def generate(context, builder, signature, arguments):
             vector = ir.VectorType(ir.FloatType(), LANES)
@@ -65,16 +66,29 @@ if COMPILED:
             if not alone:
                 reach = builder.fadd(reach, load(3))
             near = builder.fcmp_ordered("<", squared, builder.fmul(reach, reach))
-            mask = builder.bitcast(near, ir.IntType(LANES))
-            return builder.icmp_unsigned("!=", mask, ir.Constant(ir.IntType(LANES), 0))
+            return builder.zext(builder.bitcast(near, ir.IntType(LANES)), ir.IntType(64))
+
+        return signature, generate
+
+    @intrinsic
+    def lowest_bit(typing_context, bits):
+        """Return the number of the lowest bit that is set; there must be one."""
+        signature = types.int64(types.int64)
+
+        def generate(context, builder, signature, arguments):
+            return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 1))
 
         return signature, generate
 
 else:
 
-    def any_within(x, y, z, radius, first, at_x, at_y, at_z, reach):
-        """Tell whether any of ``LANES`` records is within reach of a point."""
+    def within(x, y, z, radius, first, at_x, at_y, at_z, reach):
+        """Tell which of ``LANES`` records are within reach of a point."""
         some = slice(int(first), int(first) + LANES)
         total = reach if radius is None else reach + radius[some]
         squared = (x[some] - at_x) ** 2 + (y[some] - at_y) ** 2 + (z[some] - at_z) ** 2
-        return bool(np.any(squared < total * total))
+        return sum(1 << lane for lane in np.flatnonzero(squared < total * total).tolist())
+
+    def lowest_bit(bits):
+        """Return the number of the lowest bit that is set; there must be one."""
+        return (int(bits) & -int(bits)).bit_length() - 1
