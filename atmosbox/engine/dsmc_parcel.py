@@ -22,6 +22,7 @@ __all__ = ["DsmcParcel"]
 _REGROUP, _REGROUP_MANY, _MANY = 48, 16, 200_000
 _THREADED = 10_000
 _FASTEST = 6.5
+_PIECE = 1 << 20
 _FORGET = 1.0 - 1.0 / 512.0
 _COLUMNS = ("x", "y", "z", "vx", "vy", "vz", "spin")
 
@@ -78,7 +79,7 @@ class DsmcParcel(MarchingParcel):
     """
 
     engine: ClassVar[str] = "dsmc"
-    _shares = True
+    _frugal = True
     _wet = _pool = False
     _water: Any = None
 
@@ -297,4 +298,10 @@ class DsmcParcel(MarchingParcel):
 
     def _mean_square_speed(self) -> float:
         """Return the mean of the squared speed [length^2/time^2]."""
-        return sum(float(np.sum(v * v)) for v in self._swarm[3:6]) / max(self._number, 1)
+        return sum(_sum_of_squares(v) for v in self._swarm[3:6]) / max(self._number, 1)
+
+
+def _sum_of_squares(column: Array) -> float:
+    """Return the sum of the squares of a column, without a second column of its size."""
+    pieces = (column[k : k + _PIECE] for k in range(0, column.size, _PIECE))
+    return sum(float(np.sum(piece * piece)) for piece in pieces)

@@ -13,9 +13,13 @@ __all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "
 
 Array = NDArray[np.float64]
 
+_PIECE = 1 << 20  # molecules whose squares are added up together
 
-def matrix(values: ArrayLike, name: str) -> Array:
-    """Return three finite numbers per molecule, or refuse; a copy, each of its three columns in one piece.
+
+def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
+    """Return three finite numbers per molecule, or refuse.
+
+    A copy has each of its three columns in one piece; without one, whoever reads the numbers may not change them.
 
     Examples
     --------
@@ -23,7 +27,7 @@ def matrix(values: ArrayLike, name: str) -> Array:
     array([[1., 2., 3.]])
     """
     try:
-        array = np.array(values, np.float64, order="F")
+        array = np.array(values, np.float64, order="F") if copy else np.asarray(values, np.float64)
     except (TypeError, ValueError):
         raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
     if array.size == 0:
@@ -132,7 +136,8 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
     >>> inside(np.array([[1.0, 1.0, 1.0]]), np.ones(1), np.array([2.0, 2.0, 2.0]), (False, False, False))
     array([[1., 1., 1.]])
     """
-    radius = 0.5 * diameter
+    alike = diameter.size > 0 and diameter.strides == (0,)
+    radius = 0.5 * (diameter[0] if alike else diameter)  # of ten million, copies take a lot of room
     for axis in range(3):
         if periodic[axis]:
             continue
@@ -142,9 +147,10 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
         if (low | high).any():
             i = int(np.argmax(low | high))
             wall = WALL_NAMES[2 * axis + (0 if low[i] else 1)]
+            reach = 0.5 * float(diameter[i])
             raise RefusedError(
                 f"molecule {i} at {'xyz'[axis]} = {x[i, axis]:.6g} reaches through wall {wall}: its centre must lie "
-                f"between {radius[i]:.6g} and {sides[axis] - radius[i]:.6g}"
+                f"between {reach:.6g} and {sides[axis] - reach:.6g}"
             )
         np.clip(x[:, axis], radius, sides[axis] - radius, out=x[:, axis])
     return x
@@ -153,10 +159,13 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
 def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
     """Return the time in which a molecule passes its neighbour's place [time]."""
     spacing = float(np.cbrt(math.prod(sides) / max(n, 1)))
-    square = np.zeros(n)
-    for column in v.T:
-        square += column * column
-    speeds = [math.sqrt(float(np.mean(square)))] if n else []
+    total = 0.0
+    for first in range(0, n, _PIECE):
+        square = np.zeros(min(_PIECE, n - first))
+        for column in v[first : first + _PIECE].T:
+            square += column * column
+        total += float(np.sum(square))
+    speeds = [math.sqrt(total / n)] if n else []
     if n:
         speeds += [
             math.sqrt(float(kT) / float(mass.mean()))

@@ -59,8 +59,8 @@ class Parcel(Adjustable):
     engine: ClassVar[str]
     """The name of the engine, as the command line and the file give it."""
 
-    _shares: ClassVar[bool] = False
-    """Whether a number that is given for all molecules is kept once, and not for each: to save memory."""
+    _frugal: ClassVar[bool] = False
+    """Whether to save memory: a number given for all molecules is kept once, velocities are read where they stand."""
 
     def __init__(
         self,
@@ -82,17 +82,17 @@ class Parcel(Adjustable):
         collisions: bool = True,
     ) -> None:
         x = matrix(position, "position")
-        v = matrix(velocity, "velocity")
+        v = matrix(velocity, "velocity", copy=not self._frugal)
         if x.shape != v.shape:
             raise RefusedError(f"{len(x)} positions and {len(v)} velocities: give one velocity for each position")
         n = len(x)
-        self._mass = column(mass, n, "mass", above=0.0, shared=self._shares)
-        self._diameter = column(diameter, n, "diameter", least=0.0, shared=self._shares)
-        self._rotation = column(rotation, n, "rotation", least=0.0, shared=self._shares)
+        self._mass = column(mass, n, "mass", above=0.0, shared=self._frugal)
+        self._diameter = column(diameter, n, "diameter", least=0.0, shared=self._frugal)
+        self._rotation = column(rotation, n, "rotation", least=0.0, shared=self._frugal)
         if not np.isin(self._rotation, (0.0, 2.0, 3.0)).all():
             raise RefusedError("the rotational degrees of freedom of a molecule are 0, 2 or 3")
         spin = 0.0 if rotational_energy is None else rotational_energy
-        spin = column(spin, n, "rotational_energy", least=0.0, shared=self._shares)
+        spin = column(spin, n, "rotational_energy", least=0.0, shared=self._frugal)
         self._sides = sides_of(length)
         self._gravity = number(gravity, "gravity", least=0.0)
         self._collision_number = number(collision_number, "collision_number", least=1.0, infinite=True)
