@@ -151,7 +151,7 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
                     f"{r['bytes_per_molecule']:.0f} | {beside} |",
                     flush=True,
                 )
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024  # bytes, but on macOS
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     print(f"\nMost memory of the process, Python and what the start is made from included: {peak / 1e9:.2f} GB")
     if asked.json:
         asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
