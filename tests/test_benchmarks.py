@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from atmosbox.engine._jit import COMPILED
 from atmosbox.engine.state import Modes
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -100,3 +101,17 @@ def test_the_cost_of_features_is_measured(tmp_path, monkeypatch):
     assert {mode for each in result["on"].values() for mode in each["modes"]} == set(Modes._fields)
     assert result["instruments"]["profiles: 25 layers"]["lines"] > 10
     assert result["instruments"]["trails: discs"]["bytes"] > 0.0
+
+
+@pytest.mark.skipif(not COMPILED, reason="so many steps take minutes without numba")
+def test_single_precision_is_measured_and_makes_energy_and_loses_gravity(tmp_path):
+    file = tmp_path / "precision.json"
+    run("precision.py", "--n", 2000, "--repeats", 1, "--json", file)
+    found = json.loads(file.read_text())
+    double, single = found["energy"]["error"]
+    assert double < 1e-13 < 1e-10 < single < 1e-4
+    assert found["pace"][0]["bytes_per_molecule"][1] < 0.7 * found["pace"][0]["bytes_per_molecule"][0]
+    errors = {one["gain"]: one["error"] for one in found["fall"]}
+    assert all(abs(each[0]) < 1e-8 for each in errors.values())
+    assert abs(errors[1e-2][1]) < 1e-4
+    assert abs(errors[1e-8][1]) > 0.2

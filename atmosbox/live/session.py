@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import math
 import time
@@ -11,10 +10,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from atmosbox.engine.refusal import RefusedError, StalledError
+from atmosbox.engine.refusal import StalledError
 from atmosbox.errors import SettingError
+from atmosbox.live import hand
 from atmosbox.live.control import COLLISIONS, Control, controls
 from atmosbox.live.experiment import Experiment
+from atmosbox.live.hand import Hand, meeting, with_collisions
 from atmosbox.live.picture import Picture
 from atmosbox.live.recorder import Recorder, longest
 from atmosbox.live.report import Report, while_it_runs
@@ -27,7 +28,6 @@ __all__ = ["Session"]
 
 SLOWEST, FASTEST = 0.25, 16.0
 _STEP = 0.04
-_MOST_CHANGES = 5000
 
 
 class Session:
@@ -102,11 +102,9 @@ class Session:
         self.experiment = experiment
         self.picture = picture
         self.report = Report(shown, picture.stage.variables)
-        self.changes: list[Change] = []
         self.finished = False
         self._sequence = 0
-        self._knobs = {knob.name: knob for knob in experiment.setup.knobs}
-        self._turned: dict[str, Value] = {}
+        self._hand = Hand(experiment.setup)
 
     @property
     def prepared(self) -> Prepared:
@@ -117,6 +115,11 @@ class Session:
     def setup(self) -> Setup:
         """The box."""
         return self.experiment.setup
+
+    @property
+    def changes(self) -> list[Change]:
+        """What was turned by hand, in order."""
+        return self._hand.changes
 
     # ------------------------------------------------------------------ time
 
@@ -152,7 +155,7 @@ class Session:
         if frame == self.setup.frames:
             self.finished = True
             self.playing = False
-            names = [name for name in self._knobs if name in ("altitude", "way")]
+            names = [name for name in self._hand.names if name in ("altitude", "way")]
             lead = f"; lead the parcel on with {names[0]}" if names else ""
             self.note("info", f"The parcel has come to the end of its way{lead}, or begin anew.")
             return False
@@ -209,7 +212,9 @@ class Session:
         values: dict[str, Any] = self._settings()
         if seed is not None:
             values["seed"] = seed
-        self._anew(values, str(self.prepared.engine) if self._collide is None else self._engine(self._collide))
+        collide = meeting(self.prepared, self.setup)
+        engine = self.prepared.engine
+        self._anew(values, str(engine) if collide is None else with_collisions(engine, collide))
 
     def _set(self, name: object, value: object) -> None:
         control = next((each for each in self.controls() if each.name == name), None)
@@ -220,50 +225,22 @@ class Session:
         if not control.restarts:
             self._turn(control, wanted)
         elif control.name == COLLISIONS:
-            self._anew(self._settings(), self._engine(bool(wanted)))
+            self._anew(self._settings(), with_collisions(self.prepared.engine, bool(wanted)))
         else:
             self._anew(self._settings() | {control.name: wanted}, str(self.prepared.engine))
 
     def _turn(self, control: Control, value: Value) -> None:
         """Turn a knob."""
-        try:
-            self._knobs[control.name].set(float(value))
-        except RefusedError as error:
-            said = str(value) if not control.parameter.unit else f"{value} {control.parameter.unit}"
-            raise SettingError(control.name, said, f"is not possible ({error})", "give another") from error
-        self._turned[control.name] = value
+        self._hand.turn(control, value, self.experiment)
         if self.finished:  # it rests only because its way was at an end
             self.playing, self.finished = True, False
-        self.experiment.begin_averages_anew()
-        change = Change(self.experiment.now, self.experiment.frame, control.name, value, control.parameter.unit)
-        last = self.changes[-1] if self.changes else None
-        if last is not None and (last.name, last.frame) == (change.name, change.frame):
-            self.changes[-1] = change  # a slider on its way
-        else:
-            self.changes.append(change)
-        if len(self.changes) > _MOST_CHANGES:
-            self._recorder.stop(f"The recording tells of {_MOST_CHANGES} changes, which is all it can.")
+        if self._hand.overflows:
+            self._recorder.stop(f"The recording tells of {hand.MOST_CHANGES} changes, which is all it can.")
             del self.changes[0]
 
     def _settings(self) -> dict[str, Any]:
         """Return the settings with which the box would begin anew: what the sliders say."""
-        return {name: self._turned.get(name, value) for name, value in self.prepared.settings.as_dict().items()}
-
-    @property
-    def _collide(self) -> bool | None:
-        """Whether molecules meet; None where that cannot be chosen, for they hit drops, or never meet."""
-        parcel = self.setup.parcel
-        takes_engine = "engine" in inspect.signature(self.prepared.module.build).parameters
-        if hasattr(parcel, "drops") or not takes_engine or not parcel.diameter.any():
-            return None
-        return self.prepared.engine.options.get(COLLISIONS) is not False
-
-    def _engine(self, collisions: bool) -> str:
-        """Return the engine that is asked for, with or without collisions."""
-        options = {name: value for name, value in self.prepared.engine.options.items() if name != COLLISIONS}
-        if not collisions:
-            options[COLLISIONS] = False
-        return str(replace(self.prepared.engine, options=options))
+        return {name: self._hand.turned.get(name, value) for name, value in self.prepared.settings.as_dict().items()}
 
     def _anew(self, values: Mapping[str, Any], engine: str) -> None:
         """Let a box begin anew."""
@@ -285,8 +262,9 @@ class Session:
 
     def controls(self) -> tuple[Control, ...]:
         """Return all that can be changed, as it is now."""
-        values = self.prepared.settings.as_dict() | self._turned
-        return controls(self.setup.knobs, self.prepared.settings.describe(), values, collisions=self._collide)
+        values = self.prepared.settings.as_dict() | self._hand.turned
+        collide = meeting(self.prepared, self.setup)
+        return controls(self.setup.knobs, self.prepared.settings.describe(), values, collisions=collide)
 
     def note(self, level: str, text: str) -> None:
         """Leave a sentence for the page."""

@@ -37,17 +37,19 @@ def trade(found: Findings) -> None:
         units = ["K" if str(data.unit.sel(quantity=name).item()) == "K" else "%" for name in names]
         head = ["run", "cost", "runs"]
         head += [f"{data.label.sel(quantity=n).item()} [{u}]" for n, u in zip(names, units, strict=True)]
-        rows = []
+        rows: dict[tuple[object, ...], str] = {}
         for k in np.argsort(np.nan_to_num(data.cost.values, nan=math.inf), kind="stable"):
             if not int(data.members.values[k]):
                 continue
-            row = [f"`{data.rung.values[k]}`", rounded(float(data.cost.values[k])), int(data.members.values[k])]
+            row: list[object] = [rounded(float(data.cost.values[k])), int(data.members.values[k])]
             for name in names:
                 one = data.isel(rung=k).sel(quantity=name)
                 bias, se, noise = (percent(one) * one[key].item() for key in ("bias", "bias_se", "noise"))
                 row.append(f"{rounded(bias)} ± {rounded(se, 1)} ({rounded(noise, 1)})" if math.isfinite(bias) else "–")
-            rows.append(row)
-        found.table(head, rows, key=scene)
+            # two series may share a run; its shorter name will do
+            name = f"`{data.rung.values[k]}`"
+            rows[tuple(row)] = min(name, rows.get(tuple(row), name), key=len)
+        found.table(head, [[name, *row] for row, name in rows.items()], key=scene)
         if scene == "atmosphere":
             found.number("drift", rounded(float(np.nanmax(np.abs(data.energy_drift.values)))))
         found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
@@ -101,3 +103,19 @@ def classic_cost(found: Findings) -> None:
         for one in data["beside"]
     ]  # fmt: skip
     found.table(["packing fraction", "molecules", "δ", "Z − 1 too low by", "times dearer than exact"], rows)
+
+
+@job("precision", quick=True)
+def precision(found: Findings) -> None:
+    """Make the tables of what single precision would gain dsmc, and of what it would cost."""
+    data = json.loads((FOLDER / "precision.json").read_text(encoding="utf-8"))
+    rows = [
+        [f"{one['molecules']:,}", *(f"{each / 1e6:.0f}" for each in one["moves_per_cpu_second"]),
+         f"{one['ratio']:.2f}", *(f"{each:.0f}" for each in one["bytes_per_molecule"])] for one in data["pace"]
+    ]  # fmt: skip
+    head = ["molecules", "million moves per second, 64 bits", "32 bits", "times faster"]
+    found.table([*head, "bytes per molecule, 64 bits", "32 bits"], rows, key="pace")
+    rows = [[rounded(one["gain"]), *(f"{rounded(100.0 * each, 1)} %" for each in one["error"])] for one in data["fall"]]
+    found.table(["gain of a step over the thermal speed", "error of the fall, 64 bits", "32 bits"], rows, key="fall")
+    found.number("energy", rounded(data["energy"]["error"][1], 1))
+    found.number("steps", data["energy"]["steps"])

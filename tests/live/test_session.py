@@ -394,7 +394,7 @@ def test_a_slider_on_its_way_is_one_change():
 
 
 def test_so_many_changes_that_no_file_could_tell_them_end_the_recording(tmp_path, monkeypatch):
-    monkeypatch.setattr("atmosbox.live.session._MOST_CHANGES", 30)
+    monkeypatch.setattr("atmosbox.live.hand.MOST_CHANGES", 30)
     box = session(folder=tmp_path)
     box.obey({"type": "record", "file": "restless"})
     for k in range(31):

@@ -1,0 +1,114 @@
+"""What a class turns by hand while a box runs: its knobs, what they say now, and the list of all that was done."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import replace
+from typing import Any
+
+from atmosbox.engine.refusal import RefusedError
+from atmosbox.engines import EngineChoice
+from atmosbox.errors import SettingError
+from atmosbox.live.control import COLLISIONS, Control
+from atmosbox.live.experiment import Experiment
+from atmosbox.live.tape import Change
+from atmosbox.parameter import Value
+from atmosbox.preparation import Prepared
+from atmosbox.scene import Setup
+
+__all__ = ["MOST_CHANGES", "Hand", "meeting", "with_collisions"]
+
+MOST_CHANGES = 5000
+"""How many changes are remembered: as many as a file can tell."""
+
+
+class Hand:
+    """The knobs of one box.
+
+    Parameters
+    ----------
+    setup
+        The box.
+
+    Attributes
+    ----------
+    changes
+        What was done, in order; a knob turned twice within a frame stands there once.
+    turned
+        What each knob that was turned says now.
+
+    Examples
+    --------
+    >>> from atmosbox.preparation import prepare
+    >>> prepared = prepare("elastic-collisions", {"molecules": 10})
+    >>> Hand(prepared.module.build(prepared.settings)).names
+    ()
+    """
+
+    def __init__(self, setup: Setup) -> None:
+        self._knobs = {knob.name: knob for knob in setup.knobs}
+        self.changes: list[Change] = []
+        self.turned: dict[str, Value] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the knobs."""
+        return tuple(self._knobs)
+
+    @property
+    def overflows(self) -> bool:
+        """Whether there are more changes than a file can tell."""
+        return len(self.changes) > MOST_CHANGES
+
+    def turn(self, control: Control, value: Value, experiment: Experiment) -> None:
+        """Turn a knob, and note it.
+
+        Raises
+        ------
+        SettingError
+            If the box cannot do it; nothing has changed then.
+        """
+        try:
+            self._knobs[control.name].set(float(value))
+        except RefusedError as error:
+            said = str(value) if not control.parameter.unit else f"{value} {control.parameter.unit}"
+            raise SettingError(control.name, said, f"is not possible ({error})", "give another") from error
+        self.turned[control.name] = value
+        experiment.begin_averages_anew()
+        change = Change(experiment.now, experiment.frame, control.name, value, control.parameter.unit)
+        last = self.changes[-1] if self.changes else None
+        if last is not None and (last.name, last.frame) == (change.name, change.frame):
+            self.changes[-1] = change  # a slider on its way
+        else:
+            self.changes.append(change)
+
+
+def meeting(prepared: Prepared, setup: Setup) -> bool | None:
+    """Return whether molecules meet; None where that cannot be chosen, for they hit drops, or never meet.
+
+    Examples
+    --------
+    >>> from atmosbox.preparation import prepare
+    >>> prepared = prepare("temperature", {"molecules": 10})
+    >>> meeting(prepared, prepared.module.build(prepared.settings))
+    True
+    """
+    takes_engine = "engine" in inspect.signature(prepared.module.build).parameters
+    if hasattr(setup.parcel, "drops") or not takes_engine or not setup.parcel.diameter.any():
+        return None
+    return prepared.engine.options.get(COLLISIONS) is not False
+
+
+def with_collisions(engine: EngineChoice, wanted: bool) -> str:
+    """Return the words that ask for an engine with collisions, or without.
+
+    Examples
+    --------
+    >>> from atmosbox.engines import EXACT
+    >>> with_collisions(EXACT, False), with_collisions(EXACT, True)
+    ('exact:collisions=off', 'exact')
+    """
+    options: dict[str, Any] = {name: value for name, value in engine.options.items() if name != COLLISIONS}
+    if not wanted:
+        options[COLLISIONS] = False
+    return str(replace(engine, options=options))
