@@ -14,7 +14,8 @@ from pathlib import Path
 import xarray as xr
 
 from atmosbox.errors import FileError
-from atmosbox.output import AnyPath, check_writable, part_path, replace_file, write_failure
+from atmosbox.output import AnyPath, check_writable, part_path, replace_file
+from atmosbox.target import write_failure
 
 __all__ = ["Checkpoint"]
 

@@ -20,15 +20,15 @@ import netCDF4
 import xarray as xr
 
 from atmosbox import __version__
-from atmosbox.errors import DiskFullError, FileError, shown
+from atmosbox.errors import FileError, shown
 from atmosbox.provenance import FORMAT, moment
+from atmosbox.target import write_failure
 
-__all__ = ["check_writable", "part_path", "read", "replace_file", "write", "write_failure"]
+__all__ = ["check_writable", "part_path", "read", "replace_file", "write"]
 
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the hidden name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
 LEFT_OVER = 3600.0  # seconds after which a hidden file can only be that of a run that was killed
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 AnyPath: TypeAlias = str | os.PathLike[str]
 
@@ -85,27 +85,6 @@ def check_writable(path: AnyPath, force: bool = False) -> Path:
         raise write_failure(OSError(errno.ENOSPC, ""), target)
     moment()
     return target
-
-
-def write_failure(error: OSError, path: Path) -> FileError:
-    """Return the refusal that a failure to write a file amounts to.
-
-    Parameters
-    ----------
-    error
-        What the system reported.
-    path
-        The file that was to be written.
-
-    Examples
-    --------
-    >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
-    'The disk has no room for no/run.nc: delete something, or give another --out.'
-    """
-    if error.errno in NO_ROOM:
-        kept = ", which stays as it was" if path.exists() else ""
-        return DiskFullError(f"The disk has no room for {path}{kept}: delete something, or give another --out.")
-    return FileError(f"{path} could not be written ({error.strerror or error}): give another place with --out.")
 
 
 def _image(dataset: xr.Dataset) -> memoryview:

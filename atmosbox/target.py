@@ -1,4 +1,4 @@
-"""The file that a figure, a page or a sheet is written to: it is there whole or not at all."""
+"""The file that something is written to: it is there whole or not at all, and a failure is said in a sentence."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from pathlib import Path
 
 from atmosbox.errors import DiskFullError, FileError, SettingError
 
-__all__ = ["named", "write_whole"]
+__all__ = ["named", "write_failure", "write_whole"]
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def named(
@@ -100,6 +102,25 @@ def write_whole(path: Path, content: bytes) -> None:
         os.replace(part, path)
     except OSError as error:
         part.unlink(missing_ok=True)
-        if error.errno == errno.ENOSPC:
-            raise DiskFullError(f"The disk is full, and {path} was not written: make room and try again.") from error
-        raise FileError(f"{path} cannot be written ({error.strerror}): name a file in another folder.") from error
+        raise write_failure(error, path) from error
+
+
+def write_failure(error: OSError, path: Path) -> FileError:
+    """Return the refusal that a failure to write a file amounts to.
+
+    Parameters
+    ----------
+    error
+        What the system reported.
+    path
+        The file that was to be written.
+
+    Examples
+    --------
+    >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
+    'The disk has no room for no/run.nc: delete something, or give another --out.'
+    """
+    if error.errno in NO_ROOM:
+        kept = ", which stays as it was" if path.exists() else ""
+        return DiskFullError(f"The disk has no room for {path}{kept}: delete something, or give another --out.")
+    return FileError(f"{path} could not be written ({error.strerror or error}): give another place with --out.")

@@ -100,7 +100,8 @@ def verify(dataset: xr.Dataset) -> list[Check]:
     checks = []
     status = str(dataset.attrs.get("atmosbox_status", "unknown"))
     frames = int(dataset.sizes.get("elapsed_time", 0))
-    checks.append(Check("complete", status == "complete", f"the run is {status}, with {frames} frames"))
+    what = f"the sweep is {status}" if "member" in dataset.sizes else f"the run is {status}, with {frames} frames"
+    checks.append(Check("complete", status == "complete", what))
     bad = [
         str(name)
         for name, values in dataset.data_vars.items()

@@ -38,8 +38,8 @@ LAYERS = {
     "variables": Layer("declaration"),
     "diagnostics": Layer("version engine units errors panels statistics declaration variables", "numpy xarray"),
     "provenance": Layer("version errors", lazily="xarray"),
-    "output": Layer("version engine units errors panels diagnostics provenance", "numpy xarray netCDF4"),
-    "checkpoint": Layer("version engine units errors panels diagnostics output", "numpy xarray netCDF4"),
+    "output": Layer("version engine units errors panels diagnostics provenance target", "numpy xarray netCDF4"),
+    "checkpoint": Layer("version engine units errors panels diagnostics output target", "numpy xarray netCDF4"),
     "plot": Layer("version theory errors panels target", "numpy xarray matplotlib metpy"),
     "instruments": Layer("engine units statistics theory", "numpy"),
     "moisture": Layer("engine units theory", "numpy"),
@@ -84,7 +84,7 @@ LAYERS = {
     "compare": Layer("conversion errors parameter plot provenance quantity scenarios target", "numpy", lazily="xarray"),
     "sweep": Layer(
         "version checkpoint conversion declaration engines errors output parameter preparation provenance quantity"
-        " runner scenarios",
+        " runner scenarios target",
         "numpy xarray",
         lazily="distributed",
     ),

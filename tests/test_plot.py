@@ -969,7 +969,7 @@ def test_a_folder_that_is_missing_or_in_the_way_is_named(tmp_path):
 
 @pytest.mark.parametrize(
     ("number", "kind", "words"),
-    [(errno.ENOSPC, DiskFullError, "disk is full"), (errno.EACCES, FileError, "cannot be")],
+    [(errno.ENOSPC, DiskFullError, "disk has no room"), (errno.EACCES, FileError, "could not be")],
 )
 def test_a_figure_that_cannot_be_written_leaves_nothing_behind(tmp_path, monkeypatch, number, kind, words):
     def refuse(*_):

@@ -386,7 +386,7 @@ def test_a_file_appears_whole_and_replaces_nothing_unasked(tmp_path, monkeypatch
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(FileError, match="disk is full"):
+    with pytest.raises(FileError, match="disk has no room"):
         sheets.save(sheet, tmp_path / "c.md")
     assert sorted(each.name for each in tmp_path.iterdir()) == ["b.pdf", "sheet.md"]
 

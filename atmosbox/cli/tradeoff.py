@@ -178,7 +178,7 @@ def _unit(found: xr.Dataset, name: str) -> str:
 
 def _write_text(path: Path, text: str) -> None:
     """Write a text whole or not at all."""
-    from atmosbox.output import write_failure
+    from atmosbox.target import write_failure
 
     hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:

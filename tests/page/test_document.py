@@ -171,7 +171,7 @@ def test_a_page_that_cannot_be_written_leaves_nothing(run, tmp_path, monkeypatch
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(FileError, match="disk is full"):
+    with pytest.raises(FileError, match="disk has no room"):
         save([run(2, 3)], tmp_path / "page.html")
     assert list(tmp_path.iterdir()) == []
 
