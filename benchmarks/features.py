@@ -280,19 +280,19 @@ def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
             times.append(pair)
         collisions = (setup.parcel.contacts - before) / (2 * len(times))
         bare, full = np.median(times, axis=0)
-        filmed = 1 if asked.trial else 10
+        grown: dict[bool, list[int]] = {True: [], False: []}
+        filmed, turns = (1, 1) if asked.trial else (10, 5)
         tracemalloc.start()
-        frame(False)
-        memory = []
-        for watched in (True, False):
+        frame(True)
+        for watched in turns * (False, True):  # what Python keeps for itself comes and goes: the median counts
             gc.collect()
-            memory.append(tracemalloc.get_traced_memory()[0])
+            held = tracemalloc.get_traced_memory()[0]
             for _ in range(filmed):
                 frame(watched)
-        gc.collect()
-        memory.append(tracemalloc.get_traced_memory()[0])
+            gc.collect()
+            grown[watched].append(tracemalloc.get_traced_memory()[0] - held)
         tracemalloc.stop()
-        kept = (memory[1] - memory[0]) - (memory[2] - memory[1])
+        kept = float(np.median(grown[True]) - np.median(grown[False]))
         found[feature] = {
             "ns": 1e9 * full / max(collisions, 1e-9),
             "ratio": full / bare,
@@ -332,7 +332,7 @@ def count_lines(molecules: int) -> dict[str, int]:
     for feature in (*GASES, "points"):
         box = gas(module, molecules, feature)
         counted[feature] = len(lines_of(functools.partial(box.advance, 10.0 * FREE_TIME), (str(ENGINE),)))
-    watching = (str(ROOT / "atmosbox" / "instruments.py"), str(ENGINE / "measure.py"))
+    watching = (str(ROOT / "atmosbox" / "instruments"), str(ENGINE / "measure.py"))
     for feature, (name, instrument) in SCENES.items():
         _, frame = scene(name, instrument, True)
         bare = lines_of(functools.partial(frame, False), watching)

@@ -15,6 +15,7 @@ from atmosbox.engine._jit import COMPILED
 from atmosbox.engine.state import Modes
 
 ROOT = Path(__file__).resolve().parents[1]
+LIQUID = {"phases", "pool", "drops"}  # what liquid does is in kernels of its own, which a gas never loads
 
 
 def run(script, *arguments):
@@ -42,9 +43,7 @@ def features():
 
 
 def test_every_mode_of_the_engine_has_a_gas_that_shows_its_price(features):
-    # what liquid does is in kernels of its own, which a gas never loads
-    liquid = {"phases", "pool", "drops"}
-    assert set(features.GASES.values()) - {""} == set(Modes._fields) - liquid
+    assert set(features.GASES.values()) - {""} == set(Modes._fields) - LIQUID
 
 
 @pytest.mark.parametrize("feature", ["nothing", *Modes._fields])
@@ -98,8 +97,8 @@ def test_the_cost_of_features_is_measured(tmp_path, monkeypatch):
         assert each["lines"] > result["lines_of_points"] > 0
         assert each["ns"] > 0.0
         assert 0.0 < each["bytes"] < 2000.0
-    assert {mode for each in result["on"].values() for mode in each["modes"]} == set(Modes._fields)
-    assert result["instruments"]["profiles: 25 layers"]["lines"] > 10
+    assert {mode for each in result["on"].values() for mode in each["modes"]} == set(Modes._fields) - LIQUID
+    assert all(each["lines"] > 5 for each in result["instruments"].values())
     assert result["instruments"]["trails: discs"]["bytes"] > 0.0
 
 

@@ -12,9 +12,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
+from atmosbox.plot.label import put_beside
 from atmosbox.plot.theme import DARK, DATA_COLOURS, FAINT, Theme, find, style
 
 if TYPE_CHECKING:
@@ -64,8 +66,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         axes = drawing.subplots(math.ceil(len(chosen) / columns), columns, sharex=True, squeeze=False).ravel()
         for each in axes[len(chosen) :]:
             each.remove()
-        for place, name in enumerate(chosen):
-            _draw(axes[place], dataset, name, look)
+        words = [_draw(axes[place], dataset, name, look) for place, name in enumerate(chosen)]
+        for place in range(len(chosen)):
             if place + columns >= len(chosen):
                 axes[place].set_xlabel("processor time of the engine in a run (s)")
                 axes[place].tick_params(labelbottom=True)
@@ -79,6 +81,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
             labelspacing=0.3,
         )
         drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold")
+        for each, (labels, marks) in zip(axes, words, strict=False):
+            put_beside(drawing, each, labels, marks, 0.7 * look.marker)
     return drawing
 
 
@@ -90,8 +94,10 @@ def foremost(dataset: xr.Dataset) -> list[str]:
     return sorted(names, key=lambda name: name not in lawful)[:MOST_PANELS]
 
 
-def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
-    """Draw one quantity."""
+def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> tuple[list[Annotation], NDArray[np.float64]]:
+    """Draw one quantity; return the names of its runs, to be put beside their marks, and where marks are."""
+    labels: list[Annotation] = []
+    marks = [np.empty((0, 2))]
     one = dataset.sel(quantity=name)
     scale = 1.0 if str(one.unit.values) == "K" else 100.0
     unit = "K" if scale == 1.0 else "%"
@@ -124,7 +130,9 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
         )  # fmt: skip
         if row < len(rows):
             _law(axes, dataset, rows[row], name, here, seconds, np.where(seen, bias, np.nan), se, look)
-            _name_ends(axes, dataset, rows[row], here, seconds, np.where(seen, bias, SEEN * se), look, colour)
+            height = np.where(seen, bias, SEEN * se)
+            labels += _name_ends(axes, dataset, rows[row], here, seconds, height, look, colour)
+            marks.append(np.column_stack([seconds, height])[here])
     _statistics(axes, dataset, seconds, noise, look)
     axes.set_title(_sentence(str(one.label.values)), loc="left", fontsize=look.text)
     axes.set_ylabel(f"error ({unit})")
@@ -134,6 +142,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(visible=True)
+    return labels, np.concatenate(marks)
 
 
 def _front(axes: Axes, seconds: NDArray[np.float64], total: NDArray[np.float64], look: Theme) -> None:
@@ -194,15 +203,17 @@ def _name_ends(
     height: NDArray[np.float64],
     look: Theme,
     colour: str,
-) -> None:
-    """Write the value of what varies beside the first and the last run of a series."""
+) -> list[Annotation]:
+    """Write the value of what varies at the first and the last run of a series."""
     places = np.flatnonzero(here)
     symbol = _SYMBOLS.get(row["vary"], row["vary"])
-    for k in {int(places[0]), int(places[-1])}:
+    return [
         axes.annotate(
-            f"{symbol} = {dataset.value.values[k]:g}", (seconds[k], height[k]), xytext=(0.0, 0.7 * look.marker),
-            textcoords="offset points", ha="center", va="bottom", fontsize=0.75 * look.small, color=colour,
-        )  # fmt: skip
+            f"{symbol} = {dataset.value.values[k]:g}", (seconds[k], height[k]), (0, 0), textcoords="offset points",
+            fontsize=0.75 * look.small, color=colour,
+        )
+        for k in sorted({int(places[0]), int(places[-1])})
+    ]  # fmt: skip
 
 
 def _engine(dataset: xr.Dataset, row: int) -> str:

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 from jobs.registry import ROOT, Findings, job, rounded
 
-from atmosbox import engines, theory
+from atmosbox import engines, scenarios, theory
 from atmosbox.engine import Periodic
 from atmosbox.engine.start import maxwell_velocities, random_positions
 from atmosbox.output import read
@@ -37,7 +37,8 @@ def trade(found: Findings) -> None:
         units = ["K" if str(data.unit.sel(quantity=name).item()) == "K" else "%" for name in names]
         head = ["run", "cost", "runs"]
         head += [f"{data.label.sel(quantity=n).item()} [{u}]" for n, u in zip(names, units, strict=True)]
-        rows: dict[tuple[object, ...], str] = {}
+        settings = scenarios.load(scene).Settings
+        rows: dict[str, list[object]] = {}
         for k in np.argsort(np.nan_to_num(data.cost.values, nan=math.inf), kind="stable"):
             if not int(data.members.values[k]):
                 continue
@@ -46,10 +47,11 @@ def trade(found: Findings) -> None:
                 one = data.isel(rung=k).sel(quantity=name)
                 bias, se, noise = (percent(one) * one[key].item() for key in ("bias", "bias_se", "noise"))
                 row.append(f"{rounded(bias)} ± {rounded(se, 1)} ({rounded(noise, 1)})" if math.isfinite(bias) else "–")
-            # two series may share a run; its shorter name will do
-            name = f"`{data.rung.values[k]}`"
-            rows[tuple(row)] = min(name, rows.get(tuple(row), name), key=len)
-        found.table(head, [[name, *row] for row, name in rows.items()], key=scene)
+            # two series may share a way of running: it is named by what differs from the scene
+            changed = settings.from_user(json.loads(str(data.settings.values[k]))).changed()
+            way = ", ".join([str(data.engine.values[k]), *(f"{name}={value}" for name, value in changed.items())])
+            rows.setdefault(way, row)
+        found.table(head, [[f"`{way}`", *row] for way, row in rows.items()], key=scene)
         if scene == "atmosphere":
             found.number("drift", rounded(float(np.nanmax(np.abs(data.energy_drift.values)))))
         found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
