@@ -61,7 +61,7 @@ def choose_cells(
     Examples
     --------
     >>> choose_cells(np.array([10.0, 10.0, 10.0]), (False, False, False), np.ones(500)).number_x
-    7
+    6
     """
     biggest = float(diameter.max(initial=0.0))
     number = [1, 1, 1]
