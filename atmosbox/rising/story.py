@@ -154,7 +154,7 @@ def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -
     for level in ascent.levels:
         middle = int(np.argmin(np.abs(np.log(pressure / level))))
         near = slice(max(middle - BLOCK // 2, 0), middle + BLOCK // 2 + 1)
-        if pressure.min() > 1.02 * level:
+        if dataset.environment_pressure.values.min() > 1.02 * level:  # the parcel's own pressure scatters
             continue
         expected = float(ascent.planned_at(level).temperature[0])
         found.append(
