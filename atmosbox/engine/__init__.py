@@ -47,7 +47,8 @@ Read it in this order:
 `classic_spheres`    spheres, all pairs
 `classic`            the box, as teaching applets move it: one of the three
 `window`        a glance at eight neighbours at once
-`neighbourhood` who overlaps whom, found in cells
+`neighbourhood` who overlaps whom
+`filing`        molecules filed by cell, for those that look for neighbours
 `gridding`      how the box is cut into those cells
 `flight`        a step of free flight
 `bounce`        a step of those that come near walls

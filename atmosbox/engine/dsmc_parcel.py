@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from atmosbox.engine._jit import use_threads
 from atmosbox.engine.box import new_box
 from atmosbox.engine.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
-from atmosbox.engine.inputs import number, whole
+from atmosbox.engine.inputs import number, sum_of_squares, whole
 from atmosbox.engine.marching import MarchingParcel
 from atmosbox.engine.pairing import new_tries
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
@@ -22,7 +22,6 @@ __all__ = ["DsmcParcel"]
 _REGROUP, _REGROUP_MANY, _MANY = 48, 16, 200_000
 _THREADED = 10_000
 _FASTEST = 6.5
-_PIECE = 1 << 20
 _FORGET = 1.0 - 1.0 / 512.0
 _COLUMNS = ("x", "y", "z", "vx", "vy", "vz", "spin")
 
@@ -298,10 +297,4 @@ class DsmcParcel(MarchingParcel):
 
     def _mean_square_speed(self) -> float:
         """Return the mean of the squared speed [length^2/time^2]."""
-        return sum(_sum_of_squares(v) for v in self._swarm[3:6]) / max(self._number, 1)
-
-
-def _sum_of_squares(column: Array) -> float:
-    """Return the sum of the squares of a column, without a second column of its size."""
-    pieces = (column[k : k + _PIECE] for k in range(0, column.size, _PIECE))
-    return sum(float(np.sum(piece * piece)) for piece in pieces)
+        return sum(sum_of_squares(v) for v in self._swarm[3:6]) / max(self._number, 1)

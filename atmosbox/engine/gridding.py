@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from atmosbox.engine.neighbourhood import Grid
+from atmosbox.engine.filing import Grid
 from atmosbox.engine.parcel import Array
 from atmosbox.engine.refusal import RefusedError
 

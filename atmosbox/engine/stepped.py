@@ -35,8 +35,9 @@ import numpy as np
 from atmosbox.engine._jit import kernel, prange
 from atmosbox.engine.bounce import MIRROR, bounce
 from atmosbox.engine.contact import resolve_contact, share_energy
+from atmosbox.engine.filing import count_up, file_molecules
 from atmosbox.engine.flight import PARABOLA, SEMI_IMPLICIT, drift
-from atmosbox.engine.neighbourhood import count_up, file_molecules, find_pairs
+from atmosbox.engine.neighbourhood import find_pairs
 from atmosbox.engine.random import uniform
 from atmosbox.engine.state import Modes
 

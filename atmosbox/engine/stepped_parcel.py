@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 
 from atmosbox.engine._jit import use_threads
 from atmosbox.engine.bounce import CLAMP, FLIP, FOLD, MIRROR, REWIND
+from atmosbox.engine.filing import new_records
 from atmosbox.engine.flight import BLOCK, EULER, PARABOLA, SEMI_IMPLICIT
 from atmosbox.engine.gridding import choose_cells
 from atmosbox.engine.inputs import number, whole
 from atmosbox.engine.marching import MarchingParcel
-from atmosbox.engine.neighbourhood import new_records
 from atmosbox.engine.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.refusal import RefusedError, StalledError
 from atmosbox.engine.stall import crushing_height, why_crushed

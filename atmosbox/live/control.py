@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from atmosbox.errors import SettingError
 from atmosbox.knob import Knob
 from atmosbox.parameter import Parameter, Value
 from atmosbox.quantity import parse_quantity
 
-__all__ = ["COLLISIONS", "Control", "controls"]
+__all__ = ["COLLISIONS", "Control", "controls", "in_words", "number_between"]
 
 COLLISIONS = "collisions"
 """The switch that every engine has."""
@@ -159,3 +161,32 @@ def controls(
         told = Parameter(COLLISIONS, "", True, None, None, None, "whether molecules meet each other", "bool")
         found.append(Control(told, collisions, True))
     return tuple(found)
+
+
+def number_between(value: object, name: str, low: float, high: float) -> float:
+    """Return a number that a page has sent.
+
+    Raises
+    ------
+    SettingError
+        If it is none, or lies outside.
+
+    Examples
+    --------
+    >>> number_between(2, "pace", 0.25, 16.0)
+    2.0
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise SettingError(name, in_words(value), f"is not a number from {low:g} to {high:g}", f"give {name} = 1")
+    return float(value)
+
+
+def in_words(value: object) -> str:
+    """Return what a page has sent, for a sentence.
+
+    Examples
+    --------
+    >>> in_words(None), in_words("air")
+    ('null', 'air')
+    """
+    return value if isinstance(value, str) else json.dumps(value, default=str)

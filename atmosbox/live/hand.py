@@ -1,22 +1,23 @@
-"""What a class turns by hand while a box runs: its knobs, what they say now, and the list of all that was done."""
+"""What a class changes by hand: knobs while a box runs, and settings and engine with which it begins anew."""
 
 from __future__ import annotations
 
 import inspect
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from atmosbox.engine.refusal import RefusedError
-from atmosbox.engines import EngineChoice
+from atmosbox.engines import EngineChoice, choose
 from atmosbox.errors import SettingError
-from atmosbox.live.control import COLLISIONS, Control
+from atmosbox.live.control import COLLISIONS, Control, controls
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change
 from atmosbox.parameter import Value
 from atmosbox.preparation import Prepared
 from atmosbox.scene import Setup
 
-__all__ = ["MOST_CHANGES", "Hand", "meeting", "with_collisions"]
+__all__ = ["MOST_CHANGES", "Hand", "begun_anew", "meeting", "with_collisions"]
 
 MOST_CHANGES = 5000
 """How many changes are remembered: as many as a file can tell."""
@@ -59,6 +60,16 @@ class Hand:
     def overflows(self) -> bool:
         """Whether there are more changes than a file can tell."""
         return len(self.changes) > MOST_CHANGES
+
+    def settings(self, prepared: Prepared) -> dict[str, Value]:
+        """Return the settings with which a box would begin anew: what the knobs say, and the rest as it was."""
+        return {name: self.turned.get(name, value) for name, value in prepared.settings.as_dict().items()}
+
+    def controls(self, prepared: Prepared, setup: Setup) -> tuple[Control, ...]:
+        """Return all that can be changed, as it is now."""
+        values = prepared.settings.as_dict() | self.turned
+        collide = meeting(prepared, setup)
+        return controls(setup.knobs, prepared.settings.describe(), values, collisions=collide)
 
     def turn(self, control: Control, value: Value, experiment: Experiment) -> None:
         """Turn a knob, and note it.
@@ -112,3 +123,21 @@ def with_collisions(engine: EngineChoice, wanted: bool) -> str:
     if not wanted:
         options[COLLISIONS] = False
     return str(replace(engine, options=options))
+
+
+def begun_anew(prepared: Prepared, values: Mapping[str, Any], engine: str) -> Prepared:
+    """Return a scene with other settings and another engine.
+
+    Raises
+    ------
+    AtmosboxError
+        If one of them is not allowed.
+
+    Examples
+    --------
+    >>> from atmosbox.preparation import prepare
+    >>> begun_anew(prepare("temperature", {}), {"molecules": 10}, "stepped").settings.molecules
+    10
+    """
+    settings = type(prepared.settings).from_user(dict(values))
+    return replace(prepared, settings=settings, engine=choose(engine), expectation=None)

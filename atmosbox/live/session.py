@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from atmosbox.engine.refusal import StalledError
 from atmosbox.errors import SettingError
 from atmosbox.live import hand
-from atmosbox.live.control import COLLISIONS, Control, controls
+from atmosbox.live.control import COLLISIONS, Control, in_words, number_between
 from atmosbox.live.experiment import Experiment
-from atmosbox.live.hand import Hand, meeting, with_collisions
+from atmosbox.live.hand import Hand, begun_anew, with_collisions
 from atmosbox.live.picture import Picture
 from atmosbox.live.recorder import Recorder, longest
 from atmosbox.live.report import Report, while_it_runs
@@ -197,7 +195,7 @@ class Session:
         elif kind == "reset":
             self._reset(message.get("seed"))
         elif kind == "pace":
-            self.pace = _number(message.get("value"), "pace", SLOWEST, FASTEST)
+            self.pace = number_between(message.get("value"), "pace", SLOWEST, FASTEST)
         elif kind == "set":
             self._set(message.get("name"), message.get("value"))
         elif kind == "record":
@@ -206,28 +204,29 @@ class Session:
             self.stop_recording()
         else:
             known = "play, pause, step, reset, pace, set, record or stop_record"
-            raise SettingError("type", _text(kind), "is nothing that this page can ask for", f"give {known}")
+            raise SettingError("type", in_words(kind), "is nothing that this page can ask for", f"give {known}")
 
     def _reset(self, seed: object) -> None:
-        values: dict[str, Any] = self._settings()
+        values: dict[str, Any] = self._hand.settings(self.prepared)
         if seed is not None:
             values["seed"] = seed
-        collide = meeting(self.prepared, self.setup)
-        engine = self.prepared.engine
-        self._anew(values, str(engine) if collide is None else with_collisions(engine, collide))
+        self._begin(begun_anew(self.prepared, values, str(self.prepared.engine)))
 
     def _set(self, name: object, value: object) -> None:
         control = next((each for each in self.controls() if each.name == name), None)
         if control is None:
             known = ", ".join(each.name for each in self.controls())
-            raise SettingError("name", _text(name), "is nothing that can be changed here", f"give one of {known}")
+            raise SettingError("name", in_words(name), "is nothing that can be changed here", f"give one of {known}")
         wanted = control.parse(value)
         if not control.restarts:
             self._turn(control, wanted)
-        elif control.name == COLLISIONS:
-            self._anew(self._settings(), with_collisions(self.prepared.engine, bool(wanted)))
+            return
+        values, engine = self._hand.settings(self.prepared), str(self.prepared.engine)
+        if control.name == COLLISIONS:
+            engine = with_collisions(self.prepared.engine, bool(wanted))
         else:
-            self._anew(self._settings() | {control.name: wanted}, str(self.prepared.engine))
+            values[control.name] = wanted
+        self._begin(begun_anew(self.prepared, values, engine))
 
     def _turn(self, control: Control, value: Value) -> None:
         """Turn a knob."""
@@ -237,17 +236,6 @@ class Session:
         if self._hand.overflows:
             self._recorder.stop(f"The recording tells of {hand.MOST_CHANGES} changes, which is all it can.")
             del self.changes[0]
-
-    def _settings(self) -> dict[str, Any]:
-        """Return the settings with which the box would begin anew: what the sliders say."""
-        return {name: self._hand.turned.get(name, value) for name, value in self.prepared.settings.as_dict().items()}
-
-    def _anew(self, values: Mapping[str, Any], engine: str) -> None:
-        """Let a box begin anew."""
-        from atmosbox.engines import choose
-
-        settings = type(self.prepared.settings).from_user(dict(values))
-        self._begin(replace(self.prepared, settings=settings, engine=choose(engine), expectation=None))
 
     def stop_recording(self) -> Path | None:
         """End the recording, if there is one, and return its file."""
@@ -262,9 +250,7 @@ class Session:
 
     def controls(self) -> tuple[Control, ...]:
         """Return all that can be changed, as it is now."""
-        values = self.prepared.settings.as_dict() | self._hand.turned
-        collide = meeting(self.prepared, self.setup)
-        return controls(self.setup.knobs, self.prepared.settings.describe(), values, collisions=collide)
+        return self._hand.controls(self.prepared, self.setup)
 
     def note(self, level: str, text: str) -> None:
         """Leave a sentence for the page."""
@@ -305,13 +291,3 @@ class Session:
         """Return what has been measured since the last call, as messages to the page."""
         found = self.experiment.measured(self.changes[-1].frame + 1 if self.changes else 0)
         return [] if found is None else self.report.messages(found)
-
-
-def _number(value: object, name: str, low: float, high: float) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise SettingError(name, _text(value), f"is not a number from {low:g} to {high:g}", f"give {name} = 1")
-    return float(value)
-
-
-def _text(value: object) -> str:
-    return value if isinstance(value, str) else json.dumps(value, default=str)
