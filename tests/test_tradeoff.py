@@ -16,7 +16,7 @@ from atmosbox.errors import SettingError, UnknownSettingError
 from atmosbox.output import read, write
 from atmosbox.plot import save
 from atmosbox.scene import Series
-from atmosbox.tradeoff import Rung, measure, rungs
+from atmosbox.tradeoff import Rung, measure, rungs, trial
 from atmosbox.tradeoff.measure import _summary
 
 QUICK = (
@@ -99,6 +99,23 @@ def test_the_same_seeds_give_the_same_errors(monkeypatch):
     assert first.members.values.tolist() == [1]
     assert np.array_equal(first.bias.values, second.bias.values, equal_nan=True)
     assert np.array_equal(first.noise.values, second.noise.values, equal_nan=True)
+
+
+def test_two_series_that_cross_share_a_run(monkeypatch):
+    asked = []
+    run = trial.run
+    monkeypatch.setattr(trial, "run", lambda scene, rung, *rest: asked.append(rung) or run(scene, rung, *rest))
+    default = scenarios.load("elastic-collisions").Settings().molecules
+    ladder = [
+        Rung("exact", {"duration": 2}, 0, 2.0),
+        Rung("exact", {"duration": 2, "molecules": default}, 1, float(default)),
+        Rung("exact", {"duration": 2, "molecules": default // 2}, 1, default / 2.0),
+    ]
+    found = measure("elastic-collisions", budget=3.0, ladder=ladder)
+    assert {rung.label for rung in asked} == {ladder[0].label, ladder[2].label}
+    for name in ("bias", "engine_seconds", "members"):
+        assert np.array_equal(found[name].values[0], found[name].values[1])
+    assert found.members.values[0] > 1
 
 
 def test_a_run_that_is_too_dear_is_left_out():

@@ -85,7 +85,10 @@ def measure(
     module.Settings.from_user(settings or {})
     ways = tuple(ladder) if ladder is not None else rungs(row, settings or {})
     tell = progress or (lambda share, word: None)
-    trials: list[list[Trial]] = [[] for _ in ways]
+    first = _first_alike(ways, module.Settings)
+    trials: list[list[Trial]] = []
+    for k in range(len(ways)):
+        trials.append([] if first[k] == k else trials[first[k]])
     refused = [""] * len(ways)
     warmed: set[str] = set()
     with warnings.catch_warnings():
@@ -120,12 +123,13 @@ def measure(
                 refused[k] = str(error)
 
         def rounds() -> None:
-            for k in range(len(ways)):
+            own = [k for k in range(len(ways)) if first[k] == k]
+            for k in own:
                 if not refused[k]:
                     attempt(k, min(_FIRST_SHARE * budget, max(budget - spent(), 0.0) + 0.5))
             while True:
                 left = budget - spent()
-                fit = [k for k, done in enumerate(trials) if done and not refused[k] and len(done) < MOST_MEMBERS]
+                fit = [k for k in own if trials[k] and not refused[k] and len(trials[k]) < MOST_MEMBERS]
                 fit = [k for k in fit if trials[k][0].wall_seconds < 0.8 * left]
                 if not fit:
                     return
@@ -138,12 +142,26 @@ def measure(
             if not any(trials):
                 raise
             status = "interrupted"
+    refused = [refused[k] for k in first]
     if not any(trials):
         why = next((reason for reason in refused if reason), "no run fits into it")
         raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")
     tell(1.0, "done")
     title = f"Speed against accuracy: {getattr(module, 'title', scene)}"
     return _dataset(scene, ways, trials, refused, budget, title, command or f"atmosbox tradeoff {scene}", row, status)
+
+
+def _first_alike(ways: Sequence[Rung], settings: Any) -> list[int]:
+    """Return, for each way of running, the first that is the same: two series may cross, and share a run."""
+    found: dict[str, int] = {}
+    first = []
+    for k, way in enumerate(ways):
+        try:
+            changed = settings.from_user(dict(way.settings)).changed()
+        except AtmosboxError:  # refused when its turn comes
+            changed = dict(way.settings)
+        first.append(found.setdefault(json.dumps([way.engine, changed], sort_keys=True, default=str), k))
+    return first
 
 
 def _dataset(
