@@ -14,14 +14,14 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
+from atmosbox.version import __version__
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import xarray
 
 __all__ = ["__version__", "run"]
-
-__version__ = "0.1.0"
 
 
 def run(
@@ -84,7 +84,7 @@ def run(
     >>> bool(dataset.air_temperature[-1] < dataset.air_temperature[0])
     True
     """
-    from atmosbox.runner import run as start
+    from atmosbox.run.runner import run as start
 
     return start(
         scene,

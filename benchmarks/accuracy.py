@@ -3,12 +3,12 @@
     python benchmarks/accuracy.py [SCENE ...] [--budget 60s]
     python benchmarks/accuracy.py FILE.nc ...                  from what `atmosbox tradeoff` has measured
 
-Every scene that declares a ladder is measured by `atmosbox.tradeoff`: each way of running it as often as the budget
-allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard error, and
-the standard deviation of a single run (noise), in K or as a share of the theory; and for each way the processor time
-of its engine as a ratio to that of the scene's default run, both from this measurement. Left out is what ran less than
-four times, so that the scatter of the seeds says little, left the box, or did not close its ledger. Scenes that are
-not named keep what they have.
+Every scene that declares a ladder is measured by `atmosbox.trade.tradeoff`: each way of running it as often as the
+budget allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard
+error, and the standard deviation of a single run (noise), in K or as a share of the theory; and for each way the
+processor time of its engine as a ratio to that of the scene's default run, both from this measurement. Left out is
+what ran less than four times, so that the scatter of the seeds says little, left the box, or did not close its ledger.
+Scenes that are not named keep what they have.
 """
 
 import argparse
@@ -22,18 +22,20 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from atmosbox import engines, scenarios, tradeoff  # noqa: E402
-from atmosbox.accuracy import said  # noqa: E402
+from atmosbox import scenarios  # noqa: E402
 from atmosbox.errors import AtmosboxError  # noqa: E402
-from atmosbox.output import read  # noqa: E402
-from atmosbox.provenance import parameters  # noqa: E402
-from atmosbox.quantity import parse_quantity  # noqa: E402
-from atmosbox.runner import LEDGER_LIMIT  # noqa: E402
-from atmosbox.tradeoff.trial import PROFILES  # noqa: E402
+from atmosbox.file.netcdf import read  # noqa: E402
+from atmosbox.file.provenance import parameters  # noqa: E402
+from atmosbox.run.accuracy import said  # noqa: E402
+from atmosbox.run.runner import LEDGER_LIMIT  # noqa: E402
+from atmosbox.scene import engines  # noqa: E402
+from atmosbox.scene.quantity import parse_quantity  # noqa: E402
+from atmosbox.trade import tradeoff  # noqa: E402
+from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
 
-TABLE = ROOT / "atmosbox" / "accuracy.json"
+TABLE = ROOT / "atmosbox" / "run" / "accuracy" / "accuracy.json"
 FEWEST = 4
-"""Runs below which `atmosbox.tradeoff` takes the noise from the runs' own error bars and not from their scatter."""
+"""Runs below which the noise is taken from the runs' own error bars and not from their scatter."""
 
 
 def varies(module: Any) -> list[str]:

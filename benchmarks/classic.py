@@ -23,10 +23,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from atmosbox.engine import ParcelSet, Periodic, Specular
-from atmosbox.engine.classic import SCHEMES, ClassicParcel
-from atmosbox.engine.parcel import Parcel
-from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine import Parcel, ParcelSet, Periodic, Specular, maxwell_velocities, random_positions
+from atmosbox.engine.classic.classic import SCHEMES, ClassicParcel
 
 PILOT = 0.04  # the step, in delta, at which it is measured by how much Z - 1 is low
 RATE = {0.01: 0.138854, 0.1: 1.765845}  # collisions of a molecule per reduced time

@@ -27,7 +27,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from atmosbox.engine import HeatBath, Periodic, Specular
-from atmosbox.engine.dsmc_parcel import DsmcParcel
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 
 OCCUPANCY, PATH, STEP, HEIGHTS = 10.0, 2.0, 0.14, 2.0  # molecules, cell sides, mean free times, scale heights
 SIDES = {"specular": (Specular(),) * 4, "periodic": (Periodic(),) * 4}

@@ -24,8 +24,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from atmosbox.engine import HeatBath, ParcelSet, Periodic
-from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine import HeatBath, ParcelSet, Periodic, maxwell_velocities, random_positions
 
 RATE = {0.01: 0.138854, 0.1: 1.765845}  # collisions of a molecule per reduced time
 

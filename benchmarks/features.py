@@ -241,7 +241,8 @@ def time_on(asked: argparse.Namespace) -> dict[str, dict[str, Any]]:
 
 def scene(name: str, instrument: str, small: bool) -> tuple[Any, Callable[[bool], None]]:
     """Return the set-up of a scene, and a function that makes one frame, with an instrument or without it."""
-    from atmosbox import instruments, runner
+    from atmosbox.run import runner
+    from atmosbox.scene import instruments
 
     prepared = runner.prepare(name, {"molecules": 60} if small else {})
     setup = prepared.module.build(prepared.settings)
@@ -364,7 +365,7 @@ def middle(values: list[float]) -> tuple[float, float]:
 
 def measure(asked: argparse.Namespace) -> dict[str, Any]:
     """Measure everything, in many processes."""
-    from atmosbox.engine.state import Modes
+    from atmosbox.engine.core.state import Modes
 
     hasty = {"repeats": 1, "span": 1.0}
     with tempfile.TemporaryDirectory() as name:

@@ -28,8 +28,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from dsmc import OCCUPANCY, Ours
 
-from atmosbox.engine import dsmc_parcel
-from atmosbox.engine.dsmc_parcel import DsmcParcel
+from atmosbox.engine.dsmc import dsmc_parcel
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 
 BITS = (64, 32)
 ENERGY_STEPS = 300

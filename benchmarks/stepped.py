@@ -25,10 +25,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from atmosbox.engine import HeatBath, Specular
-from atmosbox.engine.refusal import CoarseStepWarning
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.stepped_parcel import SteppedParcel
+from atmosbox.engine import CoarseStepWarning, HeatBath, Specular, maxwell_velocities, random_positions
+from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 
 WARM_UP = 70
 HEIGHT = 1.0  # of the box, in scale heights

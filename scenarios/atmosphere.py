@@ -20,17 +20,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.walls import HeatBath, Periodic, Specular
-from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.headline import Headline
-from atmosbox.instruments import Air, Layers
-from atmosbox.knob import gravity, wall_temperature
-from atmosbox.panels import Line, Panel
-from atmosbox.scene import Series, Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average
-from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+from atmosbox.engine import HeatBath, Periodic, Specular, maxwell_velocities, random_positions
+from atmosbox.scene import (
+    Air,
+    EngineChoice,
+    Headline,
+    Layers,
+    Line,
+    Panel,
+    Scale,
+    SceneSettings,
+    Series,
+    Setup,
+    block_average,
+    setting,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -17,20 +17,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.liquid import Drops, Liquid, Mist
-from atmosbox.engine.start import random_positions
-from atmosbox.engine.walls import HeatBath
-from atmosbox.engines import EXACT, EngineChoice, used
+from atmosbox.engine import Drops, HeatBath, Liquid, Mist, random_positions
 from atmosbox.errors import SettingError
-from atmosbox.exchange import MoistBox, history
-from atmosbox.headline import CHANCE_ALONE, Headline
-from atmosbox.instruments import Air, DropSizes, Water
-from atmosbox.knob import wall_temperature
-from atmosbox.moisture import moist_air, nuclei_heat_capacity, water
-from atmosbox.panels import Panel
-from atmosbox.scene import Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average, short_blocks
+from atmosbox.scene import (
+    Air,
+    DropSizes,
+    EngineChoice,
+    Headline,
+    Panel,
+    SceneSettings,
+    Setup,
+    Water,
+    block_average,
+    setting,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.exchange import MoistBox, history
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.knob import wall_temperature
+from atmosbox.scene.moisture import moist_air, nuclei_heat_capacity, water
+from atmosbox.scene.statistics import short_blocks
 
 if TYPE_CHECKING:
     import xarray as xr

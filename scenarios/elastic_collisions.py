@@ -14,15 +14,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from atmosbox.engine.start import equal_speeds, random_positions
-from atmosbox.engines import EXACT, EngineChoice
-from atmosbox.headline import Headline
-from atmosbox.instruments import Air, Discs
-from atmosbox.panels import Line, Panel
-from atmosbox.scene import Series, Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average
-from atmosbox.units import Scale
+from atmosbox.engine import equal_speeds, random_positions
+from atmosbox.scene import (
+    Air,
+    Discs,
+    EngineChoice,
+    Headline,
+    Line,
+    Panel,
+    Scale,
+    SceneSettings,
+    Series,
+    Setup,
+    block_average,
+    setting,
+)
+from atmosbox.scene.engines import EXACT
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,20 +18,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.lift import FollowPressure
-from atmosbox.engine.liquid import Pool
-from atmosbox.engines import EXACT, EngineChoice, used
+from atmosbox.engine import FollowPressure, Pool
 from atmosbox.errors import SettingError
-from atmosbox.exchange import AirOverPool, energy_of_those_that_leave, history, temperature_of_those_that_left
-from atmosbox.headline import CHANCE_ALONE, Headline
-from atmosbox.instruments import Air, Leaving, Water
-from atmosbox.moisture import water
-from atmosbox.panels import Line, Panel
-from atmosbox.piston import moist_parcel
-from atmosbox.scene import Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average, short_blocks
-from atmosbox.units import BOLTZMANN, DRY_AIR
+from atmosbox.scene import (
+    Air,
+    EngineChoice,
+    Headline,
+    Leaving,
+    Line,
+    Panel,
+    SceneSettings,
+    Setup,
+    Water,
+    block_average,
+    setting,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, history, temperature_of_those_that_left
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.moisture import water
+from atmosbox.scene.piston import moist_parcel
+from atmosbox.scene.statistics import short_blocks
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -19,19 +19,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.lift import FollowPressure
-from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
-from atmosbox.engine.walls import Piston, Specular
-from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.headline import Headline
-from atmosbox.instruments import Air, Environment, Lift
-from atmosbox.knob import altitude
-from atmosbox.panels import Line, Panel
-from atmosbox.piston import CLOSING, size_of_parcel
-from atmosbox.rising import misfit_panel, refuse_descent
-from atmosbox.scene import Series, Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+from atmosbox.engine import FollowPressure, Piston, Specular, maxwell_velocities, random_positions, rotational_energies
+from atmosbox.scene import (
+    Air,
+    EngineChoice,
+    Environment,
+    Headline,
+    Lift,
+    Line,
+    Panel,
+    Scale,
+    SceneSettings,
+    Series,
+    Setup,
+    setting,
+)
+from atmosbox.scene.ascent import misfit_panel, refuse_descent
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.knob import altitude
+from atmosbox.scene.piston import CLOSING, size_of_parcel
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
     import xarray as xr

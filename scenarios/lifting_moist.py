@@ -20,10 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.headline import Headline
-from atmosbox.panels import Panel
-from atmosbox.rising import (
+from atmosbox.scene import EngineChoice, Headline, Panel, SceneSettings, Series, Setup, setting
+from atmosbox.scene.ascent import (
     MoistAscent,
     lifted_headlines,
     lifted_panels,
@@ -32,8 +30,7 @@ from atmosbox.rising import (
     refuse_supersaturation,
     rise,
 )
-from atmosbox.scene import Series, Setup
-from atmosbox.settings import SceneSettings, setting
+from atmosbox.scene.engines import EXACT, used
 
 if TYPE_CHECKING:
     import xarray as xr

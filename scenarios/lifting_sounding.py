@@ -18,15 +18,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from atmosbox import sounding as air
 from atmosbox import theory as law
-from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.headline import Headline
-from atmosbox.panels import Line, Panel
-from atmosbox.rising import MoistAscent, error, lifted_headlines, lifted_theory, misfit_panel, refuse_descent, rise
-from atmosbox.scene import Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import running_mean, successive_error
+from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Setup, setting
+from atmosbox.scene import sounding as air
+from atmosbox.scene.ascent import (
+    MoistAscent,
+    finite_size,
+    lifted_headlines,
+    lifted_theory,
+    misfit_panel,
+    refuse_descent,
+    rise,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.statistics import running_mean, successive_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -175,8 +180,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     route = np.array(ascent.route)
     along = np.interp(-np.log(route), -np.log(pressure), smooth)
     noise = np.interp(-np.log(route), -np.log(pressure), successive_error(misfit, block=SMOOTH, near=8))
-    noise = np.hypot(noise, error.walk(ascent, route) * ascent.planned[1].temperature)
-    off = np.array([error.tolerance(ascent, p, ideal=ideal) for p in route[::4]])
+    noise = np.hypot(noise, finite_size.walk(ascent, route) * ascent.planned[1].temperature)
+    off = np.array([finite_size.tolerance(ascent, p, ideal=ideal) for p in route[::4]])
     off = np.interp(-np.log(route), -np.log(route[::4]), off)
     here, expected = _convection(settings, along), _convection(settings)
     colder, warmer = _convection(settings, along - noise), _convection(settings, along + noise)

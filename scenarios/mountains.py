@@ -17,14 +17,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engines import EXACT, EngineChoice
 from atmosbox.errors import SettingError
-from atmosbox.headline import CHANCE_ALONE, Headline
-from atmosbox.panels import Line, Panel
-from atmosbox.rising import MoistAscent, error, lifted_theory, refuse_supersaturation, rise
-from atmosbox.scene import Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import successive_error
+from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Setup, setting
+from atmosbox.scene.ascent import MoistAscent, finite_size, lifted_theory, refuse_supersaturation, rise
+from atmosbox.scene.engines import EXACT
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.statistics import successive_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -129,18 +127,18 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     arrival = float(path.temperature[-1])
     late = slice(-BLOCK, None)
     cold = float(path.temperature.min())
-    lost = error.rain_scatter(ascent) if "rain_mixing_ratio" in dataset else 0.0
-    noise = successive_error(misfit, block=BLOCK)[-1], error.walk(ascent, pressure)[-1] * arrival
-    scatter = math.hypot(*noise, error.warmth_of(lost, cold))
+    lost = finite_size.rain_scatter(ascent) if "rain_mixing_ratio" in dataset else 0.0
+    noise = successive_error(misfit, block=BLOCK)[-1], finite_size.walk(ascent, pressure)[-1] * arrival
+    scatter = math.hypot(*noise, finite_size.warmth_of(lost, cold))
     humidity = float(law.vapor_pressure(ascent.pressure, path.vapor[-1]) / law.saturation_vapor_pressure(arrival))
-    hurried = ascent.temperature * error.haste(ascent).finite_speed(ascent.top_pressure)
+    hurried = ascent.temperature * finite_size.haste(ascent).finite_speed(ascent.top_pressure)
     found = [
         Headline(
             "arrival_temperature",
             arrival + float(misfit[late].mean()),
             scatter,
-            arrival if error.comparable(ascent) else None,
-            hurried + error.haze(ascent, humidity, 0.0, arrival),
+            arrival if finite_size.comparable(ascent) else None,
+            hurried + finite_size.haze(ascent, humidity, 0.0, arrival),
             "the way is not infinitely slow, and some molecules are clustered in clear air",
             "K",
             "degC",
@@ -153,7 +151,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
                 "rain",
                 float(dataset.rain_mixing_ratio[-1]),
                 lost,
-                float(path.rain[-1]) if error.comparable(ascent) else None,
+                float(path.rain[-1]) if finite_size.comparable(ascent) else None,
                 0.0,
                 CHANCE_ALONE,
                 "kg kg-1",

@@ -17,17 +17,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions
-from atmosbox.engine.walls import HeatBath
-from atmosbox.engines import EXACT, EngineChoice, used
-from atmosbox.headline import CHANCE_ALONE, Headline
-from atmosbox.instruments import Air, Speeds
-from atmosbox.knob import wall_temperature
-from atmosbox.panels import Line, Panel
-from atmosbox.scene import Series, Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average
-from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+from atmosbox.engine import HeatBath, equal_speeds, maxwell_velocities, random_positions
+from atmosbox.scene import (
+    Air,
+    EngineChoice,
+    Headline,
+    Line,
+    Panel,
+    Scale,
+    SceneSettings,
+    Series,
+    Setup,
+    Speeds,
+    block_average,
+    setting,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.knob import wall_temperature
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
     import xarray as xr

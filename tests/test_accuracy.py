@@ -18,14 +18,19 @@ from scipy import stats
 from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox import accuracy, engines, output, provenance, runner, scenarios
-from atmosbox.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choice, choose, expect, parse
+from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli.expectation import expectation_lines
 from atmosbox.cli.report import headline_lines
 from atmosbox.errors import SettingError
-from atmosbox.headline import Headline
-from atmosbox.tradeoff import Rung, trial
+from atmosbox.file import netcdf as output
+from atmosbox.file import provenance
+from atmosbox.run import accuracy, runner
+from atmosbox.run.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
+from atmosbox.run.accuracy import cheapest as cheapest_of
+from atmosbox.scene import engines
+from atmosbox.scene.headline import Headline
+from atmosbox.trade.tradeoff import Rung, timed_run
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -60,7 +65,7 @@ TABLES = {
 @pytest.fixture
 def hand_made(monkeypatch):
     """Let the hand-made table be the one that comes with atmosbox."""
-    monkeypatch.setattr(choice, "load", lambda: TABLES)
+    monkeypatch.setattr(cheapest_of, "load", lambda: TABLES)
 
 
 def command(*words):
@@ -378,7 +383,7 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     errors["mean_pressure"] = ExpectedError("1", 0.01, 0.002, 0.05, 1e5)
     known = Measured("classic:delta=8", settings, 0.1, 8, errors)
     tables = {"temperature": Table(("duration", "molecules"), LABELS, (known,))}
-    monkeypatch.setattr(choice, "load", lambda: tables)
+    monkeypatch.setattr(cheapest_of, "load", lambda: tables)
     outcome = runner.execute(runner.prepare("temperature", settings, engine="classic:delta=8"))
     found = {one.name: one for one in outcome.headlines}
     assert (found["mean_temperature"].bias, found["mean_temperature"].bias_se) == (-3.0, 0.5)
@@ -433,7 +438,7 @@ def hold(scene, held, members):
     rung = Rung(held.engine, held.settings, 0, 0.0)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
-        runs = [trial.run(scene, rung, 100_000 + seed, lambda share, word: None) for seed in range(members)]
+        runs = [timed_run.run(scene, rung, 100_000 + seed, lambda share, word: None) for seed in range(members)]
     tail = stats.norm.sf(4.0)
     for name, known in held.errors.items():
         errors = np.array([float(run.error[name][0]) for run in runs])

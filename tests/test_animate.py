@@ -11,21 +11,22 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox import film, output
+from atmosbox import film
 from atmosbox.cli import app
 from atmosbox.errors import FileError, SettingError
+from atmosbox.file import netcdf as output
 from atmosbox.film import encoder
-from atmosbox.film.box import Box, box
-from atmosbox.film.file import sized
+from atmosbox.film.camera import FACES, View, corners
+from atmosbox.film.film_box import Box, box
+from atmosbox.film.film_file import sized
+from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.graph import chosen
 from atmosbox.film.pace import MOST, pace
 from atmosbox.film.running import Running
-from atmosbox.film.sheet import Sheet
 from atmosbox.film.stage import legend
-from atmosbox.film.view import FACES, View, corners
-from atmosbox.panels import Line, Panel, to_json
 from atmosbox.plot.layout import panels_of
 from atmosbox.plot.theme import find, style
+from atmosbox.scene.panels import Line, Panel, to_json
 
 LOOK = sized(find("notes"), "gif")
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from atmosbox import engines, extremes
 from atmosbox.cli import app
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.refusal import RefusedError
-from atmosbox.extremes import EXTREMES, Extreme, Finding, Trial, Verdict, assess, degraded, examine, judged
-from atmosbox.extremes.catalogue import FAMILIES
+from atmosbox.engine import ParcelSet, RefusedError
+from atmosbox.scene import engines
+from atmosbox.trade import extremes
+from atmosbox.trade.extremes import EXTREMES, Extreme, Finding, Trial, Verdict, assess, degraded, examine, judged
+from atmosbox.trade.extremes.catalogue import FAMILIES
 
 SLOW = {"cold-floor", "frozen-walls", "hot-and-cold", "packing-0.49", "packing-0.58", "packing-0.64", "size-ratio"}
 """What takes engines that go in steps more than a second or two."""

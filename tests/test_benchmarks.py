@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.state import Modes
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.core.state import Modes
 
 ROOT = Path(__file__).resolve().parents[1]
 LIQUID = {"phases", "pool", "drops"}  # what liquid does is in kernels of its own, which a gas never loads

@@ -12,11 +12,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from atmosbox.checkpoint import Checkpoint
-from atmosbox.diagnostics import dataset
 from atmosbox.errors import DiskFullError, FileError
-from atmosbox.output import read, write
-from atmosbox.provenance import global_attributes
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.dataset import dataset
+from atmosbox.file.netcdf import read, write
+from atmosbox.file.provenance import global_attributes
 
 
 def run_so_far(frames):
@@ -28,9 +28,9 @@ def run_so_far(frames):
 CHILD = f"""
 import os, sys, time
 import numpy as np
-from atmosbox.checkpoint import Checkpoint
-from atmosbox.diagnostics import dataset
-from atmosbox.provenance import global_attributes
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.dataset import dataset
+from atmosbox.file.provenance import global_attributes
 
 {inspect.getsource(run_so_far)}
 """
@@ -81,7 +81,7 @@ def test_a_checkpoint_waits_and_takes_less_than_a_twentieth_of_the_time(tmp_path
         clock.now += cost
         clock.writing += cost
 
-    monkeypatch.setattr("atmosbox.checkpoint.replace_file", slow)
+    monkeypatch.setattr("atmosbox.file.checkpoint.replace_file", slow)
     while clock.now < 1100.0:
         clock.now += 0.01
         checkpoint(lambda: None)

@@ -18,13 +18,16 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox import output, provenance, runner, scenarios
+from atmosbox import scenarios
 from atmosbox.cli import app, check, progress, report, table, terminal
 from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.request import Request
 from atmosbox.cli.run import FIGURES
 from atmosbox.errors import EngineError
-from atmosbox.headline import Headline
+from atmosbox.file import netcdf as output
+from atmosbox.file import provenance
+from atmosbox.run import runner
+from atmosbox.scene.headline import Headline
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ("list", "info", "run", "plot", "check")

@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from atmosbox import runner, scenarios
+from atmosbox import scenarios
 from atmosbox.cli import app
+from atmosbox.run import runner
 
 NAMES = sorted({p.name for name in scenarios.names() for p in scenarios.load(name).Settings.describe()})
 

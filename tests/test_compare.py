@@ -11,14 +11,14 @@ from matplotlib.colors import to_hex
 from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox import output
 from atmosbox.cli import app
 from atmosbox.cli.compare import beside
-from atmosbox.compare import compared, naming
 from atmosbox.errors import FileError
-from atmosbox.panels import Line, Panel, to_json
+from atmosbox.file import netcdf as output
 from atmosbox.plot import comparison
+from atmosbox.plot.compare import compared, naming
 from atmosbox.plot.curve import Curve
+from atmosbox.scene.panels import Line, Panel, to_json
 
 SMALL = {"molecules": 100, "ascent": 20.0}
 

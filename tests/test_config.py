@@ -4,9 +4,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atmosbox.config import load_config, parse_set
+from atmosbox.cli.config import load_config, parse_set
 from atmosbox.errors import ConfigError, FileError, SettingError
-from atmosbox.settings import SceneSettings, setting
+from atmosbox.scene.settings import SceneSettings, setting
 
 
 class Settings(SceneSettings):

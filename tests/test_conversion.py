@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atmosbox.conversion import from_si, to_si
 from atmosbox.errors import UnitError
+from atmosbox.scene.conversion import from_si, to_si
 
 KNOWN_BY_HEART = {
     # unit: (the unit in pint's words, SI unit in pint's words)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atmosbox.declaration import SUFFIXES, Variable, derived
+from atmosbox.file.declaration import SUFFIXES, Variable, derived
 
 PATH = Variable("molecule_position", ("elapsed_time", "molecule", "axis"), "m", "position of the molecule", dtype="f4")
 HEIGHT = Variable("height", ("height",), "m", "height of the middle of the layer", "height", axis="Z", positive="up")

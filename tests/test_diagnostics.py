@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from atmosbox.diagnostics import dataset, headline_variables
 from atmosbox.errors import EngineError
+from atmosbox.file.dataset import dataset, headline_variables
 
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 

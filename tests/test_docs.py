@@ -12,8 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from atmosbox import runner, scenarios
-from atmosbox.output import read
+from atmosbox import scenarios
+from atmosbox.file.netcdf import read
+from atmosbox.run import runner
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"

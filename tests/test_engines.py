@@ -6,12 +6,11 @@ import warnings
 import pytest
 from typer.testing import CliRunner
 
-from atmosbox import runner
 from atmosbox.cli import app
-from atmosbox.engine import Parcel
-from atmosbox.engine.refusal import CoarseStepWarning
-from atmosbox.engines import ENGINES, EXACT, choose, used
+from atmosbox.engine import CoarseStepWarning, Parcel
 from atmosbox.errors import SettingError, UnknownSettingError
+from atmosbox.run import runner
+from atmosbox.scene.engines import ENGINES, EXACT, choose, used
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -80,7 +79,7 @@ def test_a_scene_without_engines_runs_on_the_exact_one_alone(tmp_path):
     scene = tmp_path / "plain.py"
     scene.write_text(
         '"""A scene."""\n'
-        "from atmosbox.settings import SceneSettings\n"
+        "from atmosbox.scene.settings import SceneSettings\n"
         "class Settings(SceneSettings):\n    pass\n"
         "def build(settings): ...\n"
         "def theory(dataset, settings): ...\n"

@@ -13,12 +13,22 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine.measure import layer_sample, mean_free_path, temperature
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.refusal import PackingError, RefusedError, StalledError
-from atmosbox.engine.start import lattice_positions, maxwell_velocities, packing_fraction, random_positions
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import (
+    HeatBath,
+    PackingError,
+    ParcelSet,
+    Periodic,
+    Piston,
+    RefusedError,
+    Specular,
+    StalledError,
+    lattice_positions,
+    maxwell_velocities,
+    packing_fraction,
+    random_positions,
+)
+from atmosbox.engine.core.measure import layer_sample, mean_free_path, temperature
+from atmosbox.scene.statistics import block_average
 
 S, P = Specular(), Periodic()
 

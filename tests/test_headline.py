@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from atmosbox.headline import Headline
+from atmosbox.scene.headline import Headline
 
 
 def headline(value=10.0, standard_error=1.0, theory=12.0, tolerance=0.0):

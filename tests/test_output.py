@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from atmosbox import output, provenance
-from atmosbox.diagnostics import VARIABLES, dataset
 from atmosbox.errors import DiskFullError, FileError
+from atmosbox.file import netcdf as output
+from atmosbox.file import provenance
+from atmosbox.file.dataset import VARIABLES, dataset
 
 CHECKER = """
 import sys
@@ -27,8 +28,8 @@ sys.exit(failed or not passed)
 CHILD = """
 import os, sys, time
 import numpy as np
-from atmosbox.diagnostics import dataset
-from atmosbox.provenance import global_attributes
+from atmosbox.file.dataset import dataset
+from atmosbox.file.provenance import global_attributes
 
 def run_so_far(frames):
     times = np.arange(1.0, frames + 1)
@@ -351,7 +352,7 @@ def test_another_failure_of_the_disk_is_told_in_a_sentence(tmp_path, monkeypatch
 def test_a_file_that_outgrows_what_the_system_grants_is_a_full_disk(tmp_path):
     code = """
 from atmosbox.errors import DiskFullError
-from atmosbox.output import write
+from atmosbox.file.netcdf import write
 import resource
 resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 try:

@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from atmosbox.panels import DISC_VARIABLES, KINDS, ROLES, Line, Panel, from_json, to_json
+from atmosbox.scene.panels import DISC_VARIABLES, KINDS, ROLES, Line, Panel, from_json, to_json
 
 AIR = Line("elapsed_time", "air_temperature", "air", error="air_temperature_se")
 WALL = Line("elapsed_time", "wall_temperature[z_low]", "wall", "theory")

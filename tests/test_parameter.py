@@ -3,7 +3,7 @@
 import pytest
 
 from atmosbox.errors import SettingError, UnitError
-from atmosbox.parameter import Parameter
+from atmosbox.scene.parameter import Parameter
 
 SWITCH = Parameter("rotation", "", True, None, None, None, "whether molecules rotate", "bool")
 COUNT = Parameter("molecules", "1", 4000, 1, 10_000_000, None, "number of simulated molecules", "int")

@@ -21,9 +21,9 @@ from matplotlib.patches import StepPatch
 
 from atmosbox import plot, scenarios
 from atmosbox.errors import DiskFullError, FileError, SettingError
-from atmosbox.panels import Line, Panel, to_json
 from atmosbox.plot import caption, tick, unit
 from atmosbox.plot.curve import curve
+from atmosbox.scene.panels import Line, Panel, to_json
 
 K_B = 1.380649e-23  # J/K
 AIR = 28.9647e-3 / 6.02214076e23  # kg

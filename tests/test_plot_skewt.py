@@ -16,9 +16,9 @@ from matplotlib.text import Text
 
 from atmosbox import plot, theory
 from atmosbox.errors import FileError
-from atmosbox.panels import Line, Panel, from_json, to_json
 from atmosbox.plot.skewt import levels
-from atmosbox.sounding import weisman_klemp
+from atmosbox.scene.panels import Line, Panel, from_json, to_json
+from atmosbox.scene.sounding import weisman_klemp
 
 FRAMES = 80
 CURVES = (

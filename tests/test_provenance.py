@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from atmosbox.errors import FileError, SettingError
-from atmosbox.provenance import FORMAT, global_attributes, history_line, parameters
+from atmosbox.file.provenance import FORMAT, global_attributes, history_line, parameters
 
 
 def attributes():

@@ -11,7 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from atmosbox.errors import SettingError, UnitError
-from atmosbox.quantity import parse_quantity, parse_whole, phrase, typed
+from atmosbox.scene.quantity import parse_quantity, parse_whole, phrase, typed
 
 UNITS = [
     "1", "%", "kg kg-1", "g kg-1", "K", "degC", "Pa", "hPa", "kPa", "m", "km", "cm", "mm", "um", "nm", "s",
@@ -343,7 +343,7 @@ def test_reading_in_another_unit_and_back_is_the_same_number(value, pair):
 def test_pint_is_imported_only_for_a_unit_that_is_not_known_by_heart():
     script = (
         "import sys\n"
-        "from atmosbox.conversion import to_si\nfrom atmosbox.quantity import parse_quantity\n"
+        "from atmosbox.scene.conversion import to_si\nfrom atmosbox.scene.quantity import parse_quantity\n"
         "parse_quantity('25 °C', 'K', 'x'), parse_quantity('9.8 m/s^2', 'm s-2', 'x'), to_si(1.0, 'K/km')\n"
         "assert not {'pint', 'numpy', 'pydantic'} & set(sys.modules)\n"
         "parse_quantity('77 degF', 'degC', 'x')\n"

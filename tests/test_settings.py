@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from pydantic import Field, ValidationError
 
 from atmosbox.errors import SettingError, UnitError, UnknownSettingError
-from atmosbox.parameter import Parameter
-from atmosbox.settings import SceneSettings, setting
+from atmosbox.scene.parameter import Parameter
+from atmosbox.scene.settings import SceneSettings, setting
 
 
 class Settings(SceneSettings):
@@ -282,7 +282,7 @@ def test_a_scene_that_is_run_by_its_path_may_postpone_annotations(tmp_path):
     path = tmp_path / "my_scene.py"
     path.write_text(
         "from __future__ import annotations\n"
-        "from atmosbox.settings import SceneSettings, setting\n"
+        "from atmosbox.scene.settings import SceneSettings, setting\n"
         "class Settings(SceneSettings):\n"
         "    temperature: float = setting(15.0, 'degC', 'temperature', low=-100.0, high=500.0)\n"
     )
@@ -294,7 +294,7 @@ def test_a_scene_that_is_run_by_its_path_may_postpone_annotations(tmp_path):
 
 def test_importing_the_settings_imports_nothing_heavy():
     script = (
-        "import sys, atmosbox.settings\n"
+        "import sys, atmosbox.scene.settings\n"
         "assert not {'pint', 'numpy', 'scipy', 'numba', 'xarray', 'metpy'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[1], check=True, timeout=60)

@@ -12,16 +12,17 @@ from pathlib import Path
 import pypdf
 import pytest
 
-from atmosbox import runner, scenarios
+from atmosbox import scenarios
 from atmosbox import sheet as sheets
 from atmosbox.errors import ConfigError, FileError, PhysicsError, SettingError
+from atmosbox.run import runner
 from atmosbox.sheet.arithmetic import Measured, filled
 from atmosbox.sheet.block import Answer, Blank, Commands, Kept, Measurements, Text
 from atmosbox.sheet.markdown import markdown
+from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
 from atmosbox.sheet.pdf import PAPERS, load_fonts, pdf
+from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.text import SECTIONS, read, text_of
-from atmosbox.sheet.trial import Trial, execute, trials
-from atmosbox.sheet.wording import bare, measured, spelled, theoretical
 
 ROOT = Path(__file__).resolve().parents[1]
 NAMES = scenarios.names()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from atmosbox.spelling import nearest
+from atmosbox.scene.spelling import nearest
 
 
 @pytest.mark.parametrize(

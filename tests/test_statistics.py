@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 
 def test_the_error_of_independent_values_is_that_of_their_mean():

@@ -19,11 +19,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from atmosbox import runner, scenarios
+from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli.check import conventions
 from atmosbox.errors import DiskFullError, FileError, SettingError, UnitError, UnknownSettingError
-from atmosbox.output import part_path, read, write
+from atmosbox.file.netcdf import part_path, read, write
+from atmosbox.run import runner
 from atmosbox.sweep import SweepInterrupted, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.result import assemble, mean_and_error
@@ -37,11 +38,11 @@ import signal
 import time
 from pathlib import Path
 
-from atmosbox.engines import EXACT
+from atmosbox.scene.engines import EXACT
 from atmosbox.errors import EngineError, SettingError
 from atmosbox.scenarios import elastic_collisions as discs
 from atmosbox.scenarios.elastic_collisions import headlines, panels, theory
-from atmosbox.settings import setting
+from atmosbox.scene.settings import setting
 
 title = "Discs"
 assert headlines and panels and theory

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from atmosbox.errors import EngineError, SettingError
-from atmosbox.output import read
+from atmosbox.file.netcdf import read
 from atmosbox.sweep import SweepInterrupted, cluster, plan, sweep
 
 distributed = pytest.importorskip("distributed")
@@ -19,7 +19,7 @@ SCENE = '''"""Discs that leave a file for each run they begin."""
 import time
 from pathlib import Path
 
-from atmosbox.engines import EXACT
+from atmosbox.scene.engines import EXACT
 from atmosbox.scenarios.elastic_collisions import Settings, headlines, panels, theory
 from atmosbox.scenarios import elastic_collisions as discs
 

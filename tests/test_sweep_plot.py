@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from atmosbox.errors import FileError
-from atmosbox.output import read, write
+from atmosbox.file.netcdf import read, write
 from atmosbox.plot import save
-from atmosbox.plot.sweep import figure, is_sweep
+from atmosbox.plot.sweep_figure import figure, is_sweep
 from atmosbox.sweep import plan
 from atmosbox.sweep.result import assemble
 

@@ -13,11 +13,11 @@ from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli import tradeoff as command
 from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.output import read, write
+from atmosbox.file.netcdf import read, write
 from atmosbox.plot import save
-from atmosbox.scene import Series
-from atmosbox.tradeoff import Rung, measure, rungs, trial
-from atmosbox.tradeoff.measure import _summary
+from atmosbox.scene.setup import Series
+from atmosbox.trade.tradeoff import Rung, measure, rungs, timed_run
+from atmosbox.trade.tradeoff.measured_trade import _summary
 
 QUICK = (
     Series("exact", "ascent", (20, 40), {"molecules": 100}, {"temperature_at_700_hpa": -1.0}),
@@ -94,7 +94,7 @@ def test_a_measurement_has_errors_beside_costs(found):
 
 
 def test_the_same_seeds_give_the_same_errors(monkeypatch):
-    monkeypatch.setattr(sys.modules["atmosbox.tradeoff.measure"], "MOST_MEMBERS", 1)
+    monkeypatch.setattr(sys.modules["atmosbox.trade.tradeoff.measured_trade"], "MOST_MEMBERS", 1)
     first, second = (measure("lifting-dry", ladder=rungs(QUICK, {})[:1], budget=10.0) for _ in range(2))
     assert first.members.values.tolist() == [1]
     assert np.array_equal(first.bias.values, second.bias.values, equal_nan=True)
@@ -103,8 +103,8 @@ def test_the_same_seeds_give_the_same_errors(monkeypatch):
 
 def test_two_series_that_cross_share_a_run(monkeypatch):
     asked = []
-    run = trial.run
-    monkeypatch.setattr(trial, "run", lambda scene, rung, *rest: asked.append(rung) or run(scene, rung, *rest))
+    run = timed_run.run
+    monkeypatch.setattr(timed_run, "run", lambda scene, rung, *rest: asked.append(rung) or run(scene, rung, *rest))
     default = scenarios.load("elastic-collisions").Settings().molecules
     ladder = [
         Rung("exact", {"duration": 2}, 0, 2.0),

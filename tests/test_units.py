@@ -4,16 +4,8 @@ import math
 
 import pytest
 
-from atmosbox.units import (
-    AVOGADRO,
-    BOLTZMANN,
-    DRY_AIR,
-    GAS_CONSTANT,
-    STANDARD_GRAVITY,
-    WATER,
-    Scale,
-    Species,
-)
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER, Species
 
 
 def test_the_constants_are_those_of_the_si():

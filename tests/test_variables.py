@@ -2,7 +2,7 @@
 
 import pytest
 
-from atmosbox.variables import VARIABLES, variable
+from atmosbox.file.variables import VARIABLES, variable
 
 DIMENSIONS = {"elapsed_time", "height", "speed", "energy", "wall", "molecule", "drop", "axis"}
 

@@ -34,7 +34,7 @@ def animate(
     AtmosboxError
         If something is refused or fails.
     """
-    from atmosbox.output import read
+    from atmosbox.file.netcdf import read
 
     dataset = read(file)
     path = Path(file).with_suffix(f".{format or 'gif'}") if out is None else Path(out)

@@ -31,7 +31,7 @@ def examples(*lines: str) -> str:
 def _version(wanted: bool) -> None:
     """Say the version and end."""
     if wanted:
-        from atmosbox import __version__
+        from atmosbox.version import __version__
 
         say(f"atmosbox {__version__}")
         raise typer.Exit

@@ -19,7 +19,7 @@ from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.errors import PhysicsError, SettingError
 
 if TYPE_CHECKING:
-    from atmosbox.extremes import Finding
+    from atmosbox.trade.extremes import Finding
 
 CONVENTION = "cf:1.11"
 CHECKER = "compliance-checker"
@@ -101,8 +101,8 @@ def check(file: str | None, *, as_json: bool, misplaced: Sequence[tuple[str, obj
         fix = "give the file of a run, or --extremes for the engines"
         raise SettingError("check", None, "does not know what to verify", fix)
 
-    from atmosbox import runner
-    from atmosbox.output import read
+    from atmosbox.file.netcdf import read
+    from atmosbox.run import runner
 
     checks = runner.verify(read(file))
     cf = conventions(Path(file))
@@ -148,9 +148,9 @@ def check_extremes(
         fix = f"give atmosbox check {file}, or atmosbox check --extremes"
         raise SettingError("--extremes", None, "is about the engines and not about a file", fix)
 
-    from atmosbox import engines as registry
-    from atmosbox.extremes import EXTREMES, assess
-    from atmosbox.spelling import nearest
+    from atmosbox.scene import engines as registry
+    from atmosbox.scene.spelling import nearest
+    from atmosbox.trade.extremes import EXTREMES, assess
 
     chosen = [registry.choose(name) for name in engines or registry.names()]
     for name in only or ():

@@ -13,7 +13,7 @@ from atmosbox.cli.terminal import say, say_json, tell, width
 from atmosbox.errors import SettingError
 
 if TYPE_CHECKING:
-    from atmosbox.compare import Compared, Naming
+    from atmosbox.plot.compare import Compared, Naming
 
 _LONGEST = 100  # characters of a name that is made of those of all files
 
@@ -44,13 +44,13 @@ def compare(
     """
     if len(files) < 2:
         raise SettingError("FILE", None, "is given once", f"give a second run to compare {files[0]} with")
-    from atmosbox.output import check_writable, read
+    from atmosbox.file.netcdf import check_writable, read
 
     kind = (Path(out).suffix[1:].lower() if out else "") if format is None else format
     path = beside(files, kind or "png") if out is None else Path(out)
     datasets = [read(file) for file in files]
 
-    from atmosbox.compare import compared, naming, save
+    from atmosbox.plot.compare import compared, naming, save
 
     names = naming(datasets, [Path(file).stem for file in files])
     numbers = compared(datasets)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.accuracy import TARGETS, cost, said
 from atmosbox.cli.table import table, wrapped
+from atmosbox.run.accuracy import TARGETS, cost, said
 
 if TYPE_CHECKING:
-    from atmosbox.accuracy import Expectation, ExpectedError, Wish
-    from atmosbox.headline import Headline
+    from atmosbox.run.accuracy import Expectation, ExpectedError, Wish
+    from atmosbox.scene.headline import Headline
 
 
 def expectation_lines(

@@ -60,7 +60,7 @@ def live(
     """
     number = _port(port)
 
-    from atmosbox import runner
+    from atmosbox.run import runner
 
     scene, settings, engine, molecules, accuracy = request.gather()
     with contextlib.redirect_stdout(sys.stderr):
@@ -110,7 +110,7 @@ def _place(out: str | None, scene: str, *, force: bool) -> tuple[Path, str | Non
     """Return the folder of the recordings, and the name of the first."""
     if out is None:
         return Path(), None
-    from atmosbox.output import check_writable
+    from atmosbox.file.netcdf import check_writable
 
     path = check_writable(checked_path(out, scene), force)
     return path.parent, path.name

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.cli.table import digits, measurement, number, table, wrapped
-from atmosbox.conversion import from_si
-from atmosbox.quantity import phrase
+from atmosbox.scene.conversion import from_si
+from atmosbox.scene.quantity import phrase
 
 if TYPE_CHECKING:
-    from atmosbox.headline import Headline
-    from atmosbox.parameter import Parameter
-    from atmosbox.runner import Card, Outcome
+    from atmosbox.run.runner import Card, Outcome
+    from atmosbox.scene.headline import Headline
+    from atmosbox.scene.parameter import Parameter
 
 _VERDICT = {True: "yes", False: "no", None: "-"}
 _ALIKE = {1: "", 2: "both "}
@@ -67,7 +67,7 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
 
     Examples
     --------
-    >>> from atmosbox.headline import Headline
+    >>> from atmosbox.scene.headline import Headline
     >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.0, "none", "K", "degC", "temperature")
     >>> print("\n".join(headline_lines([warm], 100)))
     quantity            measured    theory  misfit       within error?

@@ -64,7 +64,7 @@ class Request:
             If a file or a text cannot be understood, two of them name different scenes, or an accuracy is wished of
             a run whose engine is given.
         """
-        from atmosbox.config import load_config, parse_set
+        from atmosbox.cli.config import load_config, parse_set
 
         scene = self.scene
         settings: dict[str, Any] = {}
@@ -102,9 +102,9 @@ def is_path(scene: str) -> bool:
 
 def _earlier(path: str) -> tuple[str, dict[str, Any], str, bool]:
     """Return scene, settings and engine of the run in a file, and whether it saved molecules."""
-    from atmosbox import __version__
-    from atmosbox.output import read
-    from atmosbox.provenance import parameters
+    from atmosbox.file.netcdf import read
+    from atmosbox.file.provenance import parameters
+    from atmosbox.version import __version__
 
     made = parameters(read(path))
     scene, settings = made.get("scene"), made.get("settings")

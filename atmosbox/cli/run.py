@@ -22,8 +22,8 @@ from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, FileError, PhysicsError
 
 if TYPE_CHECKING:
-    from atmosbox.checkpoint import Checkpoint
-    from atmosbox.runner import Interrupted, Prepared
+    from atmosbox.file.checkpoint import Checkpoint
+    from atmosbox.run.runner import Interrupted, Prepared
 
 TERMINATED = 143  # what a shell reports of a program that was asked to end
 FIGURES = (".png", ".svg", ".pdf")
@@ -84,8 +84,8 @@ def run(
     typer.Exit
         With the status of an interruption, if the run was stopped.
     """
-    from atmosbox import runner
-    from atmosbox.checkpoint import Checkpoint
+    from atmosbox.file.checkpoint import Checkpoint
+    from atmosbox.run import runner
 
     scene, settings, engine, molecules, accuracy = request.gather()
     with _own_prints_to_stderr():
@@ -130,7 +130,7 @@ def run(
 
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:
     """Say what is about to be run, as the result of a dry run, else on stderr."""
-    from atmosbox import runner
+    from atmosbox.run import runner
 
     with _own_prints_to_stderr():
         card = runner.card(prepared)
@@ -162,7 +162,7 @@ def _say_interrupted(
     stop: Interrupted, prepared: Prepared, checkpoint: Checkpoint, *, quiet: bool, as_json: bool
 ) -> None:
     """Say what is left of a run that was stopped, and how to look at it."""
-    from atmosbox import runner
+    from atmosbox.run import runner
 
     if stop.outcome is None:
         tell("stopped before the first frame was complete: nothing is kept")

@@ -70,7 +70,7 @@ def sweep(
     typer.Exit
         With the status of an interruption, if the sweep was stopped.
     """
-    from atmosbox.config import parse_set
+    from atmosbox.cli.config import parse_set
     from atmosbox.sweep import SweepInterrupted, plan
     from atmosbox.sweep import sweep as run
 
@@ -110,7 +110,7 @@ def sweep(
 
 def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
     """Return a whole number that stood behind an option."""
-    from atmosbox.quantity import parse_whole
+    from atmosbox.scene.quantity import parse_whole
 
     try:
         return parse_whole(text, "1", option, low=low, high=high, example="8")
@@ -144,7 +144,7 @@ def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
 
 def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
     """Say what came out."""
-    from atmosbox.runner import LEDGER_LIMIT
+    from atmosbox.run.runner import LEDGER_LIMIT
 
     if as_json:
         made = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "computed": swept.computed}
@@ -175,7 +175,7 @@ def records(grid: Plan, dataset: xr.Dataset) -> list[dict[str, Any]]:
 
 def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
     """Return a table of the points: the mean of the members with its error, and theory beside it."""
-    from atmosbox.conversion import from_si
+    from atmosbox.scene.conversion import from_si
     from atmosbox.sweep import FEWEST
 
     names = _headlines(dataset)
@@ -205,14 +205,14 @@ def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
 
 
 def _headlines(dataset: xr.Dataset) -> list[str]:
-    from atmosbox.provenance import parameters
+    from atmosbox.file.provenance import parameters
 
     return [str(name) for name in parameters(dataset)["sweep"]["headlines"]]
 
 
 def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
     """Say what is kept of a sweep that was stopped, and how to go on."""
-    from atmosbox.output import part_path
+    from atmosbox.file.netcdf import part_path
 
     if stop.swept is None:
         tell("stopped before the first run was complete: nothing is kept")
@@ -226,7 +226,7 @@ def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
 
 def _judge(grid: Plan, swept: Swept, path: Path) -> None:
     """Raise the error that the sweep ends with, if any run has failed."""
-    from atmosbox.runner import LEDGER_LIMIT
+    from atmosbox.run.runner import LEDGER_LIMIT
 
     failed: AtmosboxError | None = None
     if swept.failures:

@@ -63,11 +63,11 @@ def tradeoff(
     typer.Exit
         With the status of an interruption, if the measurement was stopped.
     """
-    from atmosbox.config import parse_set
-    from atmosbox.output import check_writable, write
+    from atmosbox.cli.config import parse_set
+    from atmosbox.file.netcdf import check_writable, write
     from atmosbox.plot import save
-    from atmosbox.quantity import parse_quantity, parse_whole
-    from atmosbox.tradeoff import measure
+    from atmosbox.scene.quantity import parse_quantity, parse_whole
+    from atmosbox.trade.tradeoff import measure
 
     try:
         seconds = parse_quantity(budget, "s", "budget", low=1.0, high=1e6, example="60s")
@@ -138,7 +138,7 @@ def as_csv(found: xr.Dataset) -> str:
 
 def lines(found: xr.Dataset, columns: int) -> list[str]:
     """Return the measurement as text: bias with its error, and in brackets the noise of a single run."""
-    from atmosbox.plot.tradeoff import foremost
+    from atmosbox.plot.tradeoff_figure import foremost
 
     chosen = foremost(found)
     header = ["run", "seconds", "cost", "runs"]
@@ -178,7 +178,7 @@ def _unit(found: xr.Dataset, name: str) -> str:
 
 def _write_text(path: Path, text: str) -> None:
     """Write a text whole or not at all."""
-    from atmosbox.target import write_failure
+    from atmosbox.file.output_path import write_failure
 
     hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:

@@ -1,97 +1,95 @@
 """The engine: colliding molecules, and nothing of meteorology.
 
-Read it in this order:
+Read `core` first, then `exact`; the other folders when you need them. Each lists its files in reading order.
 
-`state`      what is known of a molecule, of its box, of what lies ahead
-`motion`     free flight
-`random`     random numbers
-`contact`    two molecules meet
-`schedule`   numbers that change with time
-`walls`      what walls do, one law each
-`cells`      who can meet whom
-`calendar`   what happens next
-`plan`       what lies ahead of a molecule
-`encounter`  what an encounter does
-`crossing`   from cell to cell
-`exact`      from event to event
-`reference`  the same, slow and obvious: the oracle of the tests
-`refusal`    the errors
-`inputs`     what is refused
-`packing`    how much of the space molecules fill
-`overlap`    those that overlap are pushed apart
-`scatter`    where molecules stand at the start, at random
-`lattice`    the same, on a lattice
-`start`      how they move at the start
-`account`    what a box has counted, and whether its energy adds up
-`arrangement` what a box may be given, and what may move its piston
-`adjustment` what may be changed while time passes
-`parcel`     the box: what it is given, holds and tells
-`box`        the box, as the kernels know it
-`kind`       molecules that are alike
-`stall`      when time can go no further
-`parcelset`  the box, advanced exactly
-`substance`  what condenses, and as what
-`liquid`     water that has condensed: a ledger, and its laws
-`room`       where there is room for a molecule
-`phase`      a molecule leaves the box, or comes into it
-`moist_account`  what a box with liquid in it holds
-`moist`      from event to event, with liquid in the box
-`moist_parcelset`  the box of moist air, advanced exactly
-`drop_shape` drops as bodies
-`drop`       drops that can be seen, from event to event
-`drop_parcelset`  the box with such drops in it
-`marching`   the box, advanced step by step
-`classic_tally`      what the three classic schemes share
-`classic_strips`     equal discs, sorted into strips
-`classic_lookahead`  unequal discs, which look ahead
-`classic_spheres`    spheres, all pairs
-`classic`            the box, as teaching applets move it: one of the three
-`window`        a glance at eight neighbours at once
-`neighbourhood` who overlaps whom
-`filing`        molecules filed by cell, for those that look for neighbours
-`gridding`      how the box is cut into those cells
-`flight`        a step of free flight
-`bounce`        a step of those that come near walls
-`stepped`       step by step: all move, those that overlap collide
-`stepped_start` what a start in time steps must be
-`stepped_parcel`  the box, advanced in such steps
-`swarm`      many molecules in columns, sorted into cells
-`streaming`  a step of free flight for all of them, with walls on the way
-`pairing`    who of a cell collide, drawn by chance
-`moist_swarm`  what liquid does in a step among many molecules, and a mist
-`moist_pool`   what a pool does
-`dsmc`       collisions with whom chance chooses nearby
-`dsmc_parcel`  the box, advanced by direct simulation Monte Carlo
-`moist_dsmc_parcel`  the box of moist air, advanced so
-`measure`    what is read off it
-`course`     how far along its planned way a parcel is
-`lift`       a piston that follows a pressure
-`_jit`       the one door to numba
+`core`     molecules, walls, schedules, random numbers, the laws of contact, tallies, refusals
+`start`    where molecules stand at the start, and how they move
+`exact`    from event to event, with nothing in between; and the slow reference
+`liquid`   condensed water: a reservoir, as a mist, as drops or as a pool
+`stepped`  in time steps: all move, those that overlap collide
+`dsmc`     direct simulation Monte Carlo
+`classic`  the schemes of teaching applets
 
-Everything is in reduced units; the engine knows no kelvin, no file and no scenario.
+Everything is in reduced units; the engine knows no kelvin, no file and no scenario. The names below are imported when
+they are first used, so that a program which only asks for a schedule does not wait for the compiler.
 """
 
-from atmosbox.engine.lift import FollowPressure
-from atmosbox.engine.parcel import Driver, Parcel, Snapshot
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.refusal import PackingError, RefusedError, StalledError
-from atmosbox.engine.schedule import Constant, Ramp, Steps
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from atmosbox.engine.core.course import Course
+    from atmosbox.engine.core.lift import FollowPressure
+    from atmosbox.engine.core.packing import packing_fraction
+    from atmosbox.engine.core.parcel import Driver, Parcel, Snapshot
+    from atmosbox.engine.core.refusal import CoarseStepWarning, PackingError, RefusedError, StalledError
+    from atmosbox.engine.core.schedule import Constant, Ramp, Schedule, Steps
+    from atmosbox.engine.core.walls import HeatBath, Periodic, Piston, Specular, Wall
+    from atmosbox.engine.exact.parcelset import ParcelSet
+    from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
+    from atmosbox.engine.start.lattice import lattice_positions
+    from atmosbox.engine.start.scatter import random_positions
+    from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies, two_halves
+
+_HOMES = {
+    "core.course": "Course",
+    "core.lift": "FollowPressure",
+    "core.packing": "packing_fraction",
+    "core.parcel": "Driver Parcel Snapshot",
+    "core.refusal": "CoarseStepWarning PackingError RefusedError StalledError",
+    "core.schedule": "Constant Ramp Schedule Steps",
+    "core.walls": "HeatBath Periodic Piston Specular Wall",
+    "exact.parcelset": "ParcelSet",
+    "liquid.substance": "Drops Liquid Mist Pool Substance",
+    "start.lattice": "lattice_positions",
+    "start.scatter": "random_positions",
+    "start.velocity": "equal_speeds maxwell_velocities rotational_energies two_halves",
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
+    "CoarseStepWarning",
     "Constant",
+    "Course",
     "Driver",
+    "Drops",
     "FollowPressure",
     "HeatBath",
+    "Liquid",
+    "Mist",
     "PackingError",
     "Parcel",
     "ParcelSet",
     "Periodic",
     "Piston",
+    "Pool",
     "Ramp",
     "RefusedError",
+    "Schedule",
     "Snapshot",
     "Specular",
     "StalledError",
     "Steps",
+    "Substance",
+    "Wall",
+    "equal_speeds",
+    "lattice_positions",
+    "maxwell_velocities",
+    "packing_fraction",
+    "random_positions",
+    "rotational_energies",
+    "two_halves",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from the file that defines it."""
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -8,8 +8,8 @@ page), `stage` and `table` (the molecules in space and in a plane), `running` an
 (where everything stands), `encoder` and `file` (GIF and MP4).
 """
 
-from atmosbox.film.file import FORMATS, save
+from atmosbox.film.film_file import FORMATS, save
+from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.pace import Pace, pace
-from atmosbox.film.sheet import Sheet
 
 __all__ = ["FORMATS", "Pace", "Sheet", "pace", "save"]

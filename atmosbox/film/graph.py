@@ -14,7 +14,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from atmosbox.film.running import Running
-from atmosbox.panels import Line, Panel
 from atmosbox.plot.curve import Curve, curve
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.layout import Painter
@@ -22,6 +21,7 @@ from atmosbox.plot.skewt import SHADE_ORDER, slender
 from atmosbox.plot.stroke import draw_line, draw_steps
 from atmosbox.plot.theme import DARK, DATA_COLOURS, Theme
 from atmosbox.plot.unit import convert
+from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,8 +14,8 @@ from matplotlib.path import Path
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
-from atmosbox.film.box import Box
-from atmosbox.film.view import EDGES, FACES, View, corners
+from atmosbox.film.camera import EDGES, FACES, View, corners
+from atmosbox.film.film_box import Box
 from atmosbox.plot.plane import colour_scale
 from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, PALE, Theme
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from atmosbox.errors import SettingError
-from atmosbox.knob import Knob
-from atmosbox.parameter import Parameter, Value
-from atmosbox.quantity import parse_quantity
+from atmosbox.scene.knob import Knob
+from atmosbox.scene.parameter import Parameter, Value
+from atmosbox.scene.quantity import parse_quantity
 
 __all__ = ["COLLISIONS", "Control", "controls", "in_words", "number_between"]
 

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.engine.refusal import StalledError
+from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError
-from atmosbox.instruments import Instrument
-from atmosbox.preparation import Prepared, build
-from atmosbox.recording import Recording
+from atmosbox.run.preparation import Prepared, build
+from atmosbox.run.recording import Recording
+from atmosbox.scene.instruments import Instrument
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from atmosbox.panels import Panel
+    from atmosbox.scene.panels import Panel
 
 __all__ = ["Experiment"]
 
@@ -66,7 +66,7 @@ class Experiment:
     Examples
     --------
     >>> import time
-    >>> from atmosbox.preparation import prepare
+    >>> from atmosbox.run.preparation import prepare
     >>> discs = Experiment(prepare("elastic-collisions", {"molecules": 10}), time.perf_counter)
     >>> discs.pass_time(2.5 * discs.setup.frame, math.inf, tuple, lambda: True)
     >>> discs.frame, discs.between_frames

@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from atmosbox.engine.refusal import RefusedError
-from atmosbox.engines import EngineChoice, choose
+from atmosbox.engine import RefusedError
 from atmosbox.errors import SettingError
 from atmosbox.live.control import COLLISIONS, Control, controls
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change
-from atmosbox.parameter import Value
-from atmosbox.preparation import Prepared
-from atmosbox.scene import Setup
+from atmosbox.run.preparation import Prepared
+from atmosbox.scene.engines import EngineChoice, choose
+from atmosbox.scene.parameter import Value
+from atmosbox.scene.setup import Setup
 
 __all__ = ["MOST_CHANGES", "Hand", "begun_anew", "meeting", "with_collisions"]
 
@@ -40,7 +40,7 @@ class Hand:
 
     Examples
     --------
-    >>> from atmosbox.preparation import prepare
+    >>> from atmosbox.run.preparation import prepare
     >>> prepared = prepare("elastic-collisions", {"molecules": 10})
     >>> Hand(prepared.module.build(prepared.settings)).names
     ()
@@ -99,7 +99,7 @@ def meeting(prepared: Prepared, setup: Setup) -> bool | None:
 
     Examples
     --------
-    >>> from atmosbox.preparation import prepare
+    >>> from atmosbox.run.preparation import prepare
     >>> prepared = prepare("temperature", {"molecules": 10})
     >>> meeting(prepared, prepared.module.build(prepared.settings))
     True
@@ -115,7 +115,7 @@ def with_collisions(engine: EngineChoice, wanted: bool) -> str:
 
     Examples
     --------
-    >>> from atmosbox.engines import EXACT
+    >>> from atmosbox.scene.engines import EXACT
     >>> with_collisions(EXACT, False), with_collisions(EXACT, True)
     ('exact:collisions=off', 'exact')
     """
@@ -135,7 +135,7 @@ def begun_anew(prepared: Prepared, values: Mapping[str, Any], engine: str) -> Pr
 
     Examples
     --------
-    >>> from atmosbox.preparation import prepare
+    >>> from atmosbox.run.preparation import prepare
     >>> begun_anew(prepare("temperature", {}), {"molecules": 10}, "stepped").settings.molecules
     10
     """

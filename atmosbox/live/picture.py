@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox import __version__
-from atmosbox.instruments import wall_laws
 from atmosbox.page import Box, Stage, stage
-from atmosbox.preparation import Prepared
-from atmosbox.quantity import phrase
-from atmosbox.scene import Setup
-from atmosbox.units import DRY_AIR, WATER
+from atmosbox.run.preparation import Prepared
+from atmosbox.scene.instruments import wall_laws
+from atmosbox.scene.quantity import phrase
+from atmosbox.scene.setup import Setup
+from atmosbox.theory.constants import DRY_AIR, WATER
+from atmosbox.version import __version__
 
 if TYPE_CHECKING:
-    from atmosbox.panels import Panel
+    from atmosbox.scene.panels import Panel
 
 __all__ = ["Picture"]
 

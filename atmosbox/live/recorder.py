@@ -8,8 +8,8 @@ from pathlib import Path
 from atmosbox.errors import AtmosboxError, SettingError
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change, Tape, file_for
-from atmosbox.panels import to_json
-from atmosbox.recording import Recording
+from atmosbox.run.recording import Recording
+from atmosbox.scene.panels import to_json
 
 __all__ = ["Recorder"]
 
@@ -90,7 +90,7 @@ class Recorder:
             self._begin(box, changes)
 
     def _begin(self, box: Experiment, changes: Sequence[Change]) -> None:
-        from atmosbox.provenance import global_attributes
+        from atmosbox.file.provenance import global_attributes
 
         path, self._wanted = self._wanted, None
         if path is None:
@@ -161,7 +161,7 @@ def longest(box: Experiment) -> int:
     Examples
     --------
     >>> import time
-    >>> from atmosbox.preparation import prepare
+    >>> from atmosbox.run.preparation import prepare
     >>> longest(Experiment(prepare("elastic-collisions", {"molecules": 10}), time.perf_counter))
     30000
     """

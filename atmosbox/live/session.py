@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from atmosbox.engine.refusal import StalledError
+from atmosbox.engine import StalledError
 from atmosbox.errors import SettingError
 from atmosbox.live import hand
 from atmosbox.live.control import COLLISIONS, Control, in_words, number_between
@@ -16,11 +16,11 @@ from atmosbox.live.experiment import Experiment
 from atmosbox.live.hand import Hand, begun_anew, with_collisions
 from atmosbox.live.picture import Picture
 from atmosbox.live.recorder import Recorder, longest
-from atmosbox.live.report import Report, while_it_runs
+from atmosbox.live.summary import Report, while_it_runs
 from atmosbox.live.tape import Change
-from atmosbox.parameter import Value
-from atmosbox.preparation import Prepared
-from atmosbox.scene import Setup
+from atmosbox.run.preparation import Prepared
+from atmosbox.scene.parameter import Value
+from atmosbox.scene.setup import Setup
 
 __all__ = ["Session"]
 
@@ -64,7 +64,7 @@ class Session:
 
     Examples
     --------
-    >>> from atmosbox.preparation import prepare
+    >>> from atmosbox.run.preparation import prepare
     >>> session = Session(prepare("elastic-collisions", {"molecules": 10}))
     >>> session.obey({"type": "play"})
     >>> session.run(0.1)

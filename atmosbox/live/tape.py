@@ -9,17 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from atmosbox.checkpoint import Checkpoint
 from atmosbox.errors import FileError
-from atmosbox.live.report import without_headlines
-from atmosbox.output import check_writable
-from atmosbox.panels import Panel, to_json
-from atmosbox.parameter import Value
-from atmosbox.preparation import Prepared
-from atmosbox.provenance import history_line
-from atmosbox.quantity import phrase
-from atmosbox.recording import Recording
-from atmosbox.scene import Setup
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.netcdf import check_writable
+from atmosbox.file.provenance import history_line
+from atmosbox.live.summary import without_headlines
+from atmosbox.run.preparation import Prepared
+from atmosbox.run.recording import Recording
+from atmosbox.scene.panels import Panel, to_json
+from atmosbox.scene.parameter import Value
+from atmosbox.scene.quantity import phrase
+from atmosbox.scene.setup import Setup
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,9 +9,9 @@ bytes), `thinning` (what a large run leaves out), `run` (from a dataset to all o
 `file`. The folder ``web`` holds the page's own scripts, ``vendor`` the two libraries that it draws with.
 """
 
-from atmosbox.page.box import Box
 from atmosbox.page.document import live_page, view_page
-from atmosbox.page.file import save
-from atmosbox.page.stage import Stage, stage
+from atmosbox.page.page_box import Box
+from atmosbox.page.page_file import save
+from atmosbox.page.page_stage import Stage, stage
 
 __all__ = ["Box", "Stage", "live_page", "save", "stage", "view_page"]

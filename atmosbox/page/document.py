@@ -47,7 +47,7 @@ def view_page(runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme
     Parameters
     ----------
     runs : sequence of mapping
-        Of each run its ``stage``, its ``values`` by name, and what `atmosbox.page.run.describe` says besides.
+        Of each run its ``stage``, its ``values`` by name, and what `atmosbox.page.saved_run.describe` says besides.
     frames : sequence of str
         Of each run its frames, as `atmosbox.page.frame.pack` packs them.
     theme : {"auto", "light", "dark"}

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.page.box import Box
-from atmosbox.provenance import parameters
+from atmosbox.file.provenance import parameters
+from atmosbox.page.page_box import Box
 
 if TYPE_CHECKING:
     import xarray as xr

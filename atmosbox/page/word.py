@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.page.box import length_text
+from atmosbox.file.provenance import parameters
 from atmosbox.page.moment import Moments
-from atmosbox.provenance import parameters
+from atmosbox.page.page_box import length_text
 
 if TYPE_CHECKING:
     import xarray as xr

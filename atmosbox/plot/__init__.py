@@ -10,7 +10,7 @@ Read in this order: `unit` (from SI to what a meteorologist reads), `curve` and 
 (PNG, SVG, PDF).
 """
 
-from atmosbox.plot.file import FORMATS, save
+from atmosbox.plot.figure_file import FORMATS, save
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import THEMES
 

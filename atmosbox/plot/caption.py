@@ -7,9 +7,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.errors import FileError
-from atmosbox.panels import Panel
 from atmosbox.plot.curve import read
 from atmosbox.plot.unit import convert, of_difference, power_of_ten, spelled
+from atmosbox.scene.panels import Panel
 
 if TYPE_CHECKING:
     import xarray as xr

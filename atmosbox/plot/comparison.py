@@ -13,7 +13,6 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.lines import Line2D
 
 from atmosbox.errors import FileError
-from atmosbox.panels import Line, Panel
 from atmosbox.plot.caption import footer
 from atmosbox.plot.curve import Curve, curve, unit_of
 from atmosbox.plot.draw import Entry, set_limits
@@ -23,6 +22,7 @@ from atmosbox.plot.plate import Pen
 from atmosbox.plot.skewt import put_background, skewed_axes, slender
 from atmosbox.plot.stroke import draw_line, draw_steps, line_style
 from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find, style
+from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,7 +65,7 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import to_json
+    >>> from atmosbox.scene.panels import to_json
     >>> air = Panel("line", "Temperature", (Line("elapsed_time", "t", "air"),), "time", "temperature")
     >>> runs = [
     ...     xr.Dataset(
@@ -110,7 +110,7 @@ def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import to_json
+    >>> from atmosbox.scene.panels import to_json
     >>> shared_panels([xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])})])
     Traceback (most recent call last):
     atmosbox.errors.FileError: These runs have no graph in common: compare runs of one scene.

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.panels import Line, Panel
 from atmosbox.plot.unit import convert, of_difference
+from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
     import xarray as xr

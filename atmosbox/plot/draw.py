@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from atmosbox.panels import Line, Panel
 from atmosbox.plot.curve import curve
-from atmosbox.plot.disc import draw_discs
+from atmosbox.plot.disc_marker import draw_discs
 from atmosbox.plot.stroke import MOST_POINTS, draw_line, draw_steps
 from atmosbox.plot.theme import Theme
+from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from atmosbox.panels import Panel
 from atmosbox.plot.curve import Curve, curve
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, FAINT
+from atmosbox.scene.panels import Panel
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,7 +43,7 @@ def shade_energy(
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import Line, Panel
+    >>> from atmosbox.scene.panels import Line, Panel
     >>> panel = Panel("skewt", "A parcel", (Line("temperature", "pressure", "parcel"),), y_unit="hPa", y_scale="log")
     >>> shade_energy(None, panel, xr.Dataset(), {}, 1.0)
     []

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from atmosbox.errors import FileError
-from atmosbox.panels import Line, Panel, from_json
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve, read, unit_of
 from atmosbox.plot.draw import Entry, draw
@@ -20,6 +19,7 @@ from atmosbox.plot.plate import Pen
 from atmosbox.plot.skewt import BACKGROUND, draw_skewt, levels
 from atmosbox.plot.stroke import hollow_points
 from atmosbox.plot.theme import Theme, find, style
+from atmosbox.scene.panels import Line, Panel, from_json
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,7 +51,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import Line, to_json
+    >>> from atmosbox.scene.panels import Line, to_json
     >>> air = Line("elapsed_time", "air_temperature", "air")
     >>> panel = Panel("line", "Temperature", (air,), "time", "temperature", y_unit="degC")
     >>> dataset = xr.Dataset(
@@ -160,7 +160,7 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import to_json
+    >>> from atmosbox.scene.panels import to_json
     >>> [panel.title for panel in panels_of(xr.Dataset(attrs={"atmosbox_panels": to_json([Panel("discs", "A box")])}))]
     ['A box']
     """

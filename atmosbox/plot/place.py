@@ -12,10 +12,10 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
-from atmosbox.panels import Panel
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.plate import Pen, Plate
 from atmosbox.plot.theme import FAINT, Theme
+from atmosbox.scene.panels import Panel
 
 _TALL = ("profile", "discs", "skewt")
 _WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0}
@@ -122,7 +122,7 @@ def put_panels(
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import Line
+    >>> from atmosbox.scene.panels import Line
     >>> from atmosbox.plot.layout import Painter
     >>> from atmosbox.plot.theme import THEMES
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})

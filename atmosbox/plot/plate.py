@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 
-from atmosbox.panels import Panel
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.theme import Theme
 from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.tilt import fit_skewt
 from atmosbox.plot.unit import labelled
+from atmosbox.scene.panels import Panel
 
 _FIXED = "\u00a0"  # a space that no line breaks at
 # The lines of a legend, their distance from the words and that between columns, in sizes of the type.

@@ -14,13 +14,13 @@ from matplotlib.gridspec import SubplotSpec
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.panels import Line, Panel
 from atmosbox.plot.curve import read
 from atmosbox.plot.draw import Entry, draw_lines
 from atmosbox.plot.energy import shade_energy
 from atmosbox.plot.theme import PALE, Theme
 from atmosbox.plot.tilt import ROTATION
 from atmosbox.plot.unit import convert
+from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,7 +67,7 @@ def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.panels import Line
+    >>> from atmosbox.scene.panels import Line
     >>> parcel = Line("parcel_temperature", "parcel_pressure", "parcel")
     >>> panel = Panel("skewt", "Air", (parcel,), marks=("lcl", "lfc", "el"))
     >>> held = {"lcl": ((), 9e4, {"units": "Pa"}), "lfc": ((), float("nan"), {"units": "Pa"})}
@@ -134,7 +134,7 @@ def draw_skewt(
     Examples
     --------
     >>> import numpy as np, xarray as xr
-    >>> from atmosbox.panels import Line
+    >>> from atmosbox.scene.panels import Line
     >>> from atmosbox.plot.theme import THEMES
     >>> held = {
     ...     "t": ("level", np.array([300.0, 280.0, 250.0]), {"units": "K"}),

@@ -9,7 +9,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from atmosbox.panels import Line, Panel
 from atmosbox.plot.curve import Curve, curve, edges
 from atmosbox.plot.theme import (
     DATA_COLOURS,
@@ -22,6 +21,7 @@ from atmosbox.plot.theme import (
     THEORY_DASHES,
     Theme,
 )
+from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
     import xarray as xr

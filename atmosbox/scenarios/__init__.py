@@ -172,5 +172,8 @@ def _why(path: Path, location: str, error: BaseException) -> str:
         line = next((frame.lineno for frame in reversed(frames) if frame.filename == location), None)
         reason = " ".join(str(error).split())
     place = f"{path}, line {line}," if line else f"{path}"
+    if isinstance(error, ModuleNotFoundError) and (error.name or "").startswith("atmosbox."):
+        fix = "import what a scene needs from atmosbox.engine, atmosbox.scene and atmosbox.theory"
+        return f"{place} imports {error.name}, which this version of atmosbox does not have: {fix}."
     what = f"{type(error).__name__}: {reason}" if reason else type(error).__name__
     return f"{place} cannot be run ({what}): correct it and run it again."

@@ -8,8 +8,8 @@ Read in this order: `text` (the words, read from their file) and `generic` (word
 together), `markup`, `markdown`, `flow` and `pdf` (what is printed), `file` (a file that appears whole).
 """
 
-from atmosbox.sheet.file import FORMATS, check, save
 from atmosbox.sheet.pdf import PAPERS
+from atmosbox.sheet.sheet_file import FORMATS, check, save
 from atmosbox.sheet.worksheet import Worksheet, worksheet
 
 __all__ = ["FORMATS", "PAPERS", "Worksheet", "check", "save", "worksheet"]

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from atmosbox.errors import ConfigError, shown
-from atmosbox.sheet.wording import bare, measured
+from atmosbox.sheet.number_text import bare, measured
 
 __all__ = ["Known", "Measured", "filled"]
 

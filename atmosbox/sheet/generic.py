@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from atmosbox.headline import Headline
-from atmosbox.parameter import Parameter
+from atmosbox.scene.headline import Headline
+from atmosbox.scene.parameter import Parameter
+from atmosbox.sheet.number_text import spelled
 from atmosbox.sheet.text import Change, Prediction, Question, Row, SheetText
-from atmosbox.sheet.wording import spelled
 
 __all__ = ["generic", "left_out"]
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from atmosbox import __version__, runner
-from atmosbox.conversion import from_si
 from atmosbox.errors import ConfigError
-from atmosbox.headline import Headline
+from atmosbox.run import runner
+from atmosbox.scene.conversion import from_si
+from atmosbox.scene.headline import Headline
 from atmosbox.sheet.arithmetic import filled
 from atmosbox.sheet.block import (
     Answer,
@@ -26,9 +26,10 @@ from atmosbox.sheet.block import (
     Text,
 )
 from atmosbox.sheet.generic import generic, left_out
+from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
+from atmosbox.sheet.sheet_run import LETTERS, Trial, execute, shown_of, trials
 from atmosbox.sheet.text import SECTIONS, Prediction, Question, SheetText, read, text_of
-from atmosbox.sheet.trial import LETTERS, Trial, execute, shown_of, trials
-from atmosbox.sheet.wording import bare, measured, spelled, theoretical
+from atmosbox.version import __version__
 
 __all__ = ["Worksheet", "worksheet"]
 

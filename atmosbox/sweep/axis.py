@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from atmosbox.conversion import from_si, to_si
 from atmosbox.errors import SettingError, UnitError
-from atmosbox.parameter import Parameter, Value
-from atmosbox.quantity import typed
+from atmosbox.scene.conversion import from_si, to_si
+from atmosbox.scene.parameter import Parameter, Value
+from atmosbox.scene.quantity import typed
 
 __all__ = ["LONGEST", "Axis", "parse_vary"]
 

@@ -8,11 +8,11 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import CancelledError
 from typing import TYPE_CHECKING, Any
 
-from atmosbox import __version__
 from atmosbox.errors import EngineError, SettingError
 from atmosbox.sweep import member
 from atmosbox.sweep.member import Record
 from atmosbox.sweep.plan import Task
+from atmosbox.version import __version__
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -81,7 +81,8 @@ def _check_workers(client: Client, address: str) -> None:
 
     def version() -> str:  # goes to the workers as it stands, for one without atmosbox, too
         try:
-            from atmosbox import __version__, sweep
+            from atmosbox import sweep
+            from atmosbox.version import __version__
         except ImportError:
             return ""
         return __version__ if sweep else ""

@@ -8,10 +8,10 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from atmosbox.checkpoint import Checkpoint
 from atmosbox.errors import SettingError
-from atmosbox.provenance import history_line
-from atmosbox.sweep import pool
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.provenance import history_line
+from atmosbox.sweep import local
 from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.member import FAILED, Record
 from atmosbox.sweep.plan import Plan, Task
@@ -100,7 +100,7 @@ def sweep(
 
     Examples
     --------
-    >>> from atmosbox.runner import LEDGER_LIMIT
+    >>> from atmosbox.run.runner import LEDGER_LIMIT
     >>> from atmosbox.sweep.plan import plan
     >>> discs = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}, members=2)
     >>> swept = sweep(discs, jobs=1)
@@ -108,7 +108,7 @@ def sweep(
     ({'molecules': 2, 'member': 2}, (), True)
     """
     if jobs is not None and jobs < 1:
-        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {pool.cores()}")
+        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {local.cores()}")
     if jobs is not None and scheduler is not None:
         raise SettingError("jobs", jobs, "is for this machine, and --scheduler for another", "leave one of them out")
     line = history_line(command or f"atmosbox.sweep.sweep({plan.scene!r}, ...)")
@@ -166,8 +166,8 @@ class _Conductor:
             from atmosbox.sweep.cluster import remote
 
             return remote(tasks, scheduler, self._watch)
-        jobs = min(jobs or pool.cores(), len(tasks))
-        return pool.here(tasks, self._watch) if jobs == 1 else pool.processes(tasks, jobs, self._watch)
+        jobs = min(jobs or local.cores(), len(tasks))
+        return local.here(tasks, self._watch) if jobs == 1 else local.processes(tasks, jobs, self._watch)
 
     def _watch(self, share: float, word: str) -> None:
         self.tell(min((len(self.records) + share) / self.plan.runs, 1.0), word)

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.errors import FileError, shown
-from atmosbox.output import check_writable
+from atmosbox.file.netcdf import check_writable
+from atmosbox.file.output_path import write_failure
 from atmosbox.sweep.member import Record
-from atmosbox.target import write_failure
 
 __all__ = ["Journal"]
 

@@ -6,8 +6,8 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
-from atmosbox import runner
 from atmosbox.errors import AtmosboxError
+from atmosbox.run import runner
 from atmosbox.sweep.plan import Task
 
 __all__ = ["COMPLETE", "FAILED", "Progress", "Record", "failure", "run"]

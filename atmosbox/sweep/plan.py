@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox import __version__, scenarios
+from atmosbox import scenarios
 from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.parameter import Value
-from atmosbox.preparation import Prepared, prepare
+from atmosbox.run.preparation import Prepared, prepare
+from atmosbox.scene.parameter import Value
 from atmosbox.sweep.axis import Axis, parse_vary
+from atmosbox.version import __version__
 
 __all__ = ["MOST_RUNS", "Plan", "Task", "member_seed", "plan"]
 
@@ -210,7 +211,7 @@ def plan(
     seed
         The seed of the sweep; that of the settings if None.
     engine, accuracy
-        As for `atmosbox.preparation.prepare`.
+        As for `atmosbox.run.preparation.prepare`.
 
     Returns
     -------

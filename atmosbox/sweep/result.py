@@ -10,14 +10,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from atmosbox import __version__, engines, scenarios
-from atmosbox.conversion import declared_unit
-from atmosbox.declaration import Variable, derived
+from atmosbox import scenarios
 from atmosbox.errors import EngineError
-from atmosbox.provenance import global_attributes
+from atmosbox.file.declaration import Variable, derived
+from atmosbox.file.provenance import global_attributes
+from atmosbox.scene import engines
+from atmosbox.scene.conversion import declared_unit
 from atmosbox.sweep.axis import Axis
 from atmosbox.sweep.member import COMPLETE, Record
 from atmosbox.sweep.plan import Plan, member_seed
+from atmosbox.version import __version__
 
 __all__ = ["FEWEST", "assemble", "mean_and_error"]
 

@@ -37,7 +37,6 @@ buoyancy            whether a parcel rises by itself, and with what energy
 =================== =====================================================================================
 """
 
-from atmosbox.theory.ascent import DISSIPATION, FINITE_SPEED, Ascent
 from atmosbox.theory.barometric import (
     barometric_density,
     barometric_pressure,
@@ -90,12 +89,14 @@ from atmosbox.theory.equation_of_state import (
     inverse_compressibility,
     packing_fraction,
 )
+from atmosbox.theory.escape_energy import LEAVING_FREEDOM, leaving_energy_density, staying_energy_density
 from atmosbox.theory.evaporation import (
     EvaporationEquilibrium,
     condensation_equilibrium,
     evaporation_equilibrium,
     wet_bulb_temperature,
 )
+from atmosbox.theory.finite_rate import DISSIPATION, FINITE_SPEED, Ascent
 from atmosbox.theory.humidity import (
     WATER_MASS_RATIO,
     dewpoint_from_relative_humidity,
@@ -107,7 +108,6 @@ from atmosbox.theory.humidity import (
 )
 from atmosbox.theory.hydrostatic import hydrostatic_column, hydrostatic_layers
 from atmosbox.theory.isobaric import IsobaricWater, isobaric_water
-from atmosbox.theory.leaving import LEAVING_FREEDOM, leaving_energy_density, staying_energy_density
 from atmosbox.theory.lifting import (
     adiabatic_index,
     adiabatic_temperature,
@@ -116,7 +116,16 @@ from atmosbox.theory.lifting import (
     isothermal_work,
     piston_pressure_ratio,
 )
-from atmosbox.theory.liquid import hertz_knudsen_flux, microcanonical_flux
+from atmosbox.theory.liquid_rate import hertz_knudsen_flux, microcanonical_flux
+from atmosbox.theory.maxwell import (
+    constant_energy_kurtosis,
+    constant_energy_speed_factor,
+    maxwell_speed_cumulative,
+    maxwell_speed_density,
+    mean_speed,
+    most_probable_speed,
+    root_mean_square_speed,
+)
 from atmosbox.theory.moist_adiabat import moist_entropy, moist_lapse_rate, pseudoadiabat, reversible_adiabat
 from atmosbox.theory.moist_lifting import ParcelPath, lcl, moist_air_poisson_exponent, parcel_path
 from atmosbox.theory.noise import (
@@ -136,18 +145,9 @@ from atmosbox.theory.saturation import (
     saturation_vapor_pressure,
     water_latent_heat_vaporization,
 )
-from atmosbox.theory.speed import (
-    constant_energy_kurtosis,
-    constant_energy_speed_factor,
-    maxwell_speed_cumulative,
-    maxwell_speed_density,
-    mean_speed,
-    most_probable_speed,
-    root_mean_square_speed,
-)
 from atmosbox.theory.standard_atmosphere import isa_height, isa_pressure, isa_temperature
 from atmosbox.theory.vapor_number import VaporNumber, isolated_vapor_number, isothermal_vapor_number
-from atmosbox.theory.wall import (
+from atmosbox.theory.wall_law import (
     FreeMolecularSlab,
     emission_energy,
     emission_energy_variance,

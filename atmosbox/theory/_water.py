@@ -10,7 +10,7 @@ import numpy as np
 from scipy import special
 
 from atmosbox.theory._array import FloatArray
-from atmosbox.units import DRY_AIR, GAS_CONSTANT, WATER
+from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, WATER
 
 AIR_HEAT: float = 2.5 + DRY_AIR.rotational_dof / 2.0
 VAPOR_HEAT: float = 2.5 + WATER.rotational_dof / 2.0

@@ -36,7 +36,7 @@ def scale_height(kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArr
     --------
     Air at 288.15 K, in metres:
 
-    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> round(float(scale_height(BOLTZMANN * 288.15, DRY_AIR.molecule_mass, 9.80665)))
     8435
     """
@@ -228,7 +228,7 @@ def column_weight(molecules_per_area: ArrayLike, mass: ArrayLike, gravity: Array
     --------
     Above each square metre stand 2.15e29 molecules of air, ten tonnes:
 
-    >>> from atmosbox.units import DRY_AIR, STANDARD_GRAVITY
+    >>> from atmosbox.theory.constants import DRY_AIR, STANDARD_GRAVITY
     >>> weight = column_weight(2.15e29, DRY_AIR.molecule_mass, STANDARD_GRAVITY)
     >>> print(f"{weight / 100.0:.0f} hPa")
     1014 hPa

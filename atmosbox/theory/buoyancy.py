@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory._water import checked_not_negative, checked_positive
+from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
-from atmosbox.units import STANDARD_GRAVITY
 
 
 def parcel_buoyancy(

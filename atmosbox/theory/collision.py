@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory.equation_of_state import Form, contact_value, packing_fraction
-from atmosbox.theory.speed import mean_speed
+from atmosbox.theory.maxwell import mean_speed
 
 
 def collision_rate(
@@ -53,7 +53,7 @@ def collision_rate(
     --------
     A molecule of air is hit seven thousand million times a second:
 
-    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> kT = BOLTZMANN * 288.15
     >>> rate = collision_rate(101325.0 / kT, DRY_AIR.diameter, kT, DRY_AIR.molecule_mass)
     >>> print(f"{rate:.1e} per second")
@@ -140,7 +140,7 @@ def mean_free_path(number_density: ArrayLike, diameter: ArrayLike, form: Form = 
     --------
     In air at the ground, 64 nm:
 
-    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> round(float(mean_free_path(101325.0 / (BOLTZMANN * 288.15), DRY_AIR.diameter)) * 1e9)
     64
     """

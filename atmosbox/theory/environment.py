@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.units import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
+from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
 DRY_AIR_GAS_CONSTANT: float = GAS_CONSTANT / DRY_AIR.molar_mass
 """Gas constant of dry air per mass [J kg^-1 K^-1]."""

@@ -74,7 +74,7 @@ def packing_fraction(number_density: ArrayLike, diameter: ArrayLike) -> FloatArr
     --------
     Air at the ground is nearly empty: its molecules fill 0.07 % of the space.
 
-    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> round(float(packing_fraction(100000.0 / (BOLTZMANN * 288.15), DRY_AIR.diameter)), 5)
     0.00067
     """
@@ -236,7 +236,7 @@ def gas_pressure(
     --------
     The size of its molecules adds a quarter of a per cent to the pressure of air at the ground:
 
-    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> kT = BOLTZMANN * 288.15
     >>> round(float(gas_pressure(100000.0 / kT, kT, DRY_AIR.diameter)))
     100267

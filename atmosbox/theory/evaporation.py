@@ -19,7 +19,7 @@ from atmosbox.theory._water import (
     checked_positive,
     checked_temperature,
 )
-from atmosbox.units import BOLTZMANN
+from atmosbox.theory.constants import BOLTZMANN
 
 
 class EvaporationEquilibrium(NamedTuple):

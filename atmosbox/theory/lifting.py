@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from atmosbox.theory._array import FloatArray, as_floats
+from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
-from atmosbox.units import STANDARD_GRAVITY
 
 
 def adiabatic_index(dof: ArrayLike = 5) -> FloatArray:
@@ -199,7 +199,7 @@ def piston_pressure_ratio(piston_speed: ArrayLike, kT: ArrayLike, mass: ArrayLik
     --------
     One per cent is lost at 0.44 % of the most probable speed, for air at 288.15 K about 1.8 m/s:
 
-    >>> from atmosbox.units import BOLTZMANN, DRY_AIR
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> round(float(piston_pressure_ratio(1.8, BOLTZMANN * 288.15, DRY_AIR.molecule_mass)), 3)
     0.99
     """

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from atmosbox.theory import _water
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory._water import AIR_HEAT, MASS_RATIO, checked_not_negative, checked_positive, checked_temperature
+from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
-from atmosbox.units import STANDARD_GRAVITY
 
 
 def _checked(

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from atmosbox.theory import _water
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory._water import checked_not_negative, checked_temperature
-from atmosbox.units import GAS_CONSTANT, WATER
+from atmosbox.theory.constants import GAS_CONSTANT, WATER
 
 VAPOR_HEAT_CAPACITY: float = _water.VAPOR_HEAT
 """Heat capacity of a molecule of vapour at constant pressure [k]."""

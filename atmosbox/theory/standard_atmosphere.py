@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.theory._array import FloatArray, as_floats
+from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import environment_pressure, environment_temperature, height_of_pressure
-from atmosbox.units import STANDARD_GRAVITY
 
 _ISA_GAS_CONSTANT = 287.05287
 _ISA_LOWEST, _ISA_HIGHEST = -2000.0, 80000.0

@@ -1,7 +1,7 @@
 r"""How the number of molecules of vapour scatters in a small closed box that also holds liquid.
 
 The exact distributions at equilibrium, for any number: where a law of evaporation and condensation must lead. The
-liquid is that of :mod:`atmosbox.theory.liquid`. Units are SI.
+liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from atmosbox.theory._water import (
     VAPOR_HEAT,
     checked_temperature,
 )
-from atmosbox.units import BOLTZMANN
+from atmosbox.theory.constants import BOLTZMANN
 
 
 class VaporNumber(NamedTuple):

@@ -7,15 +7,9 @@ without meeting. Each takes heat from the hot wall to the cold one; half as many
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, ParcelSet, Specular
-from atmosbox.engine.start import maxwell_velocities
-from atmosbox.headline import Headline
-from atmosbox.instruments import Air
-from atmosbox.panels import Line, Panel
-from atmosbox.scene import Setup
-from atmosbox.settings import SceneSettings, setting
-from atmosbox.statistics import block_average
-from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+from atmosbox.engine import HeatBath, ParcelSet, Specular, maxwell_velocities
+from atmosbox.scene import Air, Headline, Line, Panel, Scale, SceneSettings, Setup, block_average, setting
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 title = "A vacuum flask"
 GAP = 0.005  # m

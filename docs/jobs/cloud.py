@@ -8,10 +8,11 @@ import numpy as np
 from jobs.drawing import BLUE, VERMILLION, axes_of, save, sheet
 from jobs.registry import Findings, job
 
-from atmosbox import runner, theory
-from atmosbox.headline import Headline
+from atmosbox import theory
 from atmosbox.plot.theme import DARK, ENVIRONMENT_COLOURS, FAINT, REFERENCE_COLOURS
-from atmosbox.statistics import running_mean
+from atmosbox.run import runner
+from atmosbox.scene.headline import Headline
+from atmosbox.scene.statistics import running_mean
 
 LEVELS = (850, 700, 500, 300)
 SEEDS = range(1, 5)

@@ -4,11 +4,9 @@ import numpy as np
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.engine.measure import layer_sample
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.walls import HeatBath, Periodic, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import HeatBath, ParcelSet, Periodic, Specular, maxwell_velocities, random_positions
+from atmosbox.engine.core.measure import layer_sample
+from atmosbox.scene.statistics import block_average
 
 LAYERS = 20
 

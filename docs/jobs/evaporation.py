@@ -5,8 +5,9 @@ import math
 import numpy as np
 from jobs.registry import Findings, job
 
-from atmosbox import runner, theory
-from atmosbox.units import BOLTZMANN
+from atmosbox import theory
+from atmosbox.run import runner
+from atmosbox.theory.constants import BOLTZMANN
 
 SEEDS = range(1, 9)
 NEAR = 0.3

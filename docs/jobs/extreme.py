@@ -10,12 +10,11 @@ from jobs.drawing import BLUE, VERMILLION, axes_of, save, sheet
 from jobs.registry import Findings, job, rounded
 
 from atmosbox import theory
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.walls import Periodic
-from atmosbox.engines import choose, names
-from atmosbox.extremes import Finding, Verdict, assess
-from atmosbox.extremes.catalogue import FAMILIES
-from atmosbox.extremes.law import seen_share
+from atmosbox.engine import Periodic, maxwell_velocities, random_positions
+from atmosbox.scene.engines import choose, names
+from atmosbox.trade.extremes import Finding, Verdict, assess
+from atmosbox.trade.extremes.catalogue import FAMILIES
+from atmosbox.trade.extremes.law import seen_share
 
 Array = np.ndarray
 

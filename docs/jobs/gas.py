@@ -7,11 +7,9 @@ from jobs.drawing import axes_of, save
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.engine.measure import temperature
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.start import equal_speeds, maxwell_velocities, random_positions
-from atmosbox.engine.walls import Periodic
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import ParcelSet, Periodic, equal_speeds, maxwell_velocities, random_positions
+from atmosbox.engine.core.measure import temperature
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 OPEN = (Periodic(),) * 6
 BLOCKS = 40

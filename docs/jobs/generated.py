@@ -10,9 +10,11 @@ from pathlib import Path
 
 from jobs.registry import DOCS, ROOT, Findings, job
 
-from atmosbox import diagnostics, runner, scenarios
+from atmosbox import scenarios
 from atmosbox.cli.scene import summaries
-from atmosbox.provenance import global_attributes
+from atmosbox.file import dataset as diagnostics
+from atmosbox.file.provenance import global_attributes
+from atmosbox.run import runner
 
 
 @job("scenes", quick=True)
@@ -155,7 +157,7 @@ def own_scene(found: Findings) -> None:
         folder = Path(name)
         (folder / "my_scene.py").write_text(f"{source}\n", encoding="utf-8")
         found.text(console("run ./my_scene.py", folder), key="run")
-        from atmosbox.output import read
+        from atmosbox.file.netcdf import read
         from atmosbox.plot import figure
 
         dataset = read(folder / "my_scene.nc")

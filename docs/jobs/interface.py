@@ -9,26 +9,33 @@ PAGES = DOCS / "api"
 MODULE = re.compile(r"^\.\. automodule:: ([\w.]+)$", re.MULTILINE)
 
 DOORS = {
-    "run": ("atmosbox", "atmosbox.scenarios", "atmosbox.runner", "atmosbox.output", "atmosbox.plot", "atmosbox.errors"),
-    "physics": ("atmosbox.theory", "atmosbox.sounding", "atmosbox.units", "atmosbox.statistics"),
+    "run": (
+        "atmosbox",
+        "atmosbox.scenarios",
+        "atmosbox.run.runner",
+        "atmosbox.file.netcdf",
+        "atmosbox.plot",
+        "atmosbox.errors",
+    ),
+    "physics": ("atmosbox.theory", "atmosbox.scene.sounding", "atmosbox.scene.units", "atmosbox.scene.statistics"),
     "scene": (
-        "atmosbox.settings",
-        "atmosbox.scene",
+        "atmosbox.scene.settings",
+        "atmosbox.scene.setup",
         "atmosbox.engine",
-        "atmosbox.instruments",
-        "atmosbox.headline",
-        "atmosbox.panels",
-        "atmosbox.diagnostics",
+        "atmosbox.scene.instruments",
+        "atmosbox.scene.headline",
+        "atmosbox.scene.panels",
+        "atmosbox.file.dataset",
     ),
     "show": (
-        "atmosbox.compare",
+        "atmosbox.plot.compare",
         "atmosbox.sweep",
         "atmosbox.page",
         "atmosbox.film",
         "atmosbox.live",
         "atmosbox.sheet",
     ),
-    "trust": ("atmosbox.engines", "atmosbox.accuracy", "atmosbox.tradeoff", "atmosbox.extremes"),
+    "trust": ("atmosbox.scene.engines", "atmosbox.run.accuracy", "atmosbox.trade.tradeoff", "atmosbox.trade.extremes"),
 }
 """The modules by the table in which they stand."""
 

@@ -8,8 +8,9 @@ from jobs.drawing import BLUE, VERMILLION, axes_of, save
 from jobs.registry import Findings, job
 from scipy import optimize
 
-from atmosbox import runner, scenarios, theory
-from atmosbox.units import BOLTZMANN
+from atmosbox import scenarios, theory
+from atmosbox.run import runner
+from atmosbox.theory.constants import BOLTZMANN
 
 LEVELS = (700, 300)
 SEEDS = {100: 24, 200: 24, 400: 24, 800: 16, 1600: 16}

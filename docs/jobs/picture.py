@@ -8,8 +8,8 @@ from jobs.registry import Findings, job
 from matplotlib.collections import EllipseCollection
 from matplotlib.patches import Circle, Rectangle
 
-from atmosbox import runner
 from atmosbox.plot.theme import DARK, FAINT
+from atmosbox.run import runner
 
 SLICE = 12e-9
 """Thickness of the slice of the box that is drawn [m]."""

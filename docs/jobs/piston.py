@@ -6,9 +6,7 @@ import numpy as np
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.walls import Periodic, Piston, Specular
+from atmosbox.engine import ParcelSet, Periodic, Piston, Specular, maxwell_velocities, random_positions
 
 N = 1000
 SEEDS = range(1, 9)

@@ -8,8 +8,10 @@ import numpy as np
 from jobs.registry import Findings, job, rounded
 from scipy import constants, integrate
 
-from atmosbox import runner, theory
-from atmosbox.units import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, Scale
+from atmosbox import theory
+from atmosbox.run import runner
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
 EARTH = 6.356766e6
 """Radius of the earth by which gravity falls off in the standard atmosphere, ISO 2533:1975 [m]."""

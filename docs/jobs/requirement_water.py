@@ -7,8 +7,8 @@ from jobs.registry import Findings, job, rounded
 from jobs.requirement import HEAD, set_up
 
 from atmosbox import theory
-from atmosbox.rising import error
-from atmosbox.units import BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
+from atmosbox.scene.ascent import finite_size
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
 
 SURFACE_TENSION = 75.65e-3
 """Of water at 0 degC [N m-1]: IAPWS R1-76(2014)."""
@@ -53,9 +53,9 @@ def rising_cloud(found: Findings) -> None:
     small = (3.0 * WATER.molecule_mass * 100.0 / (4.0 * math.pi * LIQUID_DENSITY)) ** (1.0 / 3.0)
     pseudo = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water, 0.0)
     lost = float(pseudo.temperature[0]) - end
-    hurry = end * error.haste(ascent).finite_speed(top)
-    low, high = base - error.blur(ascent), base + error.blur(ascent)
-    lag = error.lag(ascent, 0.8 * base)
+    hurry = end * finite_size.haste(ascent).finite_speed(top)
+    low, high = base - finite_size.blur(ascent), base + finite_size.blur(ascent)
+    lag = finite_size.lag(ascent, 0.8 * base)
     nuclei = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water)
     faces = float(np.prod(setup.parcel.length[:2])) * settings.area * (setup.scale.length * 1e9) ** 2
     found.number("hurry", f"{rounded(hurry)} K")

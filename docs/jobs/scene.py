@@ -4,9 +4,10 @@ from functools import partial
 
 from jobs.registry import Findings, job
 
-from atmosbox import runner, scenarios
+from atmosbox import scenarios
 from atmosbox.cli.report import headline_lines
 from atmosbox.plot import figure
+from atmosbox.run import runner
 
 WIDTH = 100
 DOTS_PER_INCH = 100

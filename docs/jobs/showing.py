@@ -9,9 +9,9 @@ from jobs.registry import Findings, job
 
 import atmosbox
 from atmosbox.cli.compare import lines
-from atmosbox.compare import compared, naming
-from atmosbox.compare.file import spoken
 from atmosbox.page import save
+from atmosbox.plot.compare import compared, naming
+from atmosbox.plot.compare.compared_file import spoken
 from atmosbox.plot.comparison import figure
 
 WIDTH, HEIGHT = 1280, 720

@@ -5,7 +5,9 @@ import math
 import numpy as np
 from jobs.registry import Findings, job, rounded
 
-from atmosbox import runner, sounding, theory
+from atmosbox import theory
+from atmosbox.run import runner
+from atmosbox.scene import sounding
 
 
 def own(moisture: float, most_liquid: float, warmer: float = 0.0) -> theory.Convection:

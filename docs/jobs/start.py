@@ -6,9 +6,9 @@ from pathlib import Path
 from jobs.generated import console, typed
 from jobs.registry import Findings, job, rounded
 
-from atmosbox import runner
-from atmosbox.output import read
+from atmosbox.file.netcdf import read
 from atmosbox.plot import figure
+from atmosbox.run import runner
 
 RUN = "run lifting-dry --set molecules=2000 --out lift.nc"
 

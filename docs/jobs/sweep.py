@@ -3,7 +3,7 @@
 import numpy as np
 from jobs.registry import Findings, job
 
-from atmosbox.plot.sweep import figure
+from atmosbox.plot.sweep_figure import figure
 from atmosbox.sweep import plan, sweep
 
 

@@ -7,11 +7,11 @@ import warnings
 import numpy as np
 from jobs.registry import ROOT, Findings, job, rounded
 
-from atmosbox import engines, scenarios, theory
-from atmosbox.engine import Periodic
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.output import read
-from atmosbox.plot import tradeoff
+from atmosbox import scenarios, theory
+from atmosbox.engine import Periodic, maxwell_velocities, random_positions
+from atmosbox.file.netcdf import read
+from atmosbox.plot import tradeoff_figure
+from atmosbox.scene import engines
 
 FOLDER = ROOT / "benchmarks"
 SCENES = ("lifting-dry", "atmosphere", "temperature-large")
@@ -32,8 +32,8 @@ def trade(found: Findings) -> None:
     """Draw the figure and make the table of each scene."""
     for scene in SCENES:
         data = measured(scene)
-        found.figure(tradeoff.figure(data), f"tradeoff-{scene}", 130)
-        names = tradeoff.foremost(data)
+        found.figure(tradeoff_figure.figure(data), f"tradeoff-{scene}", 130)
+        names = tradeoff_figure.foremost(data)
         units = ["K" if str(data.unit.sel(quantity=name).item()) == "K" else "%" for name in names]
         head = ["run", "cost", "runs"]
         head += [f"{data.label.sel(quantity=n).item()} [{u}]" for n, u in zip(names, units, strict=True)]

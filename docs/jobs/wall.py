@@ -7,12 +7,10 @@ from jobs.gas import contacts_pass
 from jobs.registry import Findings, job, rounded
 
 from atmosbox import theory
-from atmosbox.engine.measure import layer_sample
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.walls import HeatBath, Piston, Specular
-from atmosbox.runner import LEDGER_LIMIT
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import HeatBath, ParcelSet, Piston, Specular, maxwell_velocities, random_positions
+from atmosbox.engine.core.measure import layer_sample
+from atmosbox.run.runner import LEDGER_LIMIT
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 
 @job("energy")

@@ -6,13 +6,15 @@ import numpy as np
 from jobs.drawing import BLUE, save, sheet
 from jobs.registry import Findings, job
 
-from atmosbox import runner, theory
-from atmosbox.engine.liquid import Mist
-from atmosbox.engine.moist_parcelset import MoistParcelSet
-from atmosbox.moisture import moist_air, water
+from atmosbox import theory
+from atmosbox.engine import Mist
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.plot.theme import DARK, REFERENCE_COLOURS
-from atmosbox.statistics import block_average
-from atmosbox.units import BOLTZMANN, DRY_AIR, Scale
+from atmosbox.run import runner
+from atmosbox.scene.moisture import moist_air, water
+from atmosbox.scene.statistics import block_average
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 RUNS: dict[float, dict[str, float]] = {
     -10.0: {"pressure": 100.0, "duration": 400.0},

@@ -6,13 +6,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, RefusedError, Specular
-from atmosbox.engine.classic import ClassicParcel
-from atmosbox.engine.dsmc_parcel import DsmcParcel
-from atmosbox.engine.liquid import Drops, Mist, Substance
-from atmosbox.engine.moist_parcelset import MoistParcelSet
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.engine.stepped_parcel import SteppedParcel
+from atmosbox.engine import (
+    Drops,
+    HeatBath,
+    Mist,
+    ParcelSet,
+    Periodic,
+    Piston,
+    RefusedError,
+    Specular,
+    Substance,
+    maxwell_velocities,
+    random_positions,
+)
+from atmosbox.engine.classic.classic import ClassicParcel
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 
 ENGINES = (ParcelSet, SteppedParcel, DsmcParcel, ClassicParcel)
 BATHS = (HeatBath(1.0),) * 6
@@ -143,7 +153,7 @@ def test_without_collisions_molecules_meet_walls_alone(engine):
 
 
 def test_drops_need_collisions():
-    from atmosbox.engine.drop_parcelset import DropParcelSet
+    from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 
     drops = Drops(WATER, nuclei=5.0, position=((3.0, 3.0, 3.0),))
     with pytest.raises(RefusedError, match="leave collisions on"):

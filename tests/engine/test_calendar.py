@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine.calendar import new_calendar, next_event, schedule
+from atmosbox.engine.exact.calendar import new_calendar, next_event, schedule
 
 
 def heap_of(times):

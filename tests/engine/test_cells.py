@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine.cells import append, choose_grid, remove, size_classes
-from atmosbox.engine.refusal import RefusedError
+from atmosbox.engine import RefusedError
+from atmosbox.engine.exact.cells import append, choose_grid, remove, size_classes
 
 MARGIN = 1e-6  # how much larger than its sphere a molecule may be taken to be, in radii
 

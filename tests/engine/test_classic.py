@@ -7,11 +7,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine import HeatBath, Periodic, Piston, Ramp, RefusedError, Specular
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.classic import SCHEMES, ClassicParcel
-from atmosbox.engine.classic_strips import strips_across
-from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine import (
+    HeatBath,
+    Periodic,
+    Piston,
+    Ramp,
+    RefusedError,
+    Specular,
+    maxwell_velocities,
+    random_positions,
+)
+from atmosbox.engine.classic.classic import SCHEMES, ClassicParcel
+from atmosbox.engine.classic.classic_strips import strips_across
+from atmosbox.engine.core.jit import COMPILED
 
 many_steps = pytest.mark.skipif(not COMPILED, reason="so many pairs take minutes without numba")
 

@@ -5,9 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import FollowPressure, ParcelSet, Piston, RefusedError, Specular
-from atmosbox.engine.course import Course
-from atmosbox.engine.start import maxwell_velocities, random_positions
+from atmosbox.engine import (
+    Course,
+    FollowPressure,
+    ParcelSet,
+    Piston,
+    RefusedError,
+    Specular,
+    maxwell_velocities,
+    random_positions,
+)
 
 
 def test_left_alone_it_keeps_to_the_plan_and_rests_at_its_end():

@@ -11,10 +11,15 @@ import pkgutil
 import pytest
 
 import atmosbox.engine
-from atmosbox.engine._jit import COMPILED
+from atmosbox.engine.core.jit import COMPILED
 
-MODULES = [
+FOLDERS = [
     importlib.import_module(f"atmosbox.engine.{found.name}") for found in pkgutil.iter_modules(atmosbox.engine.__path__)
+]
+MODULES = [
+    importlib.import_module(f"{folder.__name__}.{found.name}")
+    for folder in FOLDERS
+    for found in pkgutil.iter_modules(folder.__path__)
 ]
 KERNELS = [
     (module, name)
@@ -40,6 +45,13 @@ def test_the_examples_of_a_kernel_hold(module, name):
     assert result.failed == 0, "".join(report)
 
 
-def test_the_engine_says_where_to_find_each_of_its_files():
-    listed = {line.split("`")[1] for line in atmosbox.engine.__doc__.splitlines() if line.startswith("`")}
-    assert listed == {module.__name__.rpartition(".")[2] for module in MODULES}
+def listed(module):
+    """Return the names that a docstring lists, one a line."""
+    return {line.split("`")[1] for line in module.__doc__.splitlines() if line.startswith("`")}
+
+
+def test_the_engine_says_where_to_find_each_of_its_folders_and_files():
+    assert listed(atmosbox.engine) == {folder.__name__.rpartition(".")[2] for folder in FOLDERS}
+    for folder in FOLDERS:
+        names = [module.__name__.rpartition(".") for module in MODULES]
+        assert listed(folder) == {name for package, _, name in names if package == folder.__name__}

@@ -11,12 +11,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine import drop_parcelset
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.drop_parcelset import DropParcelSet
-from atmosbox.engine.liquid import AIR_MET, Drops, Mist, Substance
-from atmosbox.engine.refusal import RefusedError, StalledError
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+from atmosbox.engine import Drops, HeatBath, Mist, Periodic, Piston, RefusedError, Specular, StalledError, Substance
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.liquid import drop_parcelset
+from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+from atmosbox.engine.liquid.reservoir import AIR_MET
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

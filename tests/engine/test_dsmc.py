@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, Ramp, RefusedError, Specular, StalledError
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.dsmc_parcel import DsmcParcel
-from atmosbox.engine.measure import momentum
-from atmosbox.engine.swarm import BLOCK
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.core.measure import momentum
+from atmosbox.engine.dsmc.columns import BLOCK
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 
 many_molecules = pytest.mark.skipif(not COMPILED, reason="so many molecules take minutes without numba")
 

@@ -10,20 +10,20 @@ from pathlib import Path
 import pytest
 
 import atmosbox.engine
-from atmosbox.engine import _jit
+from atmosbox.engine.core import jit
 
 ENGINE = Path(atmosbox.engine.__file__).parent
 
 CONSTANT = "FACTOR = 2.0\n"
 CALLEE = """
-from atmosbox.engine._jit import kernel
+from atmosbox.engine.core.jit import kernel
 
 @kernel
 def shifted(x):
     return x + 1.0
 """
 CALLER = """
-from atmosbox.engine._jit import kernel
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.probe_callee import shifted
 from atmosbox.engine.probe_constant import FACTOR
 
@@ -33,7 +33,7 @@ def answer(x):
 """
 QUESTION = "from atmosbox.engine.probe_caller import answer; print(answer(3.0), sum(answer.stats.cache_hits.values()))"
 
-needs_numba = pytest.mark.skipif(not _jit.COMPILED, reason="nothing is compiled, so nothing is kept")
+needs_numba = pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled, so nothing is kept")
 
 
 @pytest.fixture
@@ -91,7 +91,7 @@ def test_an_edit_in_another_file_is_seen_at_once(tree, tmp_path):
 @needs_numba
 def test_the_folder_that_numba_is_told_is_the_one_used(tree, tmp_path):
     ask(tree, NUMBA_CACHE_DIR=str(tmp_path / "asked"), XDG_CACHE_HOME=str(tmp_path / "not asked"))
-    digest = _jit.source_digest(tree / "atmosbox" / "engine")
+    digest = jit.source_digest(tree / "atmosbox" / "engine")
     assert list((tmp_path / "asked" / digest).rglob("*.nbi"))
     assert not (tmp_path / "not asked").exists()
     assert not list(tree.rglob("*.nbi"))
@@ -113,10 +113,10 @@ def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
     blocked = tmp_path / "a file, not a folder"
     blocked.write_text("", encoding="utf-8")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
-    assert _jit.cache_folder() is None
-    monkeypatch.setattr(_jit, "_CACHE", None)
+    assert jit.cache_folder() is None
+    monkeypatch.setattr(jit, "_CACHE", None)
 
-    @_jit.kernel(entry=True)
+    @jit.kernel(entry=True)
     def twice(x):
         return 2.0 * x
 
@@ -127,25 +127,66 @@ def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
 def test_the_home_of_caches_is_tried_before_the_temporary_folder(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    folder = _jit.cache_folder()
+    folder = jit.cache_folder()
     assert folder is not None
     assert folder.parent == tmp_path / "atmosbox"
-    assert folder.name == _jit.source_digest()
-    assert list(folder.iterdir()) == []
-    tried = [str(home) for home in _jit._home_of_caches()]
+    assert folder.name == jit.source_digest()
+    assert not list(folder.iterdir())
+    tried = [str(home) for home in jit._homes_of_caches()]
     assert tried[0].startswith(str(tmp_path))
     assert tried[1].startswith(tempfile.gettempdir())
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
+def test_a_folder_that_others_may_write_to_is_not_trusted(tmp_path, monkeypatch):
+    ours, theirs = tmp_path / "ours", tmp_path / "theirs"
+    monkeypatch.setattr(jit, "_homes_of_caches", lambda: [theirs, ours])
+    theirs.mkdir(mode=0o700)
+    assert jit.cache_folder().parent == theirs
+    theirs.chmod(0o777)
+    assert jit.cache_folder().parent == ours
+    assert ours.stat().st_mode & 0o077 == 0
+    ours.chmod(0o770)
+    assert jit.cache_folder() is None
+    theirs.chmod(0o700)
+    monkeypatch.setattr(os, "getuid", lambda: theirs.stat().st_uid + 1)
+    assert jit.cache_folder() is None
+
+
+@needs_numba
+def test_an_edited_docstring_or_comment_compiles_nothing(tree, tmp_path):
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    assert ask(tree, **cache) == (8.0, 0)
+    edit(tree, "probe_caller.py", "@kernel(entry", '"""A text."""\n\n# a comment\n\n\n@kernel(entry')
+    edit(tree, "core/random.py", "import math", "# another comment\nimport math")
+    assert ask(tree, **cache) == (8.0, 1)
+    edit(tree, "probe_constant.py", "2.0", "3.0")
+    assert ask(tree, **cache) == (12.0, 0)
+
+
+def test_the_digest_covers_code_alone(tmp_path):
+    file = tmp_path / "deep" / "one.py"
+    file.parent.mkdir()
+    texts = ['X = 1\n"""Its meaning."""\n', '"""A title."""\n\nX = 1  # a comment\n', "X = 1\n", "X = 2\n"]
+    digests = []
+    for text in texts:
+        file.write_text(text, encoding="utf-8")
+        memory = jit.source_digest(tmp_path / "deep", memory=tmp_path)
+        digests.append(jit.source_digest(tmp_path / "deep"))
+        assert jit.source_digest(tmp_path / "deep", memory=tmp_path) == memory == digests[-1]
+    assert len(set(digests[:3])) == 1
+    assert digests[2] != digests[3]
+
+
 def test_the_digest_depends_on_every_source_and_on_its_name(tmp_path):
     (tmp_path / "one.py").write_text("1", encoding="utf-8")
-    first = _jit.source_digest(tmp_path)
+    first = jit.source_digest(tmp_path)
     (tmp_path / "notes.txt").write_text("1", encoding="utf-8")
-    assert _jit.source_digest(tmp_path) == first
+    assert jit.source_digest(tmp_path) == first
     (tmp_path / "two.py").write_text("", encoding="utf-8")
-    second = _jit.source_digest(tmp_path)
+    second = jit.source_digest(tmp_path)
     (tmp_path / "two.py").rename(tmp_path / "three.py")
-    third = _jit.source_digest(tmp_path)
+    third = jit.source_digest(tmp_path)
     (tmp_path / "one.py").write_text("2", encoding="utf-8")
-    assert len({first, second, third, _jit.source_digest(tmp_path)}) == 4
-    assert _jit.source_digest() == _jit.source_digest(ENGINE)
+    assert len({first, second, third, jit.source_digest(tmp_path)}) == 4
+    assert jit.source_digest() == jit.source_digest(ENGINE)

@@ -5,9 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine.lattice import lattice_positions
-from atmosbox.engine.packing import packing_fraction
-from atmosbox.engine.refusal import PackingError
+from atmosbox.engine import PackingError, lattice_positions, packing_fraction
 
 
 def distances(x, side=None):

@@ -10,17 +10,15 @@ import numpy as np
 import pytest
 from scipy import integrate, special, stats
 
-from atmosbox.engine.liquid import (
+from atmosbox.engine import Liquid, Mist, Pool, RefusedError, Substance
+from atmosbox.engine.core.random import gamma_of_shape
+from atmosbox.engine.liquid.reservoir import (
     CONDENSED,
     EVAPORATED,
     LIQUID,
     RAINED,
     RAINED_ENERGY,
     THERMAL,
-    Liquid,
-    Mist,
-    Pool,
-    Substance,
     condense,
     evaporate,
     evaporation_rate,
@@ -31,8 +29,6 @@ from atmosbox.engine.liquid import (
     rain_out,
     wait,
 )
-from atmosbox.engine.random import gamma_of_shape
-from atmosbox.engine.refusal import RefusedError
 
 NUMBER = 20_000
 PHI, C_L, K, MASS, AREA = 3.0, 9.0, 1e-2, 0.62, 7.0

@@ -10,12 +10,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine import HeatBath, Periodic, Piston, RefusedError, Specular, StalledError
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.dsmc_parcel import DsmcParcel
-from atmosbox.engine.liquid import AIR_MET, Drops, Mist, Pool, Substance
-from atmosbox.engine.moist_dsmc_parcel import MoistDsmcParcel
-from atmosbox.statistics import block_average
+from atmosbox.engine import (
+    Drops,
+    HeatBath,
+    Mist,
+    Periodic,
+    Piston,
+    Pool,
+    RefusedError,
+    Specular,
+    StalledError,
+    Substance,
+)
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
+from atmosbox.engine.liquid.reservoir import AIR_MET
+from atmosbox.scene.statistics import block_average
 
 many_steps = pytest.mark.skipif(not COMPILED, reason="so many steps take minutes without numba")
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atmosbox.engine.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
+from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 
 SHARES = st.floats(0.0, 1.0)
 SPEEDS = st.floats(-10.0, 10.0).filter(lambda v: v == 0.0 or abs(v) > 1e-6)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atmosbox.engine.overlap import push_apart
+from atmosbox.engine.start.overlap import push_apart
 
 GAP = 1e-6
 

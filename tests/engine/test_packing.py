@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine.packing import packing_fraction, refuse_impossible
-from atmosbox.engine.refusal import PackingError, RefusedError
+from atmosbox.engine import PackingError, RefusedError, packing_fraction
+from atmosbox.engine.core.packing import refuse_impossible
 
 OPEN = (False, False, False)
 

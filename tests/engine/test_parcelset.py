@@ -19,8 +19,8 @@ from atmosbox.engine import (
     Specular,
     StalledError,
 )
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.reference import Reference
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.exact.reference import Reference
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

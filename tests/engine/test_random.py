@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.engine.random import gamma, gaussian_pair, uniform
+from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
 
 NUMBER = 40_000
 WORD = 1 << 64

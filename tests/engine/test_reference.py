@@ -15,10 +15,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.reference import Event, Reference, time_to_close
-from atmosbox.engine.schedule import Ramp
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, Ramp, Specular
+from atmosbox.engine.exact.reference import Event, Reference, time_to_close
 
 MOST_EVENTS = 90
 TOGETHER = 1e-6  # events closer in time than this part of a run's mean interval are compared as one

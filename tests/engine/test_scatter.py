@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine.refusal import RefusedError
-from atmosbox.engine.scatter import random_positions
+from atmosbox.engine import RefusedError, random_positions
 
 
 def shortest(x, sides, periodic):

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from atmosbox.engine.refusal import RefusedError
-from atmosbox.engine.schedule import Constant, Ramp, Steps, as_schedule
-from atmosbox.engine.walls import HeatBath, Specular, new_walls, wall_kT
+from atmosbox.engine import Constant, HeatBath, Ramp, RefusedError, Specular, Steps
+from atmosbox.engine.core.schedule import as_schedule
+from atmosbox.engine.core.walls import new_walls, wall_kT
 
 
 def kT_at(schedule, times):

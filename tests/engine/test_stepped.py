@@ -7,11 +7,22 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, Ramp, RefusedError, Specular, StalledError
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.refusal import CoarseStepWarning
-from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
-from atmosbox.engine.stepped_parcel import SteppedParcel
+from atmosbox.engine import (
+    CoarseStepWarning,
+    HeatBath,
+    ParcelSet,
+    Periodic,
+    Piston,
+    Ramp,
+    RefusedError,
+    Specular,
+    StalledError,
+    maxwell_velocities,
+    random_positions,
+    rotational_energies,
+)
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 
 many_steps = pytest.mark.skipif(not COMPILED, reason="so many steps take minutes without numba")
 
@@ -353,7 +364,7 @@ PERIODIC = [(False, False, False), (True, True, True), (True, False, True), (Fal
 @pytest.mark.parametrize("planar", [False, True])
 def test_every_pair_in_overlap_is_found_once(monkeypatch, periodic, length, mixed, planar):
     found = []
-    monkeypatch.setattr("atmosbox.engine.stepped_parcel.judge_overlap", lambda pairs, *_: found.append(pairs))
+    monkeypatch.setattr("atmosbox.engine.stepped.stepped_parcel.judge_overlap", lambda pairs, *_: found.append(pairs))
     rng = np.random.default_rng(2)
     x = 0.5 + rng.random((200, 3)) * (np.array(length) - 1.0)
     if planar:

@@ -10,17 +10,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.engine.refusal import RefusedError
-from atmosbox.engine.schedule import Ramp
-from atmosbox.engine.walls import (
-    WALL_NAMES,
-    HeatBath,
-    Periodic,
-    Piston,
-    Specular,
-    new_walls,
-    resolve_wall_hit,
-)
+from atmosbox.engine import HeatBath, Periodic, Piston, Ramp, RefusedError, Specular
+from atmosbox.engine.core.walls import WALL_NAMES, new_walls, resolve_wall_hit
 
 NUMBER = 30_000
 KT, MASS = 2.5, 4.0

@@ -7,7 +7,7 @@ import xarray as xr
 
 from atmosbox.live import Session
 from atmosbox.page import live_page
-from atmosbox.preparation import prepare
+from atmosbox.run.preparation import prepare
 
 
 @pytest.fixture

@@ -7,15 +7,15 @@ import pytest
 import xarray as xr
 
 from atmosbox.errors import FileError
-from atmosbox.knob import Knob
 from atmosbox.live.audience import Audience, Mailbox
 from atmosbox.live.control import controls
-from atmosbox.live.report import Report
 from atmosbox.live.server import allowed, loopback
+from atmosbox.live.summary import Report
 from atmosbox.live.tape import file_for
 from atmosbox.live.trace import Trace
-from atmosbox.panels import Line, Panel
-from atmosbox.settings import SceneSettings, setting
+from atmosbox.scene.knob import Knob
+from atmosbox.scene.panels import Line, Panel
+from atmosbox.scene.settings import SceneSettings, setting
 
 
 class Settings(SceneSettings):

@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from atmosbox import page, plot, runner, scenarios
+from atmosbox import page, plot, scenarios
 from atmosbox import theory as law
 from atmosbox.errors import AtmosboxError, FileError, SettingError
-from atmosbox.exchange import MoistBox
-from atmosbox.instruments import Molecules
+from atmosbox.file.netcdf import read
 from atmosbox.live import Session
-from atmosbox.output import read
-from atmosbox.preparation import prepare
-from atmosbox.verification import LEDGER_LIMIT, verify
+from atmosbox.run import runner
+from atmosbox.run.preparation import prepare
+from atmosbox.run.verification import LEDGER_LIMIT, verify
+from atmosbox.scene.exchange import MoistBox
+from atmosbox.scene.instruments import Molecules
 
 SMALL = {
     "atmosphere": {"molecules": 200, "duration": 20},
@@ -428,13 +429,13 @@ def test_a_scene_of_ones_own_gets_its_sliders(tmp_path):
         '"""Mine."""\n'
         "import numpy as np\n"
         "from atmosbox.engine import Specular\n"
-        "from atmosbox.engines import EXACT\n"
-        "from atmosbox.instruments import Air\n"
-        "from atmosbox.knob import Knob\n"
-        "from atmosbox.panels import Line, Panel\n"
-        "from atmosbox.scene import Setup\n"
-        "from atmosbox.settings import SceneSettings, setting\n"
-        "from atmosbox.units import Scale\n"
+        "from atmosbox.scene.engines import EXACT\n"
+        "from atmosbox.scene.instruments import Air\n"
+        "from atmosbox.scene.knob import Knob\n"
+        "from atmosbox.scene.panels import Line, Panel\n"
+        "from atmosbox.scene.setup import Setup\n"
+        "from atmosbox.scene.settings import SceneSettings, setting\n"
+        "from atmosbox.scene.units import Scale\n"
         "class Settings(SceneSettings):\n"
         '    speed: float = setting(1.0, "1", "speed at the start", low=0.1, high=5.0)\n'
         "turned = []\n"

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from atmosbox import diagnostics
-from atmosbox.instruments import LAWS
+from atmosbox.file import dataset as diagnostics
+from atmosbox.file.provenance import global_attributes
 from atmosbox.page import save
-from atmosbox.panels import Line, Panel, to_json
-from atmosbox.provenance import global_attributes
-from atmosbox.units import BOLTZMANN, DRY_AIR, WATER
+from atmosbox.scene.instruments import LAWS
+from atmosbox.scene.panels import Line, Panel, to_json
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR, WATER
 
 SIDE = 2e-8
 

@@ -9,9 +9,9 @@ from matplotlib.image import imread
 
 from atmosbox.page import live_page
 from atmosbox.page.document import _text
-from atmosbox.page.run import pages
-from atmosbox.panels import from_json
+from atmosbox.page.saved_run import pages
 from atmosbox.plot.curve import curve
+from atmosbox.scene.panels import from_json
 
 PHONE = (390, 844)
 

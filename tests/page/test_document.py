@@ -13,7 +13,7 @@ import xarray as xr
 from atmosbox.errors import FileError, SettingError
 from atmosbox.page import live_page, save, view_page
 from atmosbox.page.document import MODULES
-from atmosbox.page.run import pages
+from atmosbox.page.saved_run import pages
 
 PACKAGE = resources.files("atmosbox.page")
 

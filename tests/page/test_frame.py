@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from atmosbox.page.frame import encode, pack
-from atmosbox.page.liquid import clumps, layer
+from atmosbox.page.page_liquid import clumps, layer
 from atmosbox.page.thinning import MOST, chosen, share
 
 NO_DROPS = np.zeros((0, 4))

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from atmosbox import runner
-from atmosbox.output import read, write
+from atmosbox.file.netcdf import read, write
 from atmosbox.page.moment import moments
-from atmosbox.page.run import pages
-from atmosbox.units import DRY_AIR, WATER
+from atmosbox.page.saved_run import pages
+from atmosbox.run import runner
+from atmosbox.theory.constants import DRY_AIR, WATER
 
 RUNS = {
     "temperature": {"molecules": 20, "duration": 0.1},

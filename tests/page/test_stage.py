@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from atmosbox.page import Box, stage
-from atmosbox.page.panel import declared, panel_record
-from atmosbox.panels import Line, Panel
-from atmosbox.units import DRY_AIR, WATER
+from atmosbox.page.page_panel import declared, panel_record
+from atmosbox.scene.panels import Line, Panel
+from atmosbox.theory.constants import DRY_AIR, WATER
 
 NANO = Box(length=(2e-8, 2e-8, 2e-8))
 

@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 
 from atmosbox.cli.application import app
 from atmosbox.cli.command import main  # noqa: F401, the commands add themselves to the application
-from atmosbox.output import write
+from atmosbox.file.netcdf import write
 
 RUNNER = CliRunner()
 

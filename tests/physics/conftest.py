@@ -9,12 +9,17 @@ import numpy as np
 import pytest
 from scipy import special
 
-from atmosbox.engine.liquid import Substance
-from atmosbox.engine.moist_parcelset import MoistParcelSet
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
-from atmosbox.engine.walls import Periodic, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import (
+    ParcelSet,
+    Periodic,
+    Specular,
+    Substance,
+    maxwell_velocities,
+    random_positions,
+    rotational_energies,
+)
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from atmosbox.scene.statistics import block_average
 
 SPECULAR = (Specular(),) * 6
 

@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine import HeatBath, Periodic, Specular
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.classic import SCHEMES, ClassicParcel
-from atmosbox.engine.start import maxwell_velocities, random_positions
-from atmosbox.statistics import block_average
+from atmosbox.engine import HeatBath, Periodic, Specular, maxwell_velocities, random_positions
+from atmosbox.engine.classic.classic import SCHEMES, ClassicParcel
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.scene.statistics import block_average
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many steps take hours without numba")
 

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine.measure import layer_sample
-from atmosbox.engine.walls import HeatBath, Periodic, Specular
-from atmosbox.instruments import Layers
-from atmosbox.statistics import block_average
-from atmosbox.units import BOLTZMANN, Scale
+from atmosbox.engine import HeatBath, Periodic, Specular
+from atmosbox.engine.core.measure import layer_sample
+from atmosbox.scene.instruments import Layers
+from atmosbox.scene.statistics import block_average
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import BOLTZMANN
 
 S, P = Specular(), Periodic()
 

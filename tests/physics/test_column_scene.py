@@ -9,10 +9,11 @@ import json
 import numpy as np
 import pytest
 
-from atmosbox import engines, runner
-from atmosbox.engine.parcelset import ParcelSet
-from atmosbox.engines import choice
-from atmosbox.statistics import block_average
+from atmosbox.engine import ParcelSet
+from atmosbox.run import runner
+from atmosbox.scene import engines
+from atmosbox.scene.engines import engine_choice
+from atmosbox.scene.statistics import block_average
 
 
 def run(**settings):
@@ -28,7 +29,7 @@ def facts(engine=engines.EXACT, **settings):
 def ideal(monkeypatch):
     """Return an engine that says of itself that its molecules take no room."""
     each = engines.Engine("roomless", "molecules without volume", lambda: ParcelSet, ideal=True)
-    monkeypatch.setattr(choice, "ENGINES", {**engines.ENGINES, each.name: each})
+    monkeypatch.setattr(engine_choice, "ENGINES", {**engines.ENGINES, each.name: each})
     return engines.EngineChoice(each)
 
 

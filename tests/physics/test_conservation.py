@@ -6,8 +6,8 @@ These are identities of every single run, to rounding: nothing here is statistic
 import numpy as np
 import pytest
 
-from atmosbox.engine.measure import momentum
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
+from atmosbox.engine import HeatBath, Periodic, Piston, Specular
+from atmosbox.engine.core.measure import momentum
 
 S, P = Specular(), Periodic()
 

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from scipy import special
 
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.drop_parcelset import DropParcelSet
-from atmosbox.engine.liquid import Drops, Substance
-from atmosbox.engine.walls import HeatBath, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import Drops, HeatBath, Specular, Substance
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+from atmosbox.scene.statistics import block_average
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

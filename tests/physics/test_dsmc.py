@@ -10,11 +10,10 @@ import pytest
 from scipy import stats
 
 from atmosbox import theory
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.dsmc_parcel import DsmcParcel
-from atmosbox.engine.start import maxwell_velocities
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import HeatBath, Periodic, Piston, Specular, maxwell_velocities
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many molecules take hours without numba")
 

@@ -8,11 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.dsmc_parcel import DsmcParcel
-from atmosbox.engine.start import maxwell_velocities
-from atmosbox.engine.walls import HeatBath, Periodic
-from atmosbox.statistics import block_average
+from atmosbox.engine import HeatBath, Periodic, maxwell_velocities
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.scene.statistics import block_average
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many molecules take hours without numba")
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine.measure import mean_free_path
-from atmosbox.engine.walls import Periodic, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import Periodic, Specular
+from atmosbox.engine.core.measure import mean_free_path
+from atmosbox.scene.statistics import block_average
 
 S, P = Specular(), Periodic()
 FINITE = 1.5

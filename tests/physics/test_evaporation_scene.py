@@ -9,10 +9,11 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox import runner, theory
+from atmosbox import theory
 from atmosbox.errors import SettingError
+from atmosbox.run import runner
 from atmosbox.theory import LEAVING_FREEDOM, isobaric_water
-from atmosbox.units import BOLTZMANN
+from atmosbox.theory.constants import BOLTZMANN
 
 
 def run(**settings):

@@ -7,7 +7,7 @@ import pytest
 from scipy import integrate, optimize, special
 
 from atmosbox import theory
-from atmosbox.units import BOLTZMANN, WATER
+from atmosbox.theory.constants import BOLTZMANN, WATER
 
 C_L, PHI = theory.LIQUID_HEAT_CAPACITY, theory.BINDING_TEMPERATURE
 ZERO_CELSIUS = 273.15

@@ -10,9 +10,8 @@ import pytest
 from scipy import stats
 
 from atmosbox import theory
-from atmosbox.engine.schedule import Ramp, Steps
-from atmosbox.engine.walls import HeatBath, Periodic, Specular
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import HeatBath, Periodic, Ramp, Specular, Steps
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 S, P = Specular(), Periodic()
 

@@ -11,10 +11,9 @@ import pytest
 from scipy import stats
 
 from atmosbox import theory
-from atmosbox.engine.measure import speed_counts
-from atmosbox.engine.start import equal_speeds
-from atmosbox.engine.walls import Periodic, Specular
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import Periodic, Specular, equal_speeds
+from atmosbox.engine.core.measure import speed_counts
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 S, P = Specular(), Periodic()
 LEVEL = 1e-4

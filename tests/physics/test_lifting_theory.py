@@ -5,7 +5,7 @@ import pytest
 from scipy import integrate
 
 from atmosbox import theory
-from atmosbox.units import BOLTZMANN, DRY_AIR, STANDARD_GRAVITY
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR, STANDARD_GRAVITY
 
 
 def test_the_dry_adiabat_from_1000_to_500_hectopascal():

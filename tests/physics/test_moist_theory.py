@@ -6,7 +6,7 @@ from numpy.polynomial import Chebyshev
 from scipy import integrate
 
 from atmosbox import theory
-from atmosbox.units import BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY, WATER
 
 EPSILON = WATER.molar_mass / DRY_AIR.molar_mass
 R_DRY, R_VAPOR = GAS_CONSTANT / DRY_AIR.molar_mass, GAS_CONSTANT / WATER.molar_mass

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from atmosbox import theory
-from atmosbox.engine.lift import FollowPressure, stiffness
-from atmosbox.engine.start import lattice_positions
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import FollowPressure, HeatBath, Periodic, Piston, Specular, lattice_positions
+from atmosbox.engine.core.lift import stiffness
+from atmosbox.scene.statistics import block_average
 
 S, P = Specular(), Periodic()
 

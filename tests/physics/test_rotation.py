@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.engine.walls import HeatBath, Specular
-from atmosbox.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.engine import HeatBath, Specular
+from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
 
 S = Specular()
 

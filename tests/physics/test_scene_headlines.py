@@ -9,7 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox import runner, scenarios
+from atmosbox import scenarios
+from atmosbox.run import runner
 
 
 def run(scene, **settings):

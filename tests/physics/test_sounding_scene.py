@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from atmosbox import runner, scenarios, sounding, theory
+from atmosbox import scenarios, theory
 from atmosbox.cli import app
-from atmosbox.verification import verify
+from atmosbox.run import runner
+from atmosbox.run.verification import verify
+from atmosbox.scene import sounding
 
 SCENE = "lifting-sounding"
 SMALL = {"molecules": 1000, "ascent": 60}

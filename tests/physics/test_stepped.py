@@ -23,11 +23,17 @@ import warnings
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, Periodic, Specular
-from atmosbox.engine.refusal import CoarseStepWarning
-from atmosbox.engine.start import maxwell_velocities, random_positions, rotational_energies
-from atmosbox.engine.stepped_parcel import SteppedParcel
-from atmosbox.statistics import block_average
+from atmosbox.engine import (
+    CoarseStepWarning,
+    HeatBath,
+    Periodic,
+    Specular,
+    maxwell_velocities,
+    random_positions,
+    rotational_energies,
+)
+from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
+from atmosbox.scene.statistics import block_average
 
 S, P = Specular(), Periodic()
 STEPS = np.array([0.0125, 0.025, 0.05, 0.1])

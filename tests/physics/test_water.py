@@ -10,12 +10,10 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.liquid import Mist, Pool, Substance
-from atmosbox.engine.moist_parcelset import MoistParcelSet
-from atmosbox.engine.scatter import random_positions
-from atmosbox.engine.walls import HeatBath, Periodic, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import HeatBath, Mist, Periodic, Pool, Specular, Substance, random_positions
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from atmosbox.scene.statistics import block_average
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

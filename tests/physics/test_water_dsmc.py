@@ -9,11 +9,10 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine._jit import COMPILED
-from atmosbox.engine.liquid import Mist, Pool, Substance
-from atmosbox.engine.moist_dsmc_parcel import MoistDsmcParcel
-from atmosbox.engine.walls import HeatBath, Periodic, Piston, Specular
-from atmosbox.statistics import block_average
+from atmosbox.engine import HeatBath, Mist, Periodic, Piston, Pool, Specular, Substance
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
+from atmosbox.scene.statistics import block_average
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many steps take minutes without numba")
 

@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from atmosbox import runner, theory
+from atmosbox import theory
 from atmosbox.cli import app
-from atmosbox.engine._jit import COMPILED
+from atmosbox.engine.core.jit import COMPILED
 from atmosbox.errors import SettingError
-from atmosbox.output import read, write
-from atmosbox.variables import VARIABLES
+from atmosbox.file.netcdf import read, write
+from atmosbox.file.variables import VARIABLES
+from atmosbox.run import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from atmosbox.errors import SettingError, SoundingError
-from atmosbox.sounding import indices, weisman_klemp
+from atmosbox.scene.sounding import indices, weisman_klemp
 
 GAS, GRAVITY, EPSILON = 287.04, 9.80665, 0.62198
 HEAT = 3.5 * GAS

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from atmosbox.conversion import known_unit
 from atmosbox.errors import SoundingError
-from atmosbox.sounding.check import LARGEST_GAP, ROUNDING, check_levels, check_plausible, in_si, widest_gap
+from atmosbox.scene.conversion import known_unit
+from atmosbox.scene.sounding.plausibility import LARGEST_GAP, ROUNDING, check_levels, check_plausible, in_si, widest_gap
 
 PRESSURE = np.array([1000e2, 900e2, 800e2, 650e2, 500e2, 300e2, 100e2])
 TEMPERATURE = np.array([298.0, 292.0, 286.0, 275.0, 262.0, 233.0, 210.0])

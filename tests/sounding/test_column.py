@@ -2,9 +2,9 @@ import math
 
 import pytest
 
-from atmosbox.conversion import known_unit
 from atmosbox.errors import SoundingError
-from atmosbox.sounding.column import QUANTITIES, asked_units, number, stated_columns, unit_of
+from atmosbox.scene.conversion import known_unit
+from atmosbox.scene.sounding.column import QUANTITIES, asked_units, number, stated_columns, unit_of
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

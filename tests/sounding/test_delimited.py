@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.sounding import delimited, read
+from atmosbox.scene.sounding import delimited, read
 
 KELVIN = 273.15
 

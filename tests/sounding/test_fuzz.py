@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atmosbox.errors import AtmosboxError
-from atmosbox.sounding import Sounding, read
+from atmosbox.scene.sounding import Sounding, read
 
 numbers = st.one_of(
     st.floats().map(repr),

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from metpy.units import units
 
-from atmosbox.sounding import Sounding, hydrostatic_height, weisman_klemp
+from atmosbox.scene.sounding import Sounding, hydrostatic_height, weisman_klemp
 
 
 def test_dry_isothermal_air_has_the_height_of_the_barometric_law():

@@ -3,7 +3,7 @@ import pytest
 import xarray as xr
 
 from atmosbox.errors import SoundingError
-from atmosbox.sounding import netcdf, read
+from atmosbox.scene.sounding import profile_netcdf, read
 
 
 @pytest.fixture
@@ -104,5 +104,5 @@ def test_a_damaged_file_is_refused(dataset, saved, kept):
 
 
 def test_other_files_are_not_recognised():
-    assert netcdf.recognised(b"\x89HDF\r\n\x1a\n")
-    assert not netcdf.recognised(b"pressure")
+    assert profile_netcdf.recognised(b"\x89HDF\r\n\x1a\n")
+    assert not profile_netcdf.recognised(b"pressure")

@@ -4,7 +4,7 @@ import pytest
 from metpy.units import units
 
 from atmosbox.errors import SettingError, SoundingError
-from atmosbox.sounding import Sounding, indices, parcel, weisman_klemp
+from atmosbox.scene.sounding import Sounding, indices, lifted_parcel, weisman_klemp
 
 PRESSURE = np.array([1000e2, 950e2, 900e2, 850e2, 700e2, 600e2, 500e2, 400e2, 300e2, 200e2])
 STABLE = Sounding(PRESSURE, 288.0 - np.linspace(0, 30, 10), 270.0 - np.linspace(0, 60, 10), name="calm")
@@ -84,6 +84,6 @@ def test_what_metpy_cannot_answer_is_refused_in_a_sentence(monkeypatch):
         patch.setattr(mpcalc, "surface_based_cape_cin", fail)
         with pytest.raises(SoundingError, match=r"calm: MetPy finds no parcel's path \(no convergence\): give"):
             indices(STABLE)
-    monkeypatch.setattr(parcel, "_level", lambda *args: None)
+    monkeypatch.setattr(lifted_parcel, "_level", lambda *args: None)
     with pytest.raises(SoundingError, match="calm: MetPy finds no cloud base"):
         indices(STABLE)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.sounding import Sounding
+from atmosbox.scene.sounding import Sounding
 
 PRESSURE = [1000e2, 850e2, 700e2, 500e2, 300e2]
 TEMPERATURE = [298.0, 290.0, 280.0, 263.0, 233.0]

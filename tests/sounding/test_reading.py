@@ -3,7 +3,7 @@ import os
 import pytest
 
 from atmosbox.errors import FileError, SoundingError, UnitError
-from atmosbox.sounding import Sounding, read, reading
+from atmosbox.scene.sounding import Sounding, read, reading
 
 
 def test_the_content_and_not_the_suffix_tells_the_format(written, wyoming_lines, sharppy_lines, csv_lines, same_as):

@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.sounding import read, sharppy
+from atmosbox.scene.sounding import read, sharppy
 
 
 def test_a_file_is_read_without_the_level_below_the_ground(written, sharppy_lines, same_as):

@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.sounding import read
+from atmosbox.scene.sounding import read
 
 
 def cell(lines, line, column, value):

@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.sounding import read, wyoming
+from atmosbox.scene.sounding import read, wyoming
 
 
 def page(lines, title="99999 XYZ Nowhere &amp; Co Observations at 00Z 01 Feb 2003"):

@@ -33,7 +33,7 @@ def plot(
     verbose: Verbose = False,
 ) -> None:
     """Draw the figure of a run."""
-    from atmosbox.output import read
+    from atmosbox.file.netcdf import read
 
     dataset = read(file)
     kind = None if format is None else format.value

@@ -1,0 +1,190 @@
+"""What a user asks for on the command line and in a settings file, taken apart but not yet judged.
+
+`parse_set` reads the ``--set name=value`` of the command line, `load_config` a TOML file. Which names and values
+are right, only the settings of the scene can tell: :class:`atmosbox.scene.settings.SceneSettings`.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import tomllib
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from atmosbox.errors import ConfigError, FileError, SettingError, shown
+from atmosbox.scene.parameter import Value
+from atmosbox.scene.spelling import nearest
+
+__all__ = ["Config", "load_config", "parse_set"]
+
+_LARGEST_CONFIG = 1_000_000  # bytes
+_WORDS = {
+    "scene": ("without a name", 'give the name of one, such as scene = "lifting-dry"'),
+    "engine": ("without a name", 'give the name of one, such as engine = "exact"'),
+    "accuracy": ("that is no text", 'give a target or an error in quotes, such as accuracy = "0.5K"'),
+}
+
+
+class Config(NamedTuple):
+    """What a settings file asks for; None for what it does not name.
+
+    Parameters
+    ----------
+    scene
+        The name of the scene.
+    settings
+        The values as they were written, by name.
+    engine
+        The name of the engine, with its options.
+    accuracy
+        The accuracy that is wished.
+    """
+
+    scene: str | None
+    settings: dict[str, Value]
+    engine: str | None = None
+    accuracy: str | None = None
+
+
+def parse_set(items: Iterable[str]) -> dict[str, str]:
+    """Return the settings of the command line's ``--set name=value``.
+
+    Parameters
+    ----------
+    items
+        The texts after each ``--set``.
+
+    Returns
+    -------
+    dict
+        The values as text, by name.
+
+    Raises
+    ------
+    SettingError
+        If a text is not a name, "=" and a value, or names a setting again.
+
+    Examples
+    --------
+    >>> parse_set(["temperature=25 degC", "pressure-top=300hPa"])
+    {'temperature': '25 degC', 'pressure_top': '300hPa'}
+    """
+    values: dict[str, str] = {}
+    for item in items:
+        name, equals, value = (part.strip() for part in item.partition("="))
+        name = name.replace("-", "_")
+        if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
+            value = value[1:-1].strip()
+        known = name if name.isascii() and name.isidentifier() else "name"
+        fix = f"give --set {known}=value, such as --set temperature=25degC"
+        if not equals:
+            raise SettingError(f"--set {item}", None, 'has no "=" between name and value', fix)
+        if not name or not value:
+            raise SettingError(f"--set {item}", None, f"has no {'value' if name else 'name'}", fix)
+        if name in values:
+            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
+        values[name] = value
+    return values
+
+
+def load_config(path: str | os.PathLike[str]) -> Config:
+    r"""Return the scene, the settings, and the engine or the accuracy that a TOML file names.
+
+    The file may hold the name of a scene, that of an engine or of an accuracy, and one table, and can run no code::
+
+        scene = "lifting-dry"
+        accuracy = "lecture"
+
+        [settings]
+        temperature = "25degC"
+        molecules = 4000
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+
+    Returns
+    -------
+    Config
+        What it names.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read.
+    ConfigError
+        If it is not TOML, or holds anything else; the sentence has the line where it is known.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "lift.toml")
+    ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
+    ...     load_config(path)
+    Config(scene='lifting-dry', settings={'temperature': '25degC'}, engine=None, accuracy=None)
+    """
+    where = shown(os.fspath(path), longest=4096)
+    try:
+        with open(path, "rb") as file:
+            raw = file.read(_LARGEST_CONFIG + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a path"
+        raise FileError(f"{where} cannot be read ({reason}): give the path of a settings file.") from error
+    text, content = _toml(raw, where)
+
+    def refusal(key: str, problem: str, fix: str) -> ConfigError:
+        return ConfigError(f"{where}{_line(text, key)} has {shown(key)} {problem}: {fix}.")
+
+    known = (*_WORDS, "settings")
+    for key in sorted(content.keys() - set(known)):
+        near = nearest(key, known)
+        fix = f"name it {near}" if near else "move what is a setting below a line [settings]"
+        raise refusal(key, "outside the table [settings]", fix)
+    settings = content.get("settings", {})
+    words: dict[str, str | None] = {}
+    for key, (problem, fix) in _WORDS.items():
+        word = content.get(key)
+        if word is not None and not (isinstance(word, str) and word.strip()):
+            raise refusal(key, problem, fix)
+        words[key] = word and word.strip()
+    if not isinstance(settings, dict):
+        raise refusal("settings", "that is no table", "write a line [settings], and below it the settings")
+    kinds = {dict: "as a table", list: "as an array", float: "as no finite number"}
+    for key, value in settings.items():
+        if not isinstance(value, Value) or (isinstance(value, float) and not math.isfinite(value)):
+            kind = kinds.get(type(value), "as a date or a time")
+            raise refusal(key, kind, 'give one number, true, false or a text in quotes, such as "25degC"')
+    return Config(words["scene"], settings, words["engine"], words["accuracy"])
+
+
+def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:
+    """Return a settings file's text and content, or raise ConfigError."""
+    if raw.startswith((b"\x89HDF", b"CDF")):
+        raise ConfigError(f"{where} is a netCDF file, not a settings file: give it with --from {where}.")
+    if len(raw) > _LARGEST_CONFIG or b"\0" in raw:
+        raise ConfigError(f"{where} is not a settings file: give a TOML file of at most 1 MB, saved as UTF-8.")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise ConfigError(f"{where}, line {line} is not UTF-8 text: save the file as UTF-8.") from error
+    try:
+        return text, tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        found = re.fullmatch(r"(.+) \(at (?:line ([0-9]+)|end).*\)", str(error))
+        what = " is not TOML"
+        if found:
+            what = f", line {found[2] or text.count(chr(10)) + 1} is not TOML ({shown(found[1])})"
+        fix = 'write one name = value a line, with text in quotes, such as temperature = "25degC"'
+        raise ConfigError(f"{where}{what}: {fix}.") from error
+
+
+def _line(text: str, key: str) -> str:
+    """Return ", line 3" for the line on which a key first stands; empty where it is not plain to see."""
+    table = r"(?:settings[ \t]*\.[ \t]*)?"
+    found = re.search(rf"^[ \t\[]*{table}[\"']?{re.escape(key)}[\"' \t]*[=.\]]", text, re.MULTILINE)
+    return f", line {text.count(chr(10), 0, found.start()) + 1}" if found else ""

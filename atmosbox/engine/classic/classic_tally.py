@@ -1,0 +1,150 @@
+"""What the three classic schemes share: the molecules as plain arrays, their meeting with a wall, and the books."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.walls import HEAT_BATH, resolve_wall_hit
+
+__all__ = ["Discs", "Frame", "Score", "beyond", "meet_wall", "shortest", "tally_contact", "wrap"]
+
+
+class Discs(NamedTuple):
+    """The molecules, discs or spheres.
+
+    ``position``, ``velocity : (axis, molecule)`` [length, length/time]; ``mass``, ``radius : (molecule,)``
+    [mass, length]; ``partner``, ``met : (molecule,)``: with whom each had its last contact, and in which step.
+    """
+
+    position: Any
+    velocity: Any
+    mass: Any
+    radius: Any
+    partner: Any
+    met: Any
+
+
+class Frame(NamedTuple):
+    """The box and its clock.
+
+    ``length : (axis,)`` [length]; ``inverse : (axis,)`` one over the length of a periodic axis, 0 for a walled
+    one [1/length]; ``gravity`` [length/time^2]; ``time_step`` [time]; ``planar``: whether nothing moves along y;
+    ``contacts``: whether any molecule has a size.
+    """
+
+    length: Any
+    inverse: Any
+    gravity: float
+    time_step: float
+    planar: bool
+    contacts: bool
+
+
+class Score(NamedTuple):
+    """What only an approximate scheme has to tell.
+
+    ``numerical_heat : (1,)`` [energy]: what the scheme itself has made. ``count : (3,)``: pairs looked at, contacts
+    of a pair that had one in the step before, contacts of pairs that were already parting.
+    """
+
+    numerical_heat: Any
+    count: Any
+
+
+@kernel
+def wrap(x, length, inverse):
+    """Return a coordinate [length] brought back into a periodic box of that length.
+
+    Examples
+    --------
+    >>> float(wrap(4.5, 4.0, 0.25))
+    0.5
+    """
+    x -= length * np.floor(x * inverse)
+    return x if 0.0 <= x < length else 0.0
+
+
+@kernel
+def shortest(r, length, inverse):
+    """Return a difference of coordinates [length] between nearest images; as it is where the axis has walls.
+
+    Examples
+    --------
+    >>> float(shortest(3.0, 4.0, 0.25)), float(shortest(3.0, 4.0, 0.0))
+    (-1.0, 3.0)
+    """
+    return r - length * np.rint(r * inverse)
+
+
+@kernel
+def beyond(x, radius, length, inverse):
+    """Return -1 or 1 if a coordinate [length] lies beyond the lower or upper wall of its axis, else 0.
+
+    Examples
+    --------
+    >>> beyond(0.4, 0.5, 4.0, 0.0), beyond(0.4, 0.5, 4.0, 0.25)
+    (-1, 0)
+    """
+    if inverse > 0.0:
+        return 0
+    if x < radius:
+        return -1
+    return 1 if x > length - radius else 0
+
+
+@kernel
+def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
+    r"""Give a molecule that has come beyond a wall, and moves outward, its velocity by the law of the wall.
+
+    Where it is then put differs from scheme to scheme. It gets its velocity at the end of the step and does not fly
+    for what is left of it, as in the applets. Where the wall is a heat bath that makes the gas too hot: each flight
+    ends about :math:`\Delta t / 2` late, and the molecules that walls emit carry more energy than the mean one, in
+    space :math:`2 kT` for :math:`3/2\,kT`.
+
+    Parameters
+    ----------
+    i, axis, side
+        The molecule; the axis, and -1 or 1 for its lower or upper wall.
+    time
+        Time since the start, at the end of the step [time].
+    discs, frame, walls, tallies
+        The molecules, the box, its walls, and what is counted.
+    """
+    v = discs.velocity
+    if v[axis, i] * side <= 0.0:
+        return
+    wall = 2 * axis + (1 if side > 0 else 0)
+    first = 1 if axis == 0 else 0
+    second = 1 if axis == 2 else 2
+    mass = discs.mass[i]
+    before = v[0, i] * v[0, i] + v[1, i] * v[1, i] + v[2, i] * v[2, i]
+    came = v[axis, i]
+    v[axis, i], v[first, i], v[second, i], _ = resolve_wall_hit(
+        walls, wall, time, came, v[first, i], v[second, i], 0.0, mass, 0.0, frame.planar, tallies.random
+    )
+    if walls.law[wall] == HEAT_BATH:
+        after = v[0, i] * v[0, i] + v[1, i] * v[1, i] + v[2, i] * v[2, i]
+        tallies.heat[wall] += 0.5 * mass * (after - before)
+    tallies.impulse[wall] += mass * side * (came - v[axis, i])
+    tallies.hits[wall] += 1
+    tallies.count[4] += 1
+
+
+@kernel
+def tally_contact(i, j, step, height, virial, parting, discs, tallies, score):
+    """Count a contact of molecules i and j at a height [length], with its virial r . dp [energy].
+
+    Contacts of the same two in successive steps are counted as repeated as far as the last partner of each tells.
+    """
+    layer = min(max(int(height * tallies.layer_scale), 0), tallies.virial.size - 1)
+    tallies.virial[layer] += virial
+    tallies.count[0] += 1
+    if discs.partner[i] == j and discs.partner[j] == i and discs.met[i] == step - 1 and discs.met[j] == step - 1:
+        score.count[1] += 1
+    if parting:
+        score.count[2] += 1
+    discs.partner[i] = j
+    discs.partner[j] = i
+    discs.met[i] = step
+    discs.met[j] = step

@@ -1,0 +1,23 @@
+"""The parts that every engine shares: molecules, walls, laws of contact, tallies.
+
+`state`         what is known of a molecule, of its box, of what lies ahead
+`motion`        free flight
+`random`        random numbers
+`contact`       two molecules meet
+`schedule`      numbers that change with time
+`walls`         what walls do, one law each
+`refusal`       the errors
+`inputs`        what is refused
+`packing`       which part of the space molecules fill
+`account`       what a box has counted, and whether its energy adds up
+`arrangement`   what a box may be given, and what may move its piston
+`adjustment`    what may be changed while time passes
+`parcel`        the box: what it is given, holds and tells
+`box`           the box, as the kernels know it
+`kind`          molecules that are alike
+`marching`      the box, advanced in equal time steps
+`measure`       what is read off the molecules
+`course`        how far along its planned ascent a parcel is
+`lift`          a piston that follows a pressure
+`jit`           the only file that calls numba
+"""

@@ -1,0 +1,81 @@
+"""How far along its planned way a parcel is: as planned, or led by hand."""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.core.inputs import number
+from atmosbox.engine.core.refusal import RefusedError
+
+__all__ = ["Course"]
+
+
+class Course:
+    """The planned moment that a parcel is at, as a function of time.
+
+    A plan says what the air outside is like at each moment from 0 to its end. Left alone, a parcel keeps to it: at
+    time t it is at the moment t. Led by hand it makes for another moment, forwards or backwards, always at the pace
+    of the plan, and rests there; so nothing that the plan's slowness guarantees is lost.
+
+    Parameters
+    ----------
+    end
+        The last moment of the plan [time].
+
+    Examples
+    --------
+    >>> course = Course(10.0)
+    >>> course.moment(3.0)
+    3.0
+    >>> course.lead(4.0, towards=1.0)
+    >>> course.moment(4.0), course.moment(5.0), course.moment(9.0)
+    (4.0, 3.0, 1.0)
+    """
+
+    def __init__(self, end: float = math.inf) -> None:
+        self.end = end
+        self._time = [0.0]
+        self._moment = [0.0]
+        self._changed = 0.0
+
+    @property
+    def led(self) -> bool:
+        """Whether anybody has led the parcel."""
+        return len(self._time) > 1
+
+    def moment(self, time: float) -> float:
+        """Return the planned moment at a time [time]."""
+        if not self.led:
+            return min(time, self.end)
+        return float(np.interp(time, self._time, self._moment))
+
+    def lead(self, time: float, towards: float) -> None:
+        """Make for another moment of the plan, and rest there.
+
+        Parameters
+        ----------
+        time
+            Now [time]; what was the way before is kept.
+        towards
+            The moment [time].
+
+        Raises
+        ------
+        RefusedError
+            If a number is not finite, the moment is not of the plan, or now lies before the last call.
+        """
+        time, towards = number(time, "time"), number(towards, "the moment", least=0.0, most=self.end)
+        if time < self._changed:
+            raise RefusedError(f"time = {time} lies before the last change, at {self._changed}: give a later time")
+        here = self.moment(time)
+        if not self.led and time > self.end:  # it has come to rest there by itself
+            self._time.append(self.end)
+            self._moment.append(self.end)
+        while self._time[-1] > time:
+            self._time.pop()
+            self._moment.pop()
+        self._changed = time
+        for when, where in ((time, here), (time + math.fabs(towards - here), towards)):
+            if when > self._time[-1]:
+                self._time.append(when)
+                self._moment.append(where)

@@ -1,0 +1,187 @@
+"""What a box may be given: every number checked once, with a sentence for every refusal."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
+
+__all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "sum_of_squares", "whole"]
+
+Array = NDArray[np.float64]
+
+_PIECE = 1 << 20  # molecules whose squares are added up together
+
+
+def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
+    """Return three finite numbers per molecule, or refuse.
+
+    A copy has each of its three columns in one piece; without one, whoever reads the numbers may not change them.
+
+    Examples
+    --------
+    >>> matrix([[1, 2, 3]], "position")
+    array([[1., 2., 3.]])
+    """
+    try:
+        array = np.array(values, np.float64, order="F") if copy else np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} holds something that is not a number: give three numbers per molecule") from None
+    if array.size == 0:
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise RefusedError(f"{name} has shape {array.shape}: give three numbers per molecule")
+    if not np.isfinite(array).all():
+        i = int(np.argmax(~np.isfinite(array).all(axis=1)))
+        raise RefusedError(f"{name} of molecule {i} is not finite: give finite numbers")
+    return array
+
+
+def column(
+    values: ArrayLike,
+    n: int,
+    name: str,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    shared: bool = False,
+) -> Array:
+    """Return one finite number per molecule within its limits, or refuse.
+
+    Where it is ``shared`` one number for all takes the memory of one, and cannot be changed.
+
+    Examples
+    --------
+    >>> column(1.0, 3, "mass", above=0.0)
+    array([1., 1., 1.])
+    """
+    try:
+        array = np.array(values, np.float64)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} holds something that is not a number") from None
+    if array.ndim > 1 or (array.ndim == 1 and array.size != n):
+        raise RefusedError(f"{name} has shape {array.shape}: give one number, or one for each of {n} molecules")
+    bad = ~np.isfinite(array)
+    if above is not None:
+        bad |= ~(array > above)
+    if least is not None:
+        bad |= ~(array >= least)
+    if bad.any():
+        value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
+        limit = f"above {above:g}" if above is not None else f"{least:g} or above"
+        raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
+    column = np.broadcast_to(array, (n,))
+    return column if shared else column.copy()
+
+
+def number(value: Any, name: str, *, least: float = -math.inf, most: float = math.inf, infinite: bool = False) -> float:
+    """Return a number within its limits, or refuse.
+
+    Examples
+    --------
+    >>> number(9.8, "gravity", least=0.0)
+    9.8
+    """
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        raise RefusedError(f"{name} = {value!r} is not a number: give a number") from None
+    if math.isnan(found) or (math.isinf(found) and not infinite) or not least <= found <= most:
+        limits = f"from {least:g}" + (f" to {most:g}" if math.isfinite(most) else " up")
+        raise RefusedError(
+            f"{name} = {value!r} is impossible: give a finite number" + (f" {limits}" if math.isfinite(least) else "")
+        )
+    return found
+
+
+def whole(value: Any, name: str, *, least: int) -> int:
+    """Return a whole number that is large enough, or refuse.
+
+    Examples
+    --------
+    >>> whole(25, "layers", least=1)
+    25
+    """
+    found = number(value, name, least=least)
+    if found != math.floor(found):
+        raise RefusedError(f"{name} = {value!r} is not a whole number: give one from {least} up")
+    return int(value)
+
+
+def sides_of(length: Any) -> Array:
+    """Return the three sides of a box, or refuse.
+
+    Examples
+    --------
+    >>> sides_of((1, 2, 3))
+    array([1., 2., 3.])
+    """
+    try:
+        sides = np.array(length, np.float64)
+    except (TypeError, ValueError):
+        sides = np.zeros(0)
+    if sides.shape != (3,) or not (np.isfinite(sides).all() and (sides > 0).all()):
+        raise RefusedError(f"length = {length!r}: give three sides, each above 0")
+    return sides
+
+
+def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, bool]) -> Array:
+    """Return the centres, those that rounding has put into a wall moved out of it in place; refuse what stands outside.
+
+    Examples
+    --------
+    >>> inside(np.array([[1.0, 1.0, 1.0]]), np.ones(1), np.array([2.0, 2.0, 2.0]), (False, False, False))
+    array([[1., 1., 1.]])
+    """
+    alike = diameter.size > 0 and diameter.strides == (0,)
+    radius = 0.5 * (diameter[0] if alike else diameter)  # of ten million, copies take a lot of room
+    for axis in range(3):
+        if periodic[axis]:
+            continue
+        slack = 1e-12 * sides[axis]
+        low = x[:, axis] < radius - slack
+        high = x[:, axis] > sides[axis] - radius + slack
+        if (low | high).any():
+            i = int(np.argmax(low | high))
+            wall = WALL_NAMES[2 * axis + (0 if low[i] else 1)]
+            reach = 0.5 * float(diameter[i])
+            raise RefusedError(
+                f"molecule {i} at {'xyz'[axis]} = {x[i, axis]:.6g} reaches through wall {wall}: its centre must lie "
+                f"between {reach:.6g} and {sides[axis] - reach:.6g}"
+            )
+        np.clip(x[:, axis], radius, sides[axis] - radius, out=x[:, axis])
+    return x
+
+
+def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
+    """Return the time in which a molecule passes its neighbour's place [time]."""
+    spacing = float(np.cbrt(math.prod(sides) / max(n, 1)))
+    total = sum(sum_of_squares(column) for column in v.T)
+    speeds = [math.sqrt(total / n)] if n else []
+    if n:
+        speeds += [
+            math.sqrt(float(kT) / float(mass.mean()))
+            for kT, law in zip(walls.schedule_kT[walls.schedule[:-1]], walls.law, strict=True)
+            if law == HEAT_BATH
+        ]
+    if gravity > 0.0:
+        speeds.append(math.sqrt(gravity * spacing))
+    if walls.law[5] == PISTON:
+        speeds.append(abs(float(walls.piston[1])))
+    fastest = max(speeds, default=0.0)
+    return spacing / fastest if fastest > 0.0 and math.isfinite(spacing / fastest) else 1.0
+
+
+def sum_of_squares(column: Array) -> float:
+    """Return the sum of the squares of a column, without a second column of its size: of millions, that takes room.
+
+    Examples
+    --------
+    >>> sum_of_squares(np.array([3.0, 4.0]))
+    25.0
+    """
+    pieces = (column[first : first + _PIECE] for first in range(0, column.size, _PIECE))
+    return sum((float(np.sum(piece * piece)) for piece in pieces), 0.0)

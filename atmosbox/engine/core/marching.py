@@ -1,0 +1,137 @@
+"""A parcel whose time goes in equal steps: what the approximate engines have in common."""
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from atmosbox.engine.core.inputs import number
+from atmosbox.engine.core.parcel import Array, Parcel
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.walls import HEAT_BATH
+
+__all__ = ["MarchingParcel"]
+
+_WORK = 400_000
+_SLACK = 1e-9
+_HOTTER = 16.0
+
+
+class MarchingParcel(Parcel):
+    """Molecules in a box, advanced step by step.
+
+    Steps stand on a fixed grid of times, k * `time_step`; what is read off the molecules is their state
+    after the last step that is complete. So a run is the same however it is cut into pieces.
+    """
+
+    _time_step = math.nan
+    _step = 0
+    _usual_kT = 0.0
+
+    @property
+    def time_step(self) -> float:
+        """Length of a step [time]."""
+        return self._time_step
+
+    @property
+    def steps(self) -> int:
+        """Number of steps since the start."""
+        return self._step
+
+    def divide(self, interval: float) -> None:
+        """Shorten the step so that a whole number of them makes an interval [time].
+
+        Raises
+        ------
+        RefusedError
+            If the run has begun, or the interval is not finite and above 0.
+        """
+        interval = number(interval, "interval")
+        if self._step or not interval > 0.0:
+            raise RefusedError("a time step is chosen before the first step, for an interval above 0")
+        if self._effort():
+            self._time_step = interval / math.ceil(interval / self._time_step * (1.0 - _SLACK))
+            self._renew()
+
+    def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
+        """Let time pass, step by step, as far as whole steps go: see `Parcel.advance`."""
+        until = number(until, "until")
+        if until < self.time * (1.0 - _SLACK):
+            raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
+        last = math.floor(until / self._time_step * (1.0 + 1e-13) + _SLACK)
+        if not self._step and not last:
+            self._march(0)  # compiles, so that a run's first step is like the others
+        while self._step < last:
+            steps = min(last - self._step, max(1, _WORK // max(self._effort(), 1)))
+            turn = self._next_turn()
+            steps = min(steps, turn - self._step)
+            self._march(steps)
+            self._step += steps
+            self._now = self._step * self._time_step
+            if self._driver is not None and self._step >= turn:
+                self._turn = math.floor(self._now / self._driver.interval + _SLACK)
+                self._drive()
+            if watch is not None:
+                watch(self.time)
+
+    def _next_turn(self) -> Any:
+        """Return the number of the step before which the driver is asked again."""
+        if self._driver is None:
+            return math.inf
+        return max(self._step + 1, math.ceil((self._turn + 1) * self._driver.interval / self._time_step - _SLACK))
+
+    def _effort(self) -> int:
+        """Return how much work a step is, in molecules moved; it sets how often ``watch`` is called."""
+        return self._number
+
+    @abstractmethod
+    def _march(self, steps: int) -> None:
+        """Advance by so many steps, with the piston at one velocity."""
+
+    @abstractmethod
+    def _renew(self) -> None:
+        """Take note that the length of a step has changed, before the first, or that gravity has."""
+
+    def _piston_turned(self) -> None:
+        """Need nothing: every step reads the piston anew."""
+
+    def _field_changes(self, gravity: float) -> None:
+        mass = float(self._mass.sum()) if self._number else 0.0
+        speed = math.sqrt(2.0 * self.energy()[0] / (3.0 * mass)) if mass else math.inf
+        if gravity * self._time_step > speed:
+            raise RefusedError(
+                f"gravity = {gravity:.6g} would turn molecules round within a step of {self._time_step:.3g}: give "
+                f"{0.5 * speed / self._time_step:.3g} or less, or begin with it"
+            )
+        self._gravity = gravity
+        self._renew()
+
+    def _bath_changes(self, kT: float) -> None:
+        if kT > _HOTTER * self._usual_kT > 0.0:
+            raise RefusedError(
+                f"kT of a wall = {kT:.6g} is too hot for the step, which was chosen for {self._usual_kT:.6g}: give "
+                f"{_HOTTER * self._usual_kT:.6g} or less, or begin with it"
+            )
+
+    def _thermal_speeds(self, velocity: Array) -> Array:
+        """Return each molecule's sqrt(kT / m) at the warmest that the box is at its start [length/time].
+
+        The warmest is that of the molecules as they stand, of the hottest wall ever, or of what falling
+        all the way down would give.
+        """
+        if not self._number:
+            return np.zeros(0)
+        dimensions = 2.0 if self._planar else 3.0
+        kT = float(np.sum(self._mass[:, None] * velocity**2)) / (dimensions * self._number)
+        return np.sqrt(self._warmest(kT) / self._mass)
+
+    def _warmest(self, kT: float) -> float:
+        """Return the highest of a temperature [energy] and those that the walls ever have."""
+        for wall, law in enumerate(self._walls.law):
+            if law == HEAT_BATH:
+                first, last = self._walls.schedule[wall], self._walls.schedule[wall + 1]
+                kT = max(kT, float(self._walls.schedule_kT[first:last].max()))
+        self._usual_kT = kT
+        return kT

@@ -1,0 +1,94 @@
+"""How much of the space molecules fill, and when that is more than any packing can.
+
+The densest packing of equal spheres is the face-centred cubic one, of equal discs the hexagonal one.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.core.refusal import PackingError, RefusedError
+
+__all__ = ["packing_fraction", "refuse_impossible"]
+
+Array = NDArray[np.float64]
+_DENSEST = math.pi / math.sqrt(18.0)
+_DENSEST_PLANE = math.pi / math.sqrt(12.0)
+
+
+def packing_fraction(length: Sequence[float], diameter: ArrayLike, *, planar: bool = False) -> float:
+    """Return the part of the box, or of the plane box's area, that the molecules fill.
+
+    Parameters
+    ----------
+    length
+        The three sides of the box [length].
+    diameter : (molecule,)
+        Diameters [length].
+    planar
+        Whether the molecules are discs in the plane of x and z.
+
+    Returns
+    -------
+    float
+        Between 0 and 1, dimensionless.
+
+    Examples
+    --------
+    >>> round(packing_fraction((10, 10, 10), np.ones(191)), 3)
+    0.1
+    """
+    sigma = np.asarray(diameter, np.float64)
+    if planar:
+        return float(np.sum(math.pi / 4.0 * sigma**2)) / (length[0] * length[2])
+    return float(np.sum(math.pi / 6.0 * sigma**3)) / math.prod(length)
+
+
+def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bool], planar: bool) -> None:
+    """Refuse what geometry alone forbids, wherever the molecules are put.
+
+    Parameters
+    ----------
+    sides : (axis,)
+        The sides of the box [length].
+    sigma : (molecule,)
+        Diameters [length].
+    periodic
+        Which axes are periodic.
+    planar
+        Whether the molecules are discs in the plane of x and z.
+
+    Raises
+    ------
+    RefusedError
+        If a side is not above 0, or a diameter below 0.
+    PackingError
+        If a molecule is wider than the box, or if they fill more than any packing can.
+
+    Examples
+    --------
+    >>> refuse_impossible(np.array([4.0, 2.0, 4.0]), np.array([3.0]), (False, False, False), planar=False)
+    Traceback (most recent call last):
+    atmosbox.engine.core.refusal.PackingError: a molecule of diameter 3 does not fit into a box of side 2
+    """
+    if not (np.isfinite(sides).all() and (sides > 0.0).all()):
+        raise RefusedError(f"length = {sides.tolist()}: give three sides, each above 0")
+    if not (np.isfinite(sigma).all() and (sigma >= 0.0).all()):
+        raise RefusedError("diameters must be finite and 0 or above")
+    if sigma.size == 0:
+        return
+    biggest = float(sigma.max())
+    for axis in range(3):
+        if not periodic[axis] and sides[axis] < biggest:
+            raise PackingError(
+                f"a molecule of diameter {biggest:.6g} does not fit into a box of side {sides[axis]:.6g}"
+            )
+    phi = packing_fraction(list(sides), sigma, planar=planar)
+    densest = _DENSEST_PLANE if planar else _DENSEST
+    if (phi > densest * (1.0 + 1e-9) and np.ptp(sigma) == 0.0) or phi >= 1.0:
+        raise PackingError(
+            f"{sigma.size} molecules would fill {phi:.3g} of the space, and no packing of spheres fills more than "
+            f"{densest:.3g}: take fewer or smaller molecules, or a larger box"
+        )

@@ -1,0 +1,118 @@
+"""Numbers that may change with time: wherever the engine takes a float, one of these is taken too."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from atmosbox.engine.core.refusal import RefusedError
+
+__all__ = ["Constant", "Ramp", "Schedule", "Steps", "as_schedule"]
+
+
+class Schedule(Protocol):
+    """A number as a function of time."""
+
+    def points(self) -> list[tuple[float, float]]:
+        """Return the corners (time, value) of the polygon; constant before the first and after the last."""
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The same at all times.
+
+    Examples
+    --------
+    >>> Constant(2.0).points()
+    [(0.0, 2.0)]
+    """
+
+    value: float
+
+    def points(self) -> list[tuple[float, float]]:
+        """Return the one corner."""
+        return [(0.0, float(self.value))]
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """From one value to another at an even pace, constant before and after.
+
+    Examples
+    --------
+    >>> Ramp(1.0, 2.0, start=0.0, end=10.0).points()
+    [(0.0, 1.0), (10.0, 2.0)]
+    """
+
+    first: float
+    last: float
+    start: float
+    end: float
+
+    def points(self) -> list[tuple[float, float]]:
+        """Return the two corners."""
+        if not self.end > self.start:
+            raise RefusedError(f"a ramp that starts at {self.start} must end later, not at {self.end}")
+        return [(float(self.start), float(self.first)), (float(self.end), float(self.last))]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """One value after another, each from its time on.
+
+    Examples
+    --------
+    >>> Steps([0.0, 5.0], [1.0, 2.0]).points()
+    [(0.0, 1.0), (5.0, 1.0), (5.0, 2.0)]
+    """
+
+    times: Sequence[float]
+    values: Sequence[float]
+
+    def points(self) -> list[tuple[float, float]]:
+        """Return the corners: two at each step."""
+        if len(self.times) != len(self.values) or len(self.times) == 0:
+            raise RefusedError(
+                f"steps need as many values as times, at least one: {len(self.times)} times, {len(self.values)} values"
+            )
+        corners = [(float(self.times[0]), float(self.values[0]))]
+        for time, value in zip(self.times[1:], self.values[1:], strict=True):
+            if time <= corners[-1][0]:
+                raise RefusedError(f"the times of steps must increase: {time} follows {corners[-1][0]}")
+            corners += [(float(time), corners[-1][1]), (float(time), float(value))]
+        return corners
+
+
+def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) -> list[tuple[float, float]]:
+    """Return the corners of a number or a schedule, checked.
+
+    Raises
+    ------
+    RefusedError
+        If a corner is not finite or, where asked, not positive.
+
+    Examples
+    --------
+    >>> as_schedule(1.5, "kT of a wall")
+    [(0.0, 1.5)]
+    """
+    if isinstance(value, Constant | Ramp | Steps):
+        corners = value.points()
+    elif hasattr(value, "points"):
+        corners = list(value.points())
+    else:
+        try:
+            corners = Constant(float(value)).points()
+        except (TypeError, ValueError):
+            raise RefusedError(f"{name} = {value!r} is not a number: give a number, Constant, Ramp or Steps") from None
+    if not corners:
+        raise RefusedError(f"{name} = {value!r} has no points: give at least one (time, value)")
+    for time, number in corners:
+        if not (math.isfinite(time) and math.isfinite(number)):
+            raise RefusedError(f"{name} = {number} at time {time} is not finite: give a finite number")
+        if positive and not number > 0.0:
+            raise RefusedError(f"{name} = {number} is not positive: give a number above 0")
+    if any(later < earlier for (earlier, _), (later, _) in itertools.pairwise(corners)):
+        raise RefusedError(f"the times of {name} must not decrease: give its points in order of time")
+    return corners

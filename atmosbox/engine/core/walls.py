@@ -1,0 +1,234 @@
+r"""What walls do: one law each.
+
+A **specular** wall turns the normal velocity round. A **periodic** pair of walls is none: who leaves on
+one side enters on the other. A **heat bath** forgets the molecule and emits one at its own temperature:
+the normal velocity is Rayleigh, because fast molecules arrive more often, :math:`p(v) \propto v \exp(-m
+v^2 / 2 k T)`; the tangential ones are Gaussian. A **piston** is a specular wall that moves at velocity u:
+:math:`v' = -v + 2 u`, which does the work that it should.
+"""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.schedule import Schedule, as_schedule
+from atmosbox.engine.core.state import Walls
+
+__all__ = [
+    "WALL_NAMES",
+    "HeatBath",
+    "Periodic",
+    "Piston",
+    "Specular",
+    "Wall",
+    "new_walls",
+    "resolve_wall_hit",
+    "wall_kT",
+]
+
+SPECULAR, PERIODIC, HEAT_BATH, PISTON, POOL = 0, 1, 2, 3, 4
+"""The laws by number; the floor of a box with a `liquid.Pool` is one, whoever it was given as."""
+WALL_NAMES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
+
+
+@dataclass(frozen=True)
+class Specular:
+    """A smooth, rigid wall at rest."""
+
+
+@dataclass(frozen=True)
+class Periodic:
+    """No wall: the box continues with itself. Both walls of an axis must be so."""
+
+
+@dataclass(frozen=True)
+class HeatBath:
+    """A wall that emits molecules at its own temperature.
+
+    Parameters
+    ----------
+    kT
+        Its temperature [energy], a number or a schedule.
+    accommodation
+        The part of the molecules, 0 to 1, that it takes in; the others are reflected.
+    """
+
+    kT: float | Schedule
+    accommodation: float = 1.0
+
+
+@dataclass(frozen=True)
+class Piston:
+    """A ceiling that moves at a velocity [length/time], which a driver may change.
+
+    See `ParcelSet.set_piston_velocity`.
+    """
+
+    velocity: float = 0.0
+
+
+Wall = Specular | Periodic | HeatBath | Piston
+
+
+@dataclass(frozen=True)
+class _Laws:
+    law: list[int] = field(default_factory=list)
+    accommodation: list[float] = field(default_factory=list)
+    corners: list[list[tuple[float, float]]] = field(default_factory=list)
+
+
+def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
+    """Return the six walls as arrays, checked.
+
+    Parameters
+    ----------
+    walls
+        Six laws in the order of `WALL_NAMES`.
+    height
+        Where the ceiling is [length].
+
+    Raises
+    ------
+    RefusedError
+        If a law is misplaced or one of its numbers is impossible.
+
+    Examples
+    --------
+    >>> new_walls((Specular(),) * 5 + (Piston(0.1),), 2.0).piston
+    array([2. , 0.1, 0. ])
+    """
+    if len(walls) != 6:
+        raise RefusedError(f"{len(walls)} walls are given: give six, {', '.join(WALL_NAMES)}")
+    laws = _Laws()
+    velocity = 0.0
+    for name, wall in zip(WALL_NAMES, walls, strict=True):
+        corners: list[tuple[float, float]] = []
+        accommodation = 0.0
+        if isinstance(wall, Specular):
+            law = SPECULAR
+        elif isinstance(wall, Periodic):
+            law = PERIODIC
+        elif isinstance(wall, HeatBath):
+            law = HEAT_BATH
+            try:
+                accommodation = float(wall.accommodation)
+            except (TypeError, ValueError):
+                accommodation = math.nan
+            if not 0.0 <= accommodation <= 1.0:
+                raise RefusedError(
+                    f"the accommodation of wall {name} = {wall.accommodation!r} is no number from 0 to 1"
+                )
+            corners = as_schedule(wall.kT, f"kT of wall {name}")
+        elif isinstance(wall, Piston):
+            law = PISTON
+            if name != "z_high":
+                raise RefusedError(f"wall {name} cannot be a piston: only the ceiling, z_high, moves")
+            try:
+                velocity = float(wall.velocity)
+            except (TypeError, ValueError):
+                velocity = math.nan
+            if not math.isfinite(velocity):
+                raise RefusedError(f"velocity of the piston = {wall.velocity!r} is not finite: give a finite number")
+        else:
+            raise RefusedError(f"wall {name} = {wall!r} is no law: give Specular, Periodic, HeatBath or Piston")
+        laws.law.append(law)
+        laws.accommodation.append(accommodation)
+        laws.corners.append(corners or [(0.0, 1.0)])
+    for axis in range(3):
+        pair = laws.law[2 * axis : 2 * axis + 2]
+        if (PERIODIC in pair) and pair != [PERIODIC, PERIODIC]:
+            low, high = WALL_NAMES[2 * axis : 2 * axis + 2]
+            raise RefusedError(f"walls {low} and {high} must both be periodic or neither")
+    flat = [corner for corners in laws.corners for corner in corners]
+    start = np.concatenate([[0], np.cumsum([len(corners) for corners in laws.corners])])
+    return Walls(
+        law=np.array(laws.law, np.int64),
+        accommodation=np.array(laws.accommodation),
+        schedule=start.astype(np.int64),
+        schedule_time=np.array([time for time, _ in flat]),
+        schedule_kT=np.array([kT for _, kT in flat]),
+        piston=np.array([height, velocity, 0.0]),
+        epoch=np.zeros(1),
+    )
+
+
+@kernel
+def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
+    """Return the temperature of a wall [energy] at a time [time] since the start.
+
+    Examples
+    --------
+    >>> from atmosbox.engine.core.schedule import Ramp
+    >>> bath = HeatBath(Ramp(1.0, 3.0, start=0.0, end=10.0))
+    >>> wall_kT(new_walls((Specular(),) * 4 + (bath, Specular()), 1.0), 4, 5.0)
+    2.0
+    """
+    first = walls.schedule[wall]
+    last = walls.schedule[wall + 1] - 1
+    if last == first or time <= walls.schedule_time[first]:
+        return walls.schedule_kT[first]
+    for k in range(first, last):
+        if time < walls.schedule_time[k + 1]:
+            before = walls.schedule_time[k]
+            share = (time - before) / (walls.schedule_time[k + 1] - before)
+            return walls.schedule_kT[k] + share * (walls.schedule_kT[k + 1] - walls.schedule_kT[k])
+    return walls.schedule_kT[last]
+
+
+@kernel
+def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rotation, planar, state):
+    """Return velocity and rotational energy of a molecule after it has hit a wall.
+
+    Parameters
+    ----------
+    walls, wall
+        The walls, and which one is hit.
+    time
+        Time since the start [time].
+    normal, first, second
+        Velocity along the wall's axis, and along the two others in the order x, y, z [length/time].
+    energy, rotation
+        Rotational energy [energy] and the number of its degrees of freedom.
+    mass
+        Mass of the molecule [mass].
+    planar
+        Whether the gas is a plane, whose y velocity stays zero.
+    state
+        State of the random numbers, moved on.
+
+    Returns
+    -------
+    (float, float, float, float)
+        The same velocities and the rotational energy after the hit.
+
+    Examples
+    --------
+    A piston that recedes at 1 slows a molecule that came with 3 to 1:
+
+    >>> walls = new_walls((Specular(),) * 5 + (Piston(1.0),), 2.0)
+    >>> resolve_wall_hit(walls, 5, 0.0, 3.0, 0.5, 0.5, 0.0, 1.0, 0.0, False, np.array([1], np.uint64))
+    (-1.0, 0.5, 0.5, 0.0)
+    """
+    law = walls.law[wall]
+    if law == PISTON:
+        return -normal + 2.0 * walls.piston[1], first, second, energy
+    if law == SPECULAR or uniform(state) >= walls.accommodation[wall]:
+        return -normal, first, second, energy
+    kT = wall_kT(walls, wall, time)
+    thermal_speed = math.sqrt(kT / mass)
+    outward = 1.0 if wall & 1 == 0 else -1.0
+    normal = outward * thermal_speed * math.sqrt(-2.0 * math.log(uniform(state)))
+    first, second = gaussian_pair(state)
+    first *= thermal_speed
+    second *= thermal_speed
+    if planar:
+        if wall >> 1 == 0:
+            first = 0.0
+        else:
+            second = 0.0
+    return normal, first, second, kT * gamma(rotation, state)

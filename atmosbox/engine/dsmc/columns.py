@@ -1,0 +1,276 @@
+"""Molecules in columns, and sorted into cells: what the engines hold that do not care who exactly meets whom.
+
+Each property of all molecules is one array, so that a loop over molecules reads memory straight on and the
+compiler does eight of them at once. A cell must know its molecules: every step they are *counted* by cell
+and an index of them is written in the order of cells (a counting sort; who stood first stays first). Now
+and then the columns themselves are put in that order, so that the molecules of a cell stand close
+together in memory, too.
+
+Every thread takes a share of the molecules, one stretch of the columns. It counts its own, and its places in
+the index follow those of the threads before it: the index is the same for any number of threads.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel, prange
+
+__all__ = [
+    "BLOCK",
+    "Desk",
+    "Gas",
+    "Grid",
+    "Swarm",
+    "cells_per_length",
+    "count_by_cell",
+    "find_cell",
+    "index_by_cell",
+    "new_columns",
+    "new_desk",
+    "new_gather",
+    "new_grid",
+    "number_present",
+    "reserve_places",
+    "share_cells",
+    "share_of",
+]
+
+BLOCK = 1024
+"""How many molecules are moved at a time: few enough to stay in the nearest cache."""
+
+_EVEN_EMPTY = 8  # pairs' worth of work is a cell
+_LINE, _PAGE = 8, 512  # of the cache, of memory, in numbers
+
+
+class Swarm(NamedTuple):
+    """All molecules, as columns.
+
+    ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` their
+    rotational energy [energy] where they rotate, ``identity : (slot,)`` which molecule stands in a slot.
+    ``cell : (slot,)`` the cell it is in, ``order : (slot,)`` slots in the order of cells, ``kind : (slot,)`` which
+    kind of molecule stands there, if there are several.
+    """
+
+    x: Any
+    y: Any
+    z: Any
+    vx: Any
+    vy: Any
+    vz: Any
+    spin: Any
+    identity: Any
+    cell: Any
+    order: Any
+    kind: Any
+
+
+class Grid(NamedTuple):
+    """Cells of equal size, ``number_*`` along each axis; x changes fastest in their index.
+
+    ``first : (cell + 1,)`` where the molecules of each cell begin in the index; ``place : (thread, cell)``
+    where each thread's do; ``fastest : (cell,)`` the largest relative speed met there [length/time].
+    """
+
+    number_x: int
+    number_y: int
+    number_z: int
+    first: Any
+    place: Any
+    fastest: Any
+
+
+class Gas(NamedTuple):
+    """What all molecules are: mass [mass], radius [length], rotational degrees of freedom.
+
+    Where there are several kinds, ``masses``, ``rotations : (kind,)`` say what each of them is, and ``mass`` is that of
+    the lightest.
+    """
+
+    mass: float
+    radius: float
+    rotation: float
+    masses: Any
+    rotations: Any
+
+
+class Desk(NamedTuple):
+    """What a step writes on and forgets.
+
+    ``mark : (thread, BLOCK)`` for which of a block walls make a difference, ``queue : (thread, BLOCK)`` a list
+    of them, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
+    what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts; ``cut :
+    (thread + 1,)`` the first cell of each thread's share of them; ``left : (slot,)`` for how long molecules that wait
+    on a pool have yet to fly [time], if there is one.
+    """
+
+    mark: Any
+    queue: Any
+    random: Any
+    books: Any
+    met: Any
+    cut: Any
+    left: Any
+
+
+def new_columns(number: int, many: int) -> list[Any]:
+    """Return so many empty columns for a number of molecules.
+
+    Each begins at a line of the cache, so that eight numbers that are read together are one line, and at another place
+    within a page than the last, for what stands at the same place of different pages competes for the same few lines.
+
+    Examples
+    --------
+    >>> [column.ctypes.data % 64 for column in new_columns(1000, 2)]
+    [0, 0]
+    """
+    stride = -(-number // _PAGE) * _PAGE + _PAGE // 8 + _LINE
+    room = np.empty(many * stride + _LINE)
+    start = -(room.ctypes.data // room.itemsize) % _LINE
+    return [room[start + k * stride : start + k * stride + number] for k in range(many)]
+
+
+def new_desk(number: int, cells: int, threads: int, waiting: int = 1) -> Desk:
+    """Return an empty desk for so many molecules, cells and threads, and so many molecules that may wait on a pool."""
+    return Desk(
+        mark=np.zeros((threads, BLOCK), np.int32),
+        queue=np.zeros((threads, BLOCK), np.int32),
+        random=np.zeros((threads, 8), np.uint64),
+        books=np.zeros((-(-number // BLOCK), 3, 6)),
+        met=np.zeros((threads, 8), np.int64),
+        cut=np.linspace(0, cells, threads + 1).astype(np.int64),
+        left=np.zeros(waiting),
+    )
+
+
+def new_grid(numbers: tuple[int, int, int], threads: int) -> Grid:
+    """Return so many empty cells along each axis, for so many threads to count in."""
+    cells = math.prod(numbers)
+    return Grid(
+        *numbers,
+        first=np.zeros(cells + 1, np.uint32),
+        place=np.zeros((threads, cells), np.uint32),
+        fastest=np.zeros(cells),
+    )
+
+
+@kernel
+def share_of(thread, threads, number):
+    """Return the first slot of a thread's share of the molecules, and the slot after its last: whole blocks.
+
+    Examples
+    --------
+    >>> [share_of(t, 2, 5000) for t in range(2)]
+    [(0, 2048), (2048, 5000)]
+    """
+    blocks = (number + BLOCK - 1) // BLOCK
+    return min(blocks * thread // threads * BLOCK, number), min(blocks * (thread + 1) // threads * BLOCK, number)
+
+
+@kernel
+def number_present(swarm, water):
+    """Return how many molecules are in the box: they stand in the first slots, those of the liquid in none."""
+    return swarm.x.size - water.ledger.top[0]
+
+
+@kernel
+def cells_per_length(top, grid, gas, box):
+    """Return how many cells there are to a length, along each axis [1/length], under a ceiling at ``top``."""
+    r = gas.radius
+    return (
+        grid.number_x / (box.length_x if box.inverse_x > 0.0 else box.length_x - r - r),
+        grid.number_y / (box.length_y if box.inverse_y > 0.0 else box.length_y - r - r),
+        grid.number_z / (top if box.inverse_z > 0.0 else top - r - r),
+    )
+
+
+@kernel
+def find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box):
+    """Write down in which cell the molecule of a slot is."""
+    r = gas.radius
+    low_x = 0.0 if box.inverse_x > 0.0 else r
+    low_y = 0.0 if box.inverse_y > 0.0 else r
+    low_z = 0.0 if box.inverse_z > 0.0 else r
+    ix = min(np.int64((swarm.x[p] - low_x) * per_x), grid.number_x - 1)
+    iy = min(np.int64((swarm.y[p] - low_y) * per_y), grid.number_y - 1)
+    iz = min(np.int64((swarm.z[p] - low_z) * per_z), grid.number_z - 1)
+    swarm.cell[p] = (iz * grid.number_y + iy) * grid.number_x + ix
+
+
+@kernel
+def count_by_cell(cell, count, first, last):
+    """Count the molecules of the slots from ``first`` to before ``last`` by cell."""
+    count[:] = 0
+    for p in range(first, last):
+        count[np.uint32(cell[p])] += np.uint32(1)
+
+
+@kernel
+def reserve_places(grid, cells):
+    """Turn each thread's counts by cell into its first place in the index, and mark where each cell begins."""
+    threads = grid.place.shape[0]
+    place = 0
+    for c in range(cells):
+        grid.first[c] = place
+        for t in range(threads):
+            count = grid.place[t, c]
+            grid.place[t, c] = place
+            place += count
+    grid.first[cells] = place
+
+
+@kernel
+def share_cells(first, cells, cut):
+    """Cut the cells into stretches, one for each thread, in which about as many pairs can meet.
+
+    Molecules that stand together in memory are so in the same hands when they move and when they collide.
+
+    Examples
+    --------
+    Ten molecules in one cell are more work than ten in ten:
+
+    >>> cut = np.zeros(3, np.int64)
+    >>> share_cells(np.array([0, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]), 11, cut)
+    >>> cut
+    array([ 0,  1, 11])
+    """
+    total = 0
+    for c in range(cells):
+        number = np.int64(first[c + 1]) - np.int64(first[c])
+        total += number * (number - 1) + _EVEN_EMPTY
+    threads = cut.size - 1
+    done = 0
+    t = 1
+    for c in range(cells):
+        number = np.int64(first[c + 1]) - np.int64(first[c])
+        done += number * (number - 1) + _EVEN_EMPTY
+        while t < threads and done * threads >= total * t:
+            cut[t] = c + 1
+            t += 1
+    cut[threads] = cells
+
+
+@kernel
+def index_by_cell(cell, order, place, first, last):
+    """Write the slots from ``first`` to before ``last`` into the index, each at the next place of its cell."""
+    for p in range(first, last):
+        c = np.uint32(cell[np.uint32(p)])
+        q = np.uint32(place[c])
+        place[c] = q + np.uint32(1)
+        order[q] = p
+
+
+def new_gather(parallel: bool) -> Any:
+    """Return the kernel that puts a column in another order, on one thread or on several."""
+
+    @kernel(entry=True, allocates=parallel, parallel=parallel)
+    def gather(column, order, target, threads):
+        """Copy ``column[order]`` to ``target``."""
+        parts = threads if parallel else 1
+        for t in prange(parts):
+            first, last = share_of(t, parts, column.size)
+            for p in range(first, last):
+                target[p] = column[order[np.uint32(p)]]
+
+    return gather

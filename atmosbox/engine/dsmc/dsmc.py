@@ -1,0 +1,248 @@
+r"""Direct simulation Monte Carlo: molecules fly freely for a step, then collide with whom chance chooses nearby.
+
+In a dilute gas it matters only that molecules collide as often as they should, with partners from where they
+are. So nobody asks who hits whom: cells, smaller than a mean free path, hold some ten molecules each, and after
+every step of free flight, shorter than a mean free time, pairs are drawn within each cell [1]_. A pair with
+relative speed c sweeps the volume :math:`\pi\sigma^2 c\,\Delta t` during the step, so it collides with
+probability
+
+.. math:: P = \frac{\pi \sigma^2 c\, \Delta t}{V_{cell}}.
+
+Testing all pairs would cost the square of their number. Bird's *no time counter* [2]_ draws only
+
+.. math:: \frac{n (n - 1)}{2} \frac{\pi \sigma^2 c_{max}\, \Delta t}{V_{cell}}
+
+of them and accepts each with probability :math:`c / c_{max}`, which is the same. A collision keeps the
+momentum and energy of its pair to rounding and turns the relative velocity to any direction, as spheres do
+whose impact parameter is random. Molecules take no room: the gas is ideal.
+
+Random numbers are keyed by seed, step and cell: no cell's depend on what happens elsewhere, and so the
+run is the same for any number of threads.
+
+References
+----------
+.. [1] Bird, G. A. (1994), Molecular Gas Dynamics and the Direct Simulation of Gas Flows, Oxford.
+.. [2] Bird, G. A. (1989), Prog. Astronaut. Aeronaut. 118, 211, doi:10.2514/5.9781600865923.0211.0226.
+"""
+
+import functools
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.jit import kernel, prange
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.walls import SPECULAR
+from atmosbox.engine.dsmc.columns import (
+    BLOCK,
+    cells_per_length,
+    count_by_cell,
+    find_cell,
+    index_by_cell,
+    number_present,
+    reserve_places,
+    share_cells,
+    share_of,
+)
+from atmosbox.engine.dsmc.moist_columns import mist_step
+from atmosbox.engine.dsmc.moist_pool import pool_step
+from atmosbox.engine.dsmc.pairing import collide, scramble
+from atmosbox.engine.dsmc.streaming import WAITS, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
+
+__all__ = ["Resolution", "densest_layer", "numbers_of_cells", "specialise"]
+
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_SHARED = 8  # steps later cells are shared anew among threads: how never matters for what happens
+
+
+class Resolution(NamedTuple):
+    """How fine cells and steps are: both should stay below 1.
+
+    ``cell`` longest side of a cell, in mean free paths; ``step`` length of a step, in mean free times: both
+    of the densest layer of cells, whichever way the gas is layered.
+    """
+
+    cell: float
+    step: float
+
+
+def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: str) -> tuple[int, int, int]:
+    """Return how many cells of about this edge [length] there are along each side [length] of a box.
+
+    Raises
+    ------
+    RefusedError
+        If hardly any of so many molecules would share a cell; it says what was ``asked`` for.
+
+    Examples
+    --------
+    >>> numbers_of_cells(1000, (10.0, 10.0, 1.0), 2.0, "occupancy = 10")
+    (5, 5, 1)
+    """
+    x, y, z = (max(1.0, float(np.rint(side / edge))) for side in sides)
+    if x * y * z > max(number, 1000) * 10.0:
+        raise RefusedError(
+            f"{asked} leaves {number / (x * y * z):.2g} molecules to a cell in so thin or so long a box: "
+            "make the cells larger, give more molecules, or a box of more equal sides"
+        )
+    return int(x), int(y), int(z)
+
+
+def densest_layer(x: NDArray[np.float64], low: float, side: float, layers: int) -> float:
+    """Return how much more molecules than on average are in one of so many layers, of places from ``low`` on [length].
+
+    Examples
+    --------
+    >>> densest_layer(np.array([0.1, 0.2, 0.3, 0.9]), 0.0, 1.0, 2)
+    1.5
+    """
+    layer = np.minimum(((x - low) * (layers / side)).astype(np.int32), layers - 1)
+    return float(np.bincount(layer, minlength=layers).max()) * layers / len(x)
+
+
+@kernel
+def _move(
+    first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, box, walls, thread, desk, rotates, mixed, pool
+):
+    """Move a share of the molecules, block by block, and count them by cell."""
+    count[:] = 0
+    queue, state = desk.queue[thread], desk.random[thread]
+    r = gas.radius
+    nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
+    high_x, high_y, high_z = box.length_x - r, box.length_y - r, top - r
+    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
+    smooth_x = walls.law[0] == SPECULAR and walls.law[1] == SPECULAR
+    smooth_y = walls.law[2] == SPECULAR and walls.law[3] == SPECULAR
+    for b in range(first, last, BLOCK):
+        e = min(b + BLOCK, last)
+        x, y, z, cell = swarm.x[b:e], swarm.y[b:e], swarm.z[b:e], swarm.cell[b:e]
+        vx, vy, vz = swarm.vx[b:e], swarm.vy[b:e], swarm.vz[b:e]
+        mark = desk.mark[thread, : e - b]
+        mark[:] = 0
+        cell[:] = 0
+        # who waits must be known before anybody moves: floor and ceiling come last of what makes wait
+        if box.inverse_x == 0.0 and not smooth_x:
+            wait_at_walls(x, vx, r, high_x, dt, mark)
+        if box.inverse_y == 0.0 and not smooth_y:
+            wait_at_walls(y, vy, r, high_y, dt, mark)
+        if box.inverse_z == 0.0:
+            fall(z, vz, dt, mark, r, high_z, box.gravity, per_z, nz - 1, nx * ny, cell)
+        else:
+            turn_round(z, vz, dt, mark, box.length_z, per_z, nz - 1, nx * ny, cell)
+        if smooth_x:
+            fold(x, vx, dt, mark, 1, r, high_x, per_x, nx - 1, 1, cell)
+        elif box.inverse_x == 0.0:
+            glide(x, vx, dt, mark, r, high_x, per_x, nx - 1, 1, cell)
+        else:
+            turn_round(x, vx, dt, mark, box.length_x, per_x, nx - 1, 1, cell)
+        if smooth_y:
+            fold(y, vy, dt, mark, 2, r, high_y, per_y, ny - 1, nx, cell)
+        elif box.inverse_y == 0.0:
+            glide(y, vy, dt, mark, r, high_y, per_y, ny - 1, nx, cell)
+        else:
+            turn_round(y, vy, dt, mark, box.length_y, per_y, ny - 1, nx, cell)
+        marked = np.uint32(0)
+        for q in range(e - b):  # a list, without a branch
+            queue[marked] = q
+            marked += np.uint32(mark[q] != 0)
+        books = desk.books[b // BLOCK]
+        books[:] = 0.0
+        for k in range(marked):
+            q = np.int64(queue[k])
+            p = b + q
+            if mark[q] >= WAITS:
+                state[0] = scramble(key ^ (np.uint64(p) * _MIX_1))
+                bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, desk.left, rotates, mixed, pool)
+            mass = gas.masses[swarm.kind[p]] if mixed else gas.mass
+            if mark[q] & 1:
+                mirror(p, swarm.x, swarm.vx, 0, r, high_x, mass, books)
+            if mark[q] & 2:
+                mirror(p, swarm.y, swarm.vy, 2, r, high_y, mass, books)
+            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
+        for q in range(e - b):
+            count[np.uint32(cell[q])] += np.uint32(1)
+
+
+@kernel
+def _settle(desk, tallies, threads, piston):
+    """Add up what walls and contacts did, in an order that no number of threads can change."""
+    for wall in range(6):
+        impulse = given = hits = 0.0
+        for block in range(desk.books.shape[0]):
+            impulse += desk.books[block, 0, wall]
+            given += desk.books[block, 1, wall]
+            hits += desk.books[block, 2, wall]
+        tallies.impulse[wall] += impulse
+        tallies.hits[wall] += np.int64(hits)
+        tallies.count[4] += np.int64(hits)
+        if piston and wall == 5:
+            tallies.work[wall] += given
+        else:
+            tallies.heat[wall] += given
+    for t in range(threads):
+        tallies.count[0] += desk.met[t, 0]
+
+
+@functools.cache
+def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = False) -> Any:
+    """Return the kernel that marches.
+
+    Parameters
+    ----------
+    rotates, parallel
+        Whether molecules rotate, and whether several threads share the work.
+    wet, pool
+        Whether there is liquid, so that molecules are of several kinds and come and go, and whether the floor is its
+        surface.
+    """
+
+    @kernel(entry=True, allocates=parallel, parallel=parallel)
+    def march(
+        first_step, steps, dt, ceilings, swarm, grid, gas, cross_section, box, walls, tallies, desk, tries, water
+    ):  # fmt: skip
+        """Advance by so many steps; ``ceilings : (step + 1,)`` is how high the ceiling is before and after each."""
+        threads = grid.place.shape[0] if parallel else 1
+        number = swarm.x.size
+        cells = grid.number_x * grid.number_y * grid.number_z
+        r = gas.radius
+        wide_x = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
+        wide_y = box.length_y - (2.0 * r if box.inverse_y == 0.0 else 0.0)
+        for k in range(steps):
+            start = (first_step + k) * dt
+            ceiling = ceilings[k]
+            top = ceilings[k + 1]
+            wall_key = scramble(tallies.random[0] + np.uint64(first_step + k) * _MIX_1)
+            cell_key = scramble(wall_key)
+            if wet:
+                number = number_present(swarm, water)
+                desk.books[(number + BLOCK - 1) // BLOCK :] = 0.0
+            for t in prange(threads):
+                first, last = share_of(t, threads, number)
+                _move(
+                    first, last, grid.place[t], start, dt, ceiling, top, wall_key, swarm, grid, gas, box, walls,
+                    t, desk, rotates, wet, pool,
+                )  # fmt: skip
+            if wet:
+                if pool:
+                    pool_step(start, dt, ceiling, top, cell_key, swarm, grid, gas, box, walls, desk, water, rotates)
+                else:
+                    mist_step(dt, ceiling, top, cell_key, swarm, grid, gas, box, water, rotates)
+                number = number_present(swarm, water)
+                for t in prange(threads):
+                    first, last = share_of(t, threads, number)
+                    count_by_cell(swarm.cell, grid.place[t], first, last)
+            reserve_places(grid, cells)
+            if parallel and k % _SHARED == 0:
+                share_cells(grid.first, cells, desk.cut)
+            for t in prange(threads):
+                first, last = share_of(t, threads, number)
+                index_by_cell(swarm.cell, swarm.order, grid.place[t], first, last)
+            volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
+            sweep = 0.5 * cross_section * dt / volume
+            for t in prange(threads):
+                collide(t, sweep, cell_key, swarm, grid, gas, box.exchange, desk, tries, rotates, wet)
+            _settle(desk, tallies, threads, walls.law[5] == 3)
+
+    return march

@@ -1,0 +1,215 @@
+r"""What liquid does in a step among many molecules, and what a mist does.
+
+All molecules have flown, and those that came to a pool wait on it. Now the events of the liquid take their turn, *one
+by one* in the order of their times within the step: a molecule meets it, one leaves it, one rains out. Were those that
+meet it dealt with in the order of the list instead, many would condense before one could leave, and it would be too
+warm. Each clock is a Poisson process, drawn anew whenever the liquid has changed, which its lack of memory allows.
+
+In an ideal gas a molecule of speed w relative to the air meets the **mist** at the rate :math:`A w / 4 V`. Drawn is the
+time for the fastest of all; what is drawn is accepted in proportion to the speed. One that has gone leaves a hole in
+the columns, which the last of them fills. The pool is in `moist_pool`.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.random import uniform
+from atmosbox.engine.dsmc.columns import cells_per_length, find_cell, number_present
+from atmosbox.engine.dsmc.pairing import scramble
+from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.liquid.reservoir import (
+    AIR_MET,
+    LIQUID,
+    THERMAL,
+    Ledger,
+    condense,
+    direction,
+    evaporate,
+    evaporation_rate,
+    exchange,
+    leave,
+    rain_out,
+    wait,
+)
+
+__all__ = ["Water", "copy_slot", "emit", "mist_step", "new_water", "next_rain", "place", "strike", "touch"]
+
+
+class Water(NamedTuple):
+    """The liquid of a swarm.
+
+    ``ledger`` its account; ``calendar`` when those that wait on a pool came to it; ``hole : (slot,)`` the slots of
+    those that have gone in this step, as many as ``holes[0]`` says; ``random : (1,)`` a state of random numbers.
+    """
+
+    ledger: Ledger
+    calendar: Any
+    hole: Any
+    holes: Any
+    random: Any
+
+
+def new_water(ledger: Ledger, waiting: int) -> Water:
+    """Return the liquid of a swarm, of which so many molecules may wait on a pool."""
+    return Water(
+        ledger, new_calendar(waiting), np.zeros(waiting, np.int64), np.zeros(1, np.int64), np.zeros(1, np.uint64)
+    )
+
+
+@kernel
+def copy_slot(source, p, swarm, rotates):
+    """Write what stands in one slot into another."""
+    swarm.x[p], swarm.y[p], swarm.z[p] = swarm.x[source], swarm.y[source], swarm.z[source]
+    swarm.vx[p], swarm.vy[p], swarm.vz[p] = swarm.vx[source], swarm.vy[source], swarm.vz[source]
+    if rotates:
+        swarm.spin[p] = swarm.spin[source]
+    swarm.identity[p] = swarm.identity[source]
+    swarm.kind[p] = swarm.kind[source]
+    swarm.cell[p] = swarm.cell[source]
+
+
+@kernel
+def strike(p, swarm, ledger):
+    """Note that the molecule of a slot is not in the box any more."""
+    ledger.absent[ledger.top[0]] = swarm.identity[p]
+    ledger.top[0] += 1
+
+
+@kernel
+def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
+    """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
+
+    Otherwise it leaves with another energy.
+    """
+    kind = np.int64(swarm.kind[p])
+    mass = gas.masses[kind]
+    vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p]
+    spin = swarm.spin[p] if rotates else 0.0
+    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
+    if kind == ledger.kind and (ledger.sticking >= 1.0 or uniform(state) < ledger.sticking):
+        condense(ledger, energy)
+        return True
+    relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
+    flight, new_spin = exchange(ledger, relative, gas.rotations[kind], state)
+    ex, ey, ez = direction(pool, state)
+    speed = math.sqrt(2.0 * flight / mass)
+    wx, wy, wz = speed * ex, speed * ey, speed * ez + flow
+    given = 0.5 * mass * (wx * wx + wy * wy + wz * wz) + new_spin - energy
+    if ledger.energy[THERMAL] - given >= 0.0:
+        ledger.energy[THERMAL] -= given
+        ledger.count[AIR_MET] += 1
+        swarm.vx[p], swarm.vy[p], swarm.vz[p] = wx, wy, wz
+        if rotates:
+            swarm.spin[p] = new_spin
+    elif pool:
+        swarm.vz[p] = -vz
+    return False
+
+
+@kernel
+def emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, pool):
+    """Let a molecule leave the liquid, into a slot that is free."""
+    mass = gas.masses[ledger.kind]
+    flight, spin = evaporate(ledger, state)
+    speed = math.sqrt(2.0 * flight / mass)
+    ex, ey, ez = direction(pool, state)
+    vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
+    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
+    if flow != 0.0 and energy + ledger.binding_energy > ledger.energy[THERMAL]:
+        # only the last molecule can lack what the flow of the air adds: it leaves as if the air were at rest
+        vz = speed * ez
+        energy = flight + spin
+    leave(ledger, energy)
+    swarm.x[p], swarm.y[p], swarm.z[p] = x, y, z
+    swarm.vx[p], swarm.vy[p], swarm.vz[p] = vx, vy, vz
+    if rotates:
+        swarm.spin[p] = spin
+    swarm.kind[p] = ledger.kind
+    ledger.top[0] -= 1
+    swarm.identity[p] = ledger.absent[ledger.top[0]]
+
+
+@kernel
+def place(radius, length, inverse, state):
+    """Return a coordinate that a centre can have along an axis, at random."""
+    margin = radius if inverse == 0.0 else 0.0
+    return margin + (length - 2.0 * margin) * uniform(state)
+
+
+@kernel
+def _fastest(number, swarm):
+    """Return the highest speed of all molecules [length/time]; four at a time, for maxima wait for each other."""
+    a = b = c = d = 0.0
+    vx, vy, vz = swarm.vx, swarm.vy, swarm.vz
+    whole = number - number % 4
+    for p in range(0, whole, 4):
+        a = max(a, vx[p] * vx[p] + vy[p] * vy[p] + vz[p] * vz[p])
+        b = max(b, vx[p + 1] * vx[p + 1] + vy[p + 1] * vy[p + 1] + vz[p + 1] * vz[p + 1])
+        c = max(c, vx[p + 2] * vx[p + 2] + vy[p + 2] * vy[p + 2] + vz[p + 2] * vz[p + 2])
+        d = max(d, vx[p + 3] * vx[p + 3] + vy[p + 3] * vy[p + 3] + vz[p + 3] * vz[p + 3])
+    for p in range(whole, number):
+        a = max(a, vx[p] * vx[p] + vy[p] * vy[p] + vz[p] * vz[p])
+    return math.sqrt(max(a, b, c, d))
+
+
+@kernel
+def next_rain(t, ledger, state):
+    """Return when the next molecule rains [time]."""
+    return t + wait(ledger.rain * (ledger.count[LIQUID] - ledger.keeps), state)
+
+
+@kernel(entry=True)
+def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
+    """Let a mist, carried along by the air, do what it does in a step."""
+    ledger, state = water.ledger, water.random
+    state[0] = scramble(~key)
+    number = number_present(swarm, water)
+    r = gas.radius
+    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
+    volume = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
+    volume *= box.length_y - (2.0 * r if box.inverse_y == 0.0 else 0.0)
+    volume *= 0.5 * (ceiling + top) - (2.0 * r if box.inverse_z == 0.0 else 0.0)
+    often = ledger.area / (4.0 * volume)
+    rise = (top - ceiling) / dt
+    bound = _fastest(number, swarm) + abs(rise)
+    meets = wait(number * often * bound, state)
+    leaves = wait(evaporation_rate(ledger), state)
+    rains = next_rain(0.0, ledger, state)
+    while True:
+        t = min(meets, leaves, rains)
+        if t > dt:
+            break
+        if t == meets:
+            p = min(np.int64(uniform(state) * number), number - 1)
+            flow = rise * swarm.z[p] / top
+            vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
+            enough = uniform(state) * bound
+            if enough * enough >= vx * vx + vy * vy + vz * vz:
+                meets = t + wait(number * often * bound, state)
+                continue
+            if touch(p, flow, swarm, gas, ledger, state, rotates, False):
+                number -= 1
+                strike(p, swarm, ledger)
+                copy_slot(number, p, swarm, rotates)
+            else:
+                vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
+                bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
+        elif t == leaves:
+            p = number
+            x = place(r, box.length_x, box.inverse_x, state)
+            y = place(r, box.length_y, box.inverse_y, state)
+            z = place(r, top, box.inverse_z, state)
+            flow = rise * z / top
+            emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, False)
+            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
+            number += 1
+            vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
+            bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
+        else:
+            rain_out(ledger)
+        meets = t + wait(number * often * bound, state)
+        leaves = t + wait(evaporation_rate(ledger), state)
+        rains = next_rain(t, ledger, state)

@@ -1,0 +1,175 @@
+"""The parcel of moist air, advanced by direct simulation Monte Carlo: for clouds of many molecules."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.engine.core.kind import classify
+from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.dsmc.columns import BLOCK, Gas, new_desk
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.engine.dsmc.moist_columns import Water, new_water
+from atmosbox.engine.liquid.moist_account import MoistAccount
+from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
+
+__all__ = ["MoistDsmcParcel"]
+
+_MOST_KINDS = 256
+
+
+class MoistDsmcParcel(MoistAccount, DsmcParcel):
+    """A parcel of dilute air and vapour with liquid in it, whose molecules collide with whom chance chooses nearby.
+
+    What it is given besides, and what it tells, is described at `DsmcParcel`; what the liquid does, at `liquid`. The
+    molecules that are given are in the box; those in the liquid come to them. They may differ in mass and rotation, not
+    in size. Vapour are those that are as the substance of the liquid says.
+
+    Parameters
+    ----------
+    liquid
+        A mist in the box, or a pool on its floor.
+
+    Raises
+    ------
+    RefusedError
+        If a liquid is asked for in gravity, or a pool on a floor that is no smooth wall; if molecules differ in size,
+        or the liquid is neither a mist nor a pool.
+
+    Notes
+    -----
+    Steps and cells are those of the gas at the start; of all molecules where they are all in the liquid.
+
+    Examples
+    --------
+    A molecule of the liquid that is hot enough leaves it; the energy is still there:
+
+    >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
+    >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+    >>> box = MoistDsmcParcel([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0))
+    >>> box.advance(50.0)
+    >>> box.evaporated > 0, box.number + box.liquid, box.ledger() < 1e-12
+    (True, 1, True)
+    """
+
+    engine: ClassVar[str] = "dsmc"
+    _wet = True
+    _water: Water
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        *,
+        liquid: Liquid,
+        dt: float = 0.2,
+        occupancy: float = 10.0,
+        cell: float | None = None,
+        threads: int = 1,
+        **box: Unpack[Arrangement],
+    ) -> None:
+        self._liquid = liquid
+        super().__init__(position, velocity, dt=dt, occupancy=occupancy, cell=cell, threads=threads, **box)
+
+    # ------------------------------------------------------------------ what it tells
+
+    @property
+    def diameter(self) -> Array:
+        """Diameter of each molecule of the gas [length]."""
+        return np.broadcast_to(np.float64(2.0 * self._gas.radius), self.number)
+
+    def snapshot(self) -> Snapshot:
+        """Return all molecules of the gas as they are after the last step, in the order of the list."""
+        s, n = self._swarm, self._number
+        order = np.argsort(s.identity[:n])
+        position, velocity = (np.stack([column[order] for column in s[k : k + 3]], axis=1) for k in (0, 3))
+        return Snapshot(self.time, position, velocity, s.spin[order] if self._rotates else np.zeros(n))
+
+    def energy(self) -> tuple[float, float, float]:
+        """Return kinetic, rotational and potential energy now [energy]."""
+        n = self._number
+        rotational = float(np.sum(self._swarm.spin[:n])) if self._rotates else 0.0
+        return self._kinetic(), rotational, 0.0
+
+    def memory(self) -> int:
+        """Return the bytes that molecules, cells, the sorting of the ones into the others and the liquid take."""
+        calendar = self._water.calendar
+        arrays = (self._swarm.kind, self._spare_kind, self._water.hole, calendar.time, calendar.winner)
+        return super().memory() + self._ledger_memory() + sum(int(array.nbytes) for array in arrays)
+
+    # ------------------------------------------------------------------ how
+
+    def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        if not isinstance(self._liquid, Mist | Pool):
+            raise RefusedError("the liquid of dsmc is a Mist or a Pool: drops that can be hit need the engine exact")
+        self._refuse_what_no_liquid_bears()
+        self._pool = isinstance(self._liquid, Pool)
+        super()._begin(position, velocity, rotational_energy)
+        substance = self._liquid.substance
+        alike = (self._gas.masses == substance.mass) & (self._gas.rotations == substance.rotation)
+        alike &= 2.0 * self._gas.radius == substance.diameter
+        self._open_ledger(alike, self._swarm.kind)
+        self._water = new_water(self._ledger, self._room if self._pool else 1)
+        self._spare_kind = np.empty_like(self._swarm.kind)
+
+    def _classify(self) -> tuple[Gas, Any]:
+        """Return what the molecules of gas and liquid are, and of which kind each is."""
+        self._append_liquid()
+        kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
+        radii = kinds.table["radius"]
+        if (radii != radii[0]).any():
+            raise RefusedError(
+                "the molecules of dsmc are all of one size, those of the liquid, too: give one diameter, or take "
+                "engine exact"
+            )
+        if len(radii) > _MOST_KINDS:
+            raise RefusedError(f"{len(radii)} kinds of molecules are more than {_MOST_KINDS}: give fewer masses")
+        masses, rotations = (np.array(kinds.table[name]) for name in ("mass", "rotation"))
+        if not self._rotates:
+            rotations[:] = 0.0
+        return Gas(float(masses.min()), float(radii[0]), 0.0, masses, rotations), kind.astype(np.uint8)
+
+    def _effort(self) -> int:
+        return self._room
+
+    def _lay_out(self, sides: Sequence[float]) -> None:
+        super()._lay_out(sides)
+        cells = self._grid.number_x * self._grid.number_y * self._grid.number_z
+        # one block more, for the books of the pool
+        self._desk = new_desk(self._room + BLOCK, cells, self._workers, self._room if self._pool else 1)
+
+    def _resolve(self, first: int, many: int, ceilings: Array) -> None:
+        super()._resolve(first, many, ceilings)
+        self._number = self.number
+
+    def _regroup(self) -> None:
+        n, kind = self._number, self._swarm.kind
+        self._gather(kind[:n], self._swarm.order[:n], self._spare_kind, self._workers)
+        self._swarm, self._spare_kind = self._swarm._replace(kind=self._spare_kind), kind
+        super()._regroup()
+
+    def _fastest(self) -> float:
+        """Return sqrt(kT/m) of the lightest molecules, at the start or at the warmest of walls and liquid."""
+        if not self._room:
+            return 0.0
+        kT = self._warmest(max(self._kT(), self._liquid.kT if self._liquid.number else 0.0))
+        return math.sqrt(kT / self._gas.mass) if kT > 0.0 else abs(self.piston_velocity)
+
+    def _thermal_speed(self) -> float:
+        return math.sqrt(self._kT() / self._gas.mass)
+
+    def _mean_square_speed(self) -> float:
+        n = self._number
+        return sum(float(np.sum(v[:n] * v[:n])) for v in self._swarm[3:6]) / max(n, 1)
+
+    def _kT(self) -> float:
+        """Return the kinetic temperature [energy]."""
+        return self._kinetic() / (1.5 * max(self._number, 1))
+
+    def _kinetic(self) -> float:
+        n = self._number
+        vx, vy, vz = (v[:n] for v in self._swarm[3:6])
+        return 0.5 * float(np.sum(self._gas.masses[self._swarm.kind[:n]] * (vx * vx + vy * vy + vz * vz)))

@@ -1,0 +1,107 @@
+"""What a pool does in a step among many molecules.
+
+They come to it when their flight takes them there, and wait for their turn. Whoever leaves it flies for *the rest of
+the step*, from wall to wall, and may be back within it. Were they put on the floor at the end of the step instead, slow
+molecules would be too few above it, and the gas too hot.
+"""
+
+import math
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.dsmc.columns import cells_per_length, find_cell, number_present
+from atmosbox.engine.dsmc.moist_columns import copy_slot, emit, next_rain, place, strike, touch
+from atmosbox.engine.dsmc.pairing import scramble
+from atmosbox.engine.dsmc.streaming import bounce
+from atmosbox.engine.exact.calendar import next_event, schedule
+from atmosbox.engine.liquid.reservoir import evaporation_rate, rain_out, wait
+
+__all__ = ["fill_holes", "pool_step"]
+
+_GONE = -1.0
+
+
+@kernel
+def fill_holes(last, swarm, left, water, rotates):
+    """Put the last molecules into the holes before them; ``last`` is the slot after the last that is in use.
+
+    Examples
+    --------
+    The first and the third of four have gone: the fourth takes the place of the first.
+
+    >>> import numpy as np
+    >>> from atmosbox.engine.dsmc.moist_columns import Water
+    >>> from atmosbox.engine.dsmc.columns import Swarm
+    >>> swarm = Swarm(*(np.arange(4.0) for _ in range(7)), *(np.arange(4) for _ in range(4)))
+    >>> left, gone = np.array([-1.0, 0.0, -1.0, 0.0]), (np.array([0, 2]), np.array([2]))
+    >>> fill_holes(4, swarm, left, Water(None, None, *gone, None), True)
+    >>> swarm.x[:2], left
+    (array([3., 1.]), array([0., 0., 0., 0.]))
+    """
+    for k in range(water.holes[0]):
+        while last > 0 and left[last - 1] == _GONE:
+            last -= 1
+            left[last] = 0.0
+        p = water.hole[k]
+        if p < last:
+            last -= 1
+            copy_slot(last, p, swarm, rotates)
+            left[p] = 0.0
+    water.holes[0] = 0
+
+
+@kernel(entry=True)
+def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, water, rotates):
+    """Let a pool on the floor do what it does in a step, with those that wait on it."""
+    ledger, state, calendar, left = water.ledger, water.random, water.calendar, desk.left
+    state[0] = scramble(~key)
+    number = number_present(swarm, water)
+    books = desk.books[desk.books.shape[0] - 1]
+    rise = (top - ceiling) / dt
+    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
+    for p in range(number):
+        if left[p] > 0.0:
+            schedule(calendar, p, dt - left[p])
+    leaves = wait(evaporation_rate(ledger), state)
+    rains = next_rain(0.0, ledger, state)
+    while True:
+        p, comes = next_event(calendar)
+        t = min(comes, leaves, rains)
+        if t > dt:
+            break
+        flies = False
+        if t == comes:
+            schedule(calendar, p, math.inf)
+            left[p] = 0.0
+            mass = gas.masses[swarm.kind[p]]
+            books[0, 4] -= mass * swarm.vz[p]
+            books[2, 4] += 1.0
+            flies = not touch(p, 0.0, swarm, gas, ledger, state, rotates, True)
+            if not flies:
+                strike(p, swarm, ledger)
+                left[p] = _GONE
+                water.hole[water.holes[0]] = p
+                water.holes[0] += 1
+        elif t == leaves:
+            flies = True
+            p = number
+            if water.holes[0] > 0:
+                water.holes[0] -= 1
+                p = water.hole[water.holes[0]]
+            else:
+                number += 1
+            left[p] = 0.0
+            x = place(gas.radius, box.length_x, box.inverse_x, state)
+            y = place(gas.radius, box.length_y, box.inverse_y, state)
+            emit(p, x, y, gas.radius, 0.0, swarm, gas, ledger, state, rotates, True)
+        else:
+            rain_out(ledger)
+        if flies:
+            books[0, 4] += gas.masses[swarm.kind[p]] * swarm.vz[p]
+            here = ceiling + rise * t
+            bounce(p, start + t, dt - t, here, swarm, gas, box, walls, state, books, left, rotates, True, True)
+            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
+            if left[p] > 0.0:
+                schedule(calendar, p, dt - left[p])
+        leaves = t + wait(evaporation_rate(ledger), state)
+        rains = next_rain(t, ledger, state)
+    fill_holes(number, swarm, left, water, rotates)

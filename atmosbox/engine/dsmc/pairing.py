@@ -1,0 +1,213 @@
+r"""Who collides with whom in a cell: pairs are drawn for many cells at a time, then met one after the other.
+
+A processor guesses how a comparison will end and goes on; drawing is all chance, so it guesses wrong, and then all that
+it has begun is lost. So what depends on chance is kept apart from what takes long: how often each cell tries
+is written down, then whom each try draws, in a loop without a branch; only then do pairs meet, whose molecules the
+memory has been asked for in the meantime.
+
+Random numbers are words scrambled by splitmix64 (`random`), keyed by seed, step and cell: no cell's depend on what
+happens elsewhere, nor on which thread it falls to.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.contact import share_energy
+from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
+from atmosbox.engine.core.random import uniform
+
+__all__ = ["Tries", "collide", "new_tries", "scramble"]
+
+_STEP = np.uint64(0x9E3779B97F4A7C15)
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_2 = np.uint64(0x94D049BB133111EB)
+_HALF = np.uint64(32)
+_LOW = np.uint64(0xFFFFFFFF)
+_FRACTION = 1.0 / 4294967296.0
+_HIGH, _MIDDLE, _PART, _ONE = np.uint64(43), np.uint64(22), np.uint64(21), np.uint64(1)
+_MASK, _LAST = np.uint64(0x1FFFFF), np.uint64(0x3FFFFF)
+_DECIDE = 1.0 / 4194304.0
+_BATCH = 256  # tries are written down before their pairs meet: few enough to stay in the nearest cache
+_WIDE = 4  # of them at once, whether so many are needed or not: that takes no loop of unknown length
+_AHEAD = 16  # tries before its turn memory is asked for a pair
+_MANY = 200_000  # molecules do not stay in a cache
+
+
+class Tries(NamedTuple):
+    """A list of tries, for each thread: what a step writes on and forgets.
+
+    ``word : (thread, try)`` a random word, ``bar`` the fastest pair of its cell [length/time], then the squared speed
+    above which this pair collides, ``cell`` where it is, ``begin``, ``number`` where the molecules of that cell
+    begin in the index, and how many they are, ``one``, ``other`` the two slots drawn.
+    """
+
+    word: Any
+    bar: Any
+    cell: Any
+    begin: Any
+    number: Any
+    one: Any
+    other: Any
+
+
+def new_tries(threads: int) -> Tries:
+    """Return an empty list for each thread; behind its end is room for what is fetched ahead."""
+    room = (threads, _BATCH + 64)
+    return Tries(np.zeros(room, np.uint64), np.zeros(room), *(np.zeros(room, np.uint32) for _ in range(5)))
+
+
+@kernel
+def scramble(word):
+    """Return a random word that depends on another and on nothing else (see `random`).
+
+    Examples
+    --------
+    >>> scramble(np.uint64(1)) == scramble(np.uint64(2))
+    False
+    """
+    z = word + _STEP
+    z = (z ^ (z >> np.uint64(30))) * _MIX_1
+    z = (z ^ (z >> np.uint64(27))) * _MIX_2
+    return z ^ (z >> np.uint64(31))
+
+
+@kernel
+def _draw(number, thread, tries, first, order):
+    """Choose the two slots of each try, and the squared speed that they must exceed to collide."""
+    word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
+    begin, inside = tries.begin[thread], tries.number[thread]
+    one, other = tries.one[thread], tries.other[thread]
+    for k in range(number):
+        c = np.uint32(cell[k])
+        begin[k] = first[c]
+        inside[k] = first[c + np.uint32(1)] - first[c]
+    for k in range(number):
+        draw = scramble(word[k])
+        word[k] = draw
+        # one word makes three numbers: 21 bits choose a molecule, 21 another, 22 decide
+        many = np.uint64(inside[k])
+        i = ((draw >> _HIGH) * many) >> _PART
+        j = (((draw >> _MIDDLE) & _MASK) * (many - _ONE)) >> _PART
+        j += np.uint64(j >= i)
+        one[k] = np.uint64(begin[k]) + i
+        other[k] = np.uint64(begin[k]) + j
+        enough = np.int64(draw & _LAST) * _DECIDE * bar[k]
+        bar[k] = enough * enough
+    for k in range(number):
+        one[k] = order[one[k]]
+        other[k] = order[other[k]]
+
+
+@kernel
+def _fetch(swarm, i):
+    """Fetch what a try will need: at many molecules memory is what takes the time."""
+    prefetch(swarm.vx, i)
+    prefetch(swarm.vy, i)
+    prefetch(swarm.vz, i)
+
+
+@kernel
+def _weigh(i, j, swarm, gas, mixed):
+    """Return half the reduced mass of a pair [mass], and the shares of both in a change of their relative velocity."""
+    if mixed:
+        one, other = gas.masses[swarm.kind[i]], gas.masses[swarm.kind[j]]
+        share = other / (one + other)
+        return 0.5 * one * share, share, 1.0 - share
+    return 0.25 * gas.mass, 0.5, 0.5
+
+
+@kernel
+def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates, mixed):
+    """Let pairs collide that are fast enough; return how many did."""
+    word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
+    one, other = tries.one[thread], tries.other[thread]
+    collisions = 0
+    many = swarm.x.size >= _MANY
+    for k in range(number):
+        if many:
+            _fetch(swarm, np.int64(one[k + _AHEAD]))
+            _fetch(swarm, np.int64(other[k + _AHEAD]))
+        i, j = one[k], other[k]
+        ux = swarm.vx[i] - swarm.vx[j]
+        uy = swarm.vy[i] - swarm.vy[j]
+        uz = swarm.vz[i] - swarm.vz[j]
+        square = ux * ux + uy * uy + uz * uz
+        if bar[k] >= square:
+            continue
+        speed = math.sqrt(square)
+        c = cell[k]
+        if speed > fastest[c]:
+            fastest[c] = speed
+        collisions += 1
+        after = speed
+        draw = word[k]
+        weight, share, other_share = _weigh(i, j, swarm, gas, mixed)
+        if rotates:
+            state[0] = draw
+            if exchange >= 1.0 or uniform(state) < exchange:
+                energy = weight * speed * speed + swarm.spin[i] + swarm.spin[j]
+                turns_i = gas.rotations[swarm.kind[i]] if mixed else gas.rotation
+                turns_j = gas.rotations[swarm.kind[j]] if mixed else gas.rotation
+                shared, swarm.spin[i], swarm.spin[j] = share_energy(energy, 3.0, turns_i, turns_j, state)
+                after = math.sqrt(shared / weight)
+                draw = state[0]
+        # a point on the unit sphere, from one in the unit circle (Marsaglia 1972, doi:10.1214/aoms/1177692644)
+        a = b = 0.0
+        square = 2.0
+        while square >= 1.0:
+            draw = scramble(draw)
+            a = (np.int64(draw >> _HALF) + 0.5) * (2.0 * _FRACTION) - 1.0
+            b = (np.int64(draw & _LOW) + 0.5) * (2.0 * _FRACTION) - 1.0
+            square = a * a + b * b
+        around = 2.0 * after * math.sqrt(1.0 - square)
+        dx = a * around - ux
+        dy = b * around - uy
+        dz = (1.0 - 2.0 * square) * after - uz
+        swarm.vx[i] += share * dx
+        swarm.vy[i] += share * dy
+        swarm.vz[i] += share * dz
+        swarm.vx[j] -= other_share * dx
+        swarm.vy[j] -= other_share * dy
+        swarm.vz[j] -= other_share * dz
+    return collisions
+
+
+@kernel
+def collide(thread, sweep, key, swarm, grid, gas, exchange, desk, tries, rotates, mixed):
+    """Let a thread's share of the cells collide; count collisions on the desk.
+
+    ``sweep`` is half the cross section times the step over the volume of a cell [time/length], ``key`` a random word
+    of this step.
+    """
+    collisions = 0
+    state = desk.random[thread]
+    word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
+    written = 0
+    for c in range(desk.cut[thread], desk.cut[thread + 1]):
+        inside = np.int64(grid.first[c + 1]) - np.int64(grid.first[c])
+        most = grid.fastest[c]
+        seed = scramble(key + np.uint64(c) * _MIX_2)
+        left = np.int64(sweep * (inside * (inside - 1)) * most + np.int64(seed >> _HALF) * _FRACTION)
+        while True:
+            at = written & POSITIVE
+            # one short loop per column: each becomes one store
+            for k in range(_WIDE):
+                word[at + k] = seed + np.uint64(k) * _STEP
+            for k in range(_WIDE):
+                bar[at + k] = most
+            for k in range(_WIDE):
+                cell[at + k] = c
+            written += min(left, _WIDE)
+            if written >= _BATCH:
+                _draw(written, thread, tries, grid.first, swarm.order)
+                collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates, mixed)
+                written = 0
+            if left <= _WIDE:
+                break
+            left -= _WIDE
+            seed += np.uint64(_WIDE) * _STEP
+    _draw(written, thread, tries, grid.first, swarm.order)
+    collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates, mixed)
+    desk.met[thread, 0] = collisions

@@ -1,0 +1,263 @@
+r"""A step of free flight for many molecules at once, with all that walls do to them on the way.
+
+Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark
+those for which a wall makes a difference. There are two kinds. Smooth walls at rest that face each other only
+mirror: flight along their axis goes on beyond the wall and is *folded* back, and what is left to do is to write the
+impulse down. Before any other wall a molecule is told to *wait*: it flies last, alone, from wall to wall. Each
+hit happens at its exact time and place, and what a heat bath emits flies for *the rest of the step*. Were it
+emitted at the end of the step instead, slow molecules would be too few near the wall, and the gas too hot.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
+from atmosbox.engine.core.walls import PISTON, resolve_wall_hit
+
+__all__ = ["WAITS", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
+
+WAITS = 4
+"""The mark of a molecule that waits. Smaller marks, 1 and 2, tell along which axis one is folded, x, y or both."""
+
+_MOST_HITS = 1000
+
+
+@kernel
+def wait_at_walls(x, v, low, high, dt, mark):
+    """Let those wait that would leave the interval [length] within a step of dt [time].
+
+    Parameters
+    ----------
+    x, v : (molecule,)
+        Coordinates [length] and velocities [length/time].
+    low, high
+        The interval [length].
+    dt
+        Length of the step [time].
+    mark : (molecule,)
+        `WAITS` for those that wait, changed.
+
+    Examples
+    --------
+    >>> mark = np.zeros(2, np.int32)
+    >>> wait_at_walls(np.array([1.0, 1.0]), np.array([0.5, 1.5]), 0.0, 2.0, 1.0, mark)
+    >>> mark
+    array([0, 4], dtype=int32)
+    """
+    for p in range(x.size):
+        ahead = x[p] + v[p] * dt
+        mark[p] = mark[p] if (ahead >= low) & (ahead <= high) else np.int32(WAITS)
+
+
+@kernel
+def fall(z, v, dt, mark, low, high, gravity, per_length, last, stride, cell):
+    """Move molecules up and down their exact parabola, but let those wait that would reach floor or ceiling.
+
+    A parabola is highest above its chord, so it meets the ceiling, if at all, where the straight line without
+    gravity does, too; and it is lowest at its ends. ``high`` is where the ceiling is at the end of the step. To each
+    ``cell`` is added its index along this axis, times the ``stride``; for one that waits it means nothing.
+    """
+    gain = gravity * dt
+    drop = 0.5 * gain * dt
+    most = np.int32(last)
+    step = np.int32(stride)
+    for p in range(z.size):
+        ahead = z[p] + v[p] * dt
+        there = ahead - drop
+        waits = (mark[p] != 0) | (there < low) | (ahead > high)
+        z[p] = z[p] if waits else there
+        v[p] = v[p] if waits else v[p] - gain
+        mark[p] = np.int32(WAITS) if waits else np.int32(0)
+        cell[p] += min(np.int32((there - low) * per_length), most) * step
+
+
+@kernel
+def fold(x, v, dt, mark, sign, low, high, per_length, last, stride, cell):
+    """Move those that do not wait evenly between two smooth walls; one that hits a wall gets the mark ``sign``.
+
+    Whoever comes so fast that folding once leaves it beyond the other wall is left there, for `mirror`.
+
+    Examples
+    --------
+    The second molecule flies 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
+
+    >>> x, v, mark, cell = np.array([0.5, 1.5]), np.ones(2), np.zeros(2, np.int32), np.zeros(2, np.uint32)
+    >>> fold(x, v, 1.0, mark, 1, 0.0, 2.0, 2.0, 3, 1, cell)
+    >>> x, v, mark, cell
+    (array([1.5, 1.5]), array([ 1., -1.]), array([0, 1], dtype=int32), array([3, 3], dtype=uint32))
+    """
+    most = np.int32(last)
+    step = np.int32(stride)
+    for p in range(x.size):
+        there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
+        below = there < low
+        above = there > high
+        there = 2.0 * low - there if below else (2.0 * high - there if above else there)
+        x[p] = there
+        v[p] = -v[p] if below | above else v[p]
+        mark[p] |= np.int32(sign) if below | above else np.int32(0)
+        cell[p] += min(np.int32((there - low) * per_length), most) * step
+
+
+@kernel
+def mirror(p, x, v, wall, low, high, mass, books):
+    """Write down the hit of a molecule that has been folded, and fold it again until it is inside.
+
+    ``wall`` is the lower of the two walls; see `bounce` for the ``books``.
+
+    Examples
+    --------
+    One that flew four widths of its box ahead, and was folded once, hit walls four times:
+
+    >>> x, v, books = np.array([-2.5]), np.array([-4.0]), np.zeros((3, 6))
+    >>> mirror(0, x, v, 0, 0.0, 1.0, 1.0, books)
+    >>> float(x[0]), float(v[0]), books[2, :2]
+    (0.5, 4.0, array([2., 2.]))
+    """
+    there, speed = x[p], v[p]
+    for _ in range(_MOST_HITS):
+        hit = wall if speed > 0.0 else wall + 1
+        books[0, hit] += 2.0 * mass * abs(speed)
+        books[2, hit] += 1.0
+        if low <= there <= high:
+            break
+        there = 2.0 * (low if there < low else high) - there
+        speed = -speed
+    x[p], v[p] = min(max(there, low), high), speed
+
+
+@kernel
+def glide(x, v, dt, mark, low, high, per_length, last, stride, cell):
+    """Move those that do not wait evenly between walls: see `fold`."""
+    most = np.int32(last)
+    step = np.int32(stride)
+    for p in range(x.size):
+        there = min(max(x[p] + (v[p] * dt if mark[p] < WAITS else 0.0), low), high)
+        x[p] = there
+        cell[p] += min(np.int32((there - low) * per_length), most) * step
+
+
+@kernel
+def turn_round(x, v, dt, mark, length, per_length, last, stride, cell):
+    """Move those that do not wait evenly along a periodic axis: see `fold`."""
+    most = np.int32(last)
+    step = np.int32(stride)
+    inverse = 1.0 / length
+    for p in range(x.size):
+        there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
+        there = min(max(there - length * math.floor(there * inverse), 0.0), length)
+        x[p] = there
+        cell[p] += min(np.int32(there * per_length), most) * step
+
+
+@kernel
+def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_over, rotates, mixed, pool):
+    """Fly one molecule through a step from wall to wall, or as far as a pool.
+
+    Parameters
+    ----------
+    p
+        Its slot.
+    start, dt
+        Beginning and length of the step [time].
+    ceiling
+        Height of the ceiling at the beginning [length].
+    swarm, gas, box, walls
+        The molecules, what they are, their box.
+    state
+        State of the random numbers, moved on.
+    books : (3, wall)
+        Outward impulse, energy given, hits: added to.
+    left_over : (slot,)
+        How much of the step is left to one that has come to a pool [time].
+    rotates, mixed, pool
+        Whether molecules rotate, whether there are several kinds, whether the floor is a pool.
+
+    Notes
+    -----
+    A molecule that hits walls a thousand times in one step, as on a floor near absolute zero, loses the rest of
+    that flight, and no energy.
+    """
+    x, y, z = swarm.x[p], swarm.y[p], swarm.z[p]
+    vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p]
+    spin = swarm.spin[p] if rotates else 0.0
+    mass = gas.masses[swarm.kind[p]] if mixed else gas.mass
+    rotation = gas.rotations[swarm.kind[p]] if mixed else gas.rotation
+    radius = gas.radius
+    high_x, high_y = box.length_x - radius, box.length_y - radius
+    piston = walls.piston[1] if walls.law[5] == PISTON else 0.0
+    top = ceiling + piston * dt - radius
+    left = dt
+    for _ in range(_MOST_HITS):
+        soonest = left
+        wall = -1
+        # most walls are out of reach: that is seen without a division
+        ahead = x + vx * left
+        if box.inverse_x == 0.0 and (ahead < radius or ahead > high_x):
+            t, up = time_to_leave(x, vx, radius, high_x)
+            if t < soonest:
+                soonest, wall = t, up
+        ahead = y + vy * left
+        if box.inverse_y == 0.0 and (ahead < radius or ahead > high_y):
+            t, up = time_to_leave(y, vy, radius, high_y)
+            if t < soonest:
+                soonest, wall = t, 2 + up
+        if box.inverse_z == 0.0:
+            ahead = z + vz * left
+            if ahead - 0.5 * box.gravity * left * left < radius:
+                if box.gravity > 0.0:
+                    t, _ = time_to_leave_in_gravity(z, vz, radius, math.inf, box.gravity)
+                else:
+                    t, _ = time_to_leave(z, vz, radius, math.inf)
+                if t < soonest:
+                    soonest, wall = t, 4
+            if ahead > top:
+                t = time_to_ceiling(ceiling + piston * (dt - left) - radius - z, vz - piston, box.gravity)
+                if t < soonest:
+                    soonest, wall = t, 5
+        x += vx * soonest
+        y += vy * soonest
+        after = vz - box.gravity * soonest
+        z += 0.5 * (vz + after) * soonest
+        vz = after
+        left -= soonest
+        if wall < 0:
+            break
+        if pool and wall == 4:
+            left_over[p] = left
+            break
+        before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
+        axis = wall >> 1
+        high = wall & 1 == 1
+        came, first, second = (vx, vy, vz) if axis == 0 else ((vy, vx, vz) if axis == 1 else (vz, vx, vy))
+        went, first, second, spin = resolve_wall_hit(
+            walls, wall, start + (dt - left), came, first, second, spin, mass, rotation, False, state
+        )
+        if axis == 0:
+            vx, vy, vz = went, first, second
+            x = high_x if high else radius
+        elif axis == 1:
+            vx, vy, vz = first, went, second
+            y = high_y if high else radius
+        else:
+            vx, vy, vz = first, second, went
+            z = ceiling + piston * (dt - left) - radius if high else radius
+        books[0, wall] += mass * (came - went) if high else mass * (went - came)
+        books[1, wall] += 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
+        books[2, wall] += 1.0
+    swarm.x[p] = _back_inside(x, radius, high_x, box.length_x, box.inverse_x)
+    swarm.y[p] = _back_inside(y, radius, high_y, box.length_y, box.inverse_y)
+    swarm.z[p] = _back_inside(z, radius, top, box.length_z, box.inverse_z)
+    swarm.vx[p], swarm.vy[p], swarm.vz[p] = vx, vy, vz
+    if rotates:
+        swarm.spin[p] = spin
+
+
+@kernel
+def _back_inside(x, low, high, length, inverse):
+    """Return a coordinate that rounding has put into a wall, or flight beyond a periodic end, moved back."""
+    if inverse == 0.0:
+        return min(max(x, low), high)
+    return min(max(x - length * math.floor(x * inverse), 0.0), length)

@@ -1,0 +1,77 @@
+"""What happens next: a tournament of the molecules' next events.
+
+Leaves hold one time per molecule, in groups of eight (a cache line). Above them stands a binary
+tournament whose nodes carry the winning time *and* its molecule, so the next event is read at the root
+and a change plays one match per level. There is nothing to tune.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.core.jit import POSITIVE, kernel
+from atmosbox.engine.core.state import Calendar
+
+__all__ = ["new_calendar", "next_event", "schedule"]
+
+
+def new_calendar(molecules: int) -> Calendar:
+    """Return an empty calendar: nothing will ever happen.
+
+    Examples
+    --------
+    >>> calendar = new_calendar(20)
+    >>> next_event(calendar)[1]
+    inf
+    """
+    groups = -(-max(molecules, 1) // 8)
+    depth = max(1, math.ceil(math.log2(groups))) if groups > 1 else 1
+    leaf = -(-(2 ** (depth + 1)) // 8) * 8
+    buffer = np.full(leaf + 8 * groups + 8, np.inf)
+    start = -(buffer.ctypes.data // 8) % 8
+    return Calendar(buffer[start:], np.zeros(max(8, 2 ** (depth + 1)), np.uint32), leaf, 2**depth, depth)
+
+
+@kernel
+def schedule(calendar, i, time):
+    """Set the time of molecule i's next event [time] and replay its matches up to the root."""
+    times = calendar.time
+    leaf = calendar.leaf & POSITIVE
+    times[leaf + i] = time
+    group = (i >> 3) << 3
+    o = leaf + group
+    a0, a1, a2, a3 = times[o], times[o + 1], times[o + 2], times[o + 3]
+    a4, a5, a6, a7 = times[o + 4], times[o + 5], times[o + 6], times[o + 7]
+    w0 = 1 if a1 < a0 else 0
+    m0 = min(a0, a1)
+    w1 = 3 if a3 < a2 else 2
+    m1 = min(a2, a3)
+    w2 = 5 if a5 < a4 else 4
+    m2 = min(a4, a5)
+    w3 = 7 if a7 < a6 else 6
+    m3 = min(a6, a7)
+    w0 = w1 if m1 < m0 else w0
+    m0 = min(m0, m1)
+    w2 = w3 if m3 < m2 else w2
+    m2 = min(m2, m3)
+    w0 = w2 if m2 < m0 else w0
+    best = min(m0, m2)
+    winner = group + w0
+    node = (calendar.node + (i >> 3)) & POSITIVE
+    times[node] = best
+    calendar.winner[node] = winner
+    for _ in range(calendar.depth):
+        rival = node ^ 1
+        rival_time = times[rival]
+        rival_winner = np.int64(calendar.winner[rival])
+        winner = rival_winner if rival_time < best else winner
+        best = rival_time if rival_time < best else best
+        node >>= 1
+        times[node] = best
+        calendar.winner[node] = winner
+
+
+@kernel
+def next_event(calendar):
+    """Return whose event comes next, and when [time]; ``inf`` if none ever will."""
+    return np.int64(calendar.winner[1]), calendar.time[1]

@@ -1,0 +1,296 @@
+"""Which molecules can meet: cells, and the slots by which molecules move among them.
+
+A molecule belongs to every cell that its *sphere* overlaps: most often one, near a face two, in a corner
+eight. Two spheres that touch share the cell of the point where they touch, so a molecule is only ever
+compared with those that share a cell of its own, never with neighbouring cells. Along each axis its
+centre stands in a **slot**: an interval between two successive boundaries, which are the cell edges
+shifted by plus and minus its radius. Crossing a boundary means entering one cell, or leaving one. Layers
+of unequal thickness cost nothing, the outermost boundary is the wall, and a sphere larger than a cell
+just overlaps more of them.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.jit import POSITIVE, kernel
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.state import Cells, aligned_records
+
+__all__ = ["ROW", "Grid", "append", "choose_grid", "new_cells", "overlapped", "remove", "size_classes", "slot_at"]
+
+_MARGIN = 1.0 + 1e-7
+ROW = 32
+
+
+class Grid(NamedTuple):
+    """Cells and slots along the three axes: see `state.Cells`."""
+
+    number: tuple[int, int, int]
+    boundary: NDArray[np.float64]
+    first: NDArray[np.int32]
+    span: NDArray[np.int32]
+    last_slot: tuple[int, int, int]
+    spanning: bool
+
+
+def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Sort radii into classes that differ by a tenth, so that a thousand sizes need few tables.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        The class of each radius, and for each class a radius that none of its members exceeds [length].
+
+    Examples
+    --------
+    >>> size_classes(np.array([1.0, 1.05, 2.0]))[0]
+    array([0, 0, 1])
+    """
+    distinct = np.unique(radius)
+    starts: list[float] = []
+    tops: list[float] = []
+    for value in distinct:
+        if not starts or value > 1.1 * starts[-1]:
+            starts.append(float(value))
+            tops.append(float(value))
+        tops[-1] = float(value)
+    return np.searchsorted(np.array(starts), radius, side="right") - 1, np.array(tops)
+
+
+def choose_grid(
+    length: NDArray[np.float64],
+    periodic: tuple[bool, bool, bool],
+    radii: NDArray[np.float64],
+    molecules: int,
+    *,
+    exact_radius: bool,
+    planar: bool,
+    filled: float,
+    open_top: bool,
+    scale_height: float,
+) -> Grid:
+    """Choose the cells of a box: some two to eight molecules to a cell, layers thinner where gravity makes them denser.
+
+    Parameters
+    ----------
+    length : (axis,)
+        What the cells cover [length].
+    periodic
+        Which axes are periodic.
+    radii : (size,)
+        The radius of each size class [length].
+    molecules
+        How many there will be.
+    exact_radius
+        Whether all molecules have exactly the one radius given.
+    planar
+        Whether all centres lie in one plane y = constant.
+    filled
+        The height up to which there are molecules now [length].
+    open_top
+        Whether the ceiling moves, so that the uppermost cells must have no end.
+    scale_height
+        kT / m g, ``inf`` without gravity [length].
+
+    Raises
+    ------
+    RefusedError
+        If a periodic axis is too short for its molecules, who would meet their own images.
+    """
+    biggest = float(radii.max()) * _MARGIN
+    # the most cells along an axis that are wider than a molecule
+    most = [length[axis] / (2.002 * biggest) if biggest > 0.0 else math.inf for axis in range(3)]
+    room = length[0] * (1.0 if planar else length[1]) * filled
+    typical = float(radii.min())
+    share = molecules * (math.pi * typical**2 if planar else 4.0 / 3.0 * math.pi * typical**3) / room
+    # measured (benchmarks): the pace is flat about this many molecules to a cell
+    occupancy = min(max(2.2 * (0.1 / share) ** (1.0 / 3.0), 1.5), 8.0) if share > 0.0 else 8.0
+    width = _widths(np.array([length[0], length[1], filled]), molecules / occupancy, planar)
+    number = []
+    spanning = not exact_radius
+    for axis in range(3):
+        n = max(1, min(int(length[axis] / width[axis]), 20_000))
+        if planar and axis == 1:
+            n = 1
+        elif periodic[axis]:
+            room = 0.5 * length[axis] - 2.0 * biggest
+            if room <= 0.05 * length[axis]:
+                raise RefusedError(
+                    f"a periodic box of length {length[axis]:.6g} is too short for molecules of diameter "
+                    f"{2 * biggest:.6g}, which would meet their own images: make it longer than {4.5 * biggest:.6g}"
+                )
+            n = max(n, math.ceil(length[axis] / room))
+            if exact_radius and n > most[axis]:
+                n = max(math.ceil(length[axis] / room), int(most[axis]))
+            spanning = spanning or n > most[axis]
+        elif exact_radius and n > most[axis]:
+            n = max(1, int(most[axis]))
+        number.append(n)
+    edges = [np.linspace(0.0, length[axis], number[axis] + 1) for axis in range(3)]
+    if math.isfinite(scale_height) and number[2] > 1:
+        thinnest = 0.25 * width[2] if spanning else max(2.002 * biggest, 0.05 * width[2])
+        edges[2] = _layers(float(length[2]), number[2], scale_height, thinnest)
+        number[2] = len(edges[2]) - 1
+    tables = [
+        [_slots(edges[axis], float(r), periodic[axis], spanning, open_top=open_top and axis == 2) for axis in range(3)]
+        for r in radii
+    ]
+    slots = max(len(table[1]) for row in tables for table in row)
+    boundary = np.full((len(radii), 3, slots + 1), np.inf)
+    first = np.zeros((len(radii), 3, slots), np.int32)
+    span = np.ones((len(radii), 3, slots), np.int32)
+    for size, row in enumerate(tables):
+        for axis, (b, f, s) in enumerate(row):
+            boundary[size, axis, : len(b)] = b
+            first[size, axis, : len(f)] = f
+            span[size, axis, : len(s)] = s
+    last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
+    return Grid((number[0], number[1], number[2]), boundary, first, span, (last[0], last[1], last[2]), spanning)
+
+
+def _widths(length: NDArray[np.float64], number: float, planar: bool) -> NDArray[np.float64]:
+    """Return the width of a cell along each axis; an axis shorter than a cell has one."""
+    width = length.astype(np.float64).copy()
+    free = [axis for axis in range(3) if not (planar and axis == 1)]
+    cells = max(1.0, number)
+    while free:
+        size = (math.prod(float(length[axis]) for axis in free) / cells) ** (1.0 / len(free))
+        short = [axis for axis in free if length[axis] < size]
+        if not short:
+            width[free] = size
+            break
+        free = [axis for axis in free if axis not in short]
+    return width
+
+
+def _layers(height: float, number: int, scale_height: float, thinnest: float) -> NDArray[np.float64]:
+    """Return the edges of layers that hold about equally many molecules of an isothermal column."""
+    z = np.linspace(0.0, height, 20_001)
+    a = min(height / scale_height, 700.0)
+    below = 0.9 * np.expm1(-a * z / height) / math.expm1(-a) + 0.1 * z / height
+    if scale_height < height / 5_000:
+        deep = min(40.0 * scale_height, height / 2)
+        z = np.concatenate([np.linspace(0.0, deep, 20_001)[:-1], z[z >= deep]])
+        below = 0.9 * np.expm1(-z / scale_height) / math.expm1(-height / scale_height) + 0.1 * z / height
+    wanted = np.interp(np.linspace(0.0, 1.0, number + 1), below, z)
+    edges = [0.0]
+    for edge in wanted[1:-1]:
+        if edge - edges[-1] >= thinnest and height - edge >= thinnest:
+            edges.append(float(edge))
+    return np.array([*edges, height])
+
+
+def _slots(
+    edges: NDArray[np.float64], radius: float, periodic: bool, spanning: bool, *, open_top: bool
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    """Return boundaries, first cells and numbers of cells of the slots along one axis for one radius."""
+    reach = radius * _MARGIN
+    n = len(edges) - 1
+    length = float(edges[-1])
+    # where a cell is entered exactly as another is left, the slot between would have no width: reach further
+    inside = edges[:-1] if periodic else edges[1:-1]
+    while reach > 0.0 and inside.size:
+        ends = np.sort(np.mod(np.concatenate([inside - reach, inside + reach]), length))
+        if np.diff(ends, append=ends[0] + length).min() > 1e-12 * length:
+            break
+        reach *= _MARGIN
+    if periodic:
+        shifted = np.concatenate([edges[:-1] + reach, edges[1:] - reach])
+        inner = np.sort(np.mod(shifted, length)) if spanning else np.sort(shifted)
+        boundary = np.append(inner, inner[0] + length)
+    else:
+        inner = np.sort(np.concatenate([edges[1:-1] - reach, edges[1:-1] + reach]))
+        if spanning:
+            inner = inner[(inner > 0.0) & (inner < length)]
+            boundary = np.concatenate([[-np.inf], inner, [np.inf]])
+        else:
+            boundary = np.concatenate([[radius], inner, [np.inf if open_top else length - radius]])
+    bounded = np.clip(boundary, min(0.0, boundary[1]), max(length, boundary[-2])) if not periodic else boundary
+    middle = 0.5 * (bounded[1:] + bounded[:-1])
+    low = _cell_of(middle - reach, edges, periodic)
+    high = _cell_of(middle + reach, edges, periodic)
+    return boundary, np.mod(low, n).astype(np.int32), (high - low + 1).astype(np.int32)
+
+
+def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool) -> NDArray[np.int64]:
+    """Return the cell that holds each coordinate; beyond a periodic end the count goes on, beyond a wall it stops."""
+    n = len(edges) - 1
+    if periodic:
+        turns = np.floor(x / edges[-1]).astype(np.int64)
+        inside = np.clip(np.searchsorted(edges, x - turns * edges[-1], side="right") - 1, 0, n - 1)
+        around: NDArray[np.int64] = inside + turns * n
+        return around
+    cell: NDArray[np.int64] = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, n - 1)
+    return cell
+
+
+def new_cells(grid: Grid, slot: NDArray[np.uint16], stride: int) -> Cells:
+    """Return the empty cells of a grid, each with room for ``stride`` - 1 molecules.
+
+    ``slot : (molecule, 3)`` is where it is kept in which slot each molecule stands.
+    """
+    rows = aligned_records(math.prod(grid.number) * stride, np.dtype([("i", "u4")]))
+    return Cells(
+        row=np.ascontiguousarray(rows["i"]),
+        stride=stride,
+        boundary=grid.boundary,
+        first=grid.first,
+        span=grid.span,
+        slot=slot,
+        number_x=grid.number[0],
+        number_y=grid.number[1],
+        number_z=grid.number[2],
+        last_slot_x=grid.last_slot[0],
+        last_slot_y=grid.last_slot[1],
+        last_slot_z=grid.last_slot[2],
+    )
+
+
+@kernel
+def overlapped(slot, size, axis, cells, modes):
+    """Return the first cell along an axis that a sphere in a slot overlaps, and how many."""
+    if modes.spanning:
+        return np.int64(cells.first[size, axis, slot]), np.int64(cells.span[size, axis, slot])
+    return slot >> 1, 1 + (slot & 1)
+
+
+@kernel
+def slot_at(u, size, axis, last, cells, modes):
+    """Return the slot along an axis in which a centre at the coordinate u [length] lies."""
+    if modes.mixed:
+        last = cells.boundary.shape[2] - 2
+        while last > 0 and cells.boundary[size, axis, last] == math.inf:
+            last -= 1
+    lower = 0
+    upper = last + 1
+    while upper - lower > 1:
+        middle = (lower + upper) >> 1
+        if u >= cells.boundary[size, axis, middle]:
+            lower = middle
+        else:
+            upper = middle
+    return lower
+
+
+@kernel
+def append(row, start, i):
+    """Write molecule i into the cell whose row starts there."""
+    start &= POSITIVE
+    n = np.int64(row[start]) + 1
+    row[start + n] = i
+    row[start] = n
+
+
+@kernel
+def remove(row, start, i):
+    """Strike molecule i from the cell whose row starts there."""
+    start &= POSITIVE
+    last = start + np.int64(row[start])
+    q = start + 1
+    while row[q] != i and q < last:
+        q += 1
+    row[q] = row[last]
+    row[start] -= 1

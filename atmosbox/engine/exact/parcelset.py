@@ -1,0 +1,299 @@
+"""The parcel of air: molecules in a box, advanced exactly.
+
+`ParcelSet` checks what it is given, lays it out for the kernels, owns the random numbers and the moving
+epoch of time, and turns the kernels' status codes into sentences.
+"""
+
+import math
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.box import new_box
+from atmosbox.engine.core.inputs import number
+from atmosbox.engine.core.kind import classify
+from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
+from atmosbox.engine.core.refusal import RefusedError, StalledError
+from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Modes, aligned_records
+from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
+from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.exact.cells import ROW, choose_grid, new_cells
+from atmosbox.engine.exact.exact import BUSY, CROWDED, ROW_FULL, STALLED, specialise
+from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crushed, why_stalled
+
+__all__ = ["ParcelSet"]
+
+_CHUNK = 200_000
+_OVERLAP = 1e-9
+_ENDS = (STALLED, CROWDED)
+_WHY_CROWDED = "a molecule that evaporates finds no place among the others: lower the packing fraction"
+
+
+class ParcelSet(Parcel):
+    """A set of molecules with its box, advanced exactly: from event to event.
+
+    What it is given, and what it tells, is described at `Parcel`.
+
+    Examples
+    --------
+    Two molecules that approach each other along x bounce once and keep their energy:
+
+    >>> pair = ParcelSet([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
+    >>> pair.advance(1.0)
+    >>> pair.contacts, pair.snapshot().velocity[:, 0].tolist()
+    (1, [-1.0, 1.0])
+    """
+
+    engine: ClassVar[str] = "exact"
+
+    _present: slice | NDArray[np.bool_] = slice(None)
+    """Which molecules are in the box: all of them."""
+    _first_drop: int = 0
+    """The first kind that is a drop, 0 if none is."""
+
+    def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        self._fill(position, velocity, rotational_energy)
+        self._box = new_box(
+            self._sides,
+            self._periodic,
+            moving=self._walls.law[5] == PISTON,
+            gravity=self._gravity,
+            planar=self._planar,
+            exchange=1.0 / self._collision_number,
+            stall=1e-9 * self._spread,
+        )
+        self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
+        self._cells: Cells
+        self._lay_out()
+        depth, i, j = self._overlap(self._molecules, self._kinds, self._cells, self._box)
+        if depth > _OVERLAP:
+            raise RefusedError(
+                f"molecules {i} and {j} overlap at the start, by {depth:.3g} of their diameter: "
+                "move them apart or make them smaller"
+            )
+
+    def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        """Write down the molecules."""
+        self._kinds, kind, self._size_radius = classify(
+            self._mass, self._diameter, self._rotation, rotational_energy if self._rotates else None
+        )
+        self._molecules = aligned_records(len(position), MOLECULE)
+        for axis, name in enumerate("xyz"):
+            self._molecules[name] = position[:, axis]
+            self._molecules["v" + name] = velocity[:, axis]
+        self._molecules["kind"] = kind
+        self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads a field of it ten times faster
+
+    def memory(self) -> int:
+        """Return the bytes that molecules, events, cells and calendar take."""
+        arrays = (self._molecules, self._events, self._cells.row, self._calendar.time, self._calendar.winner)
+        return sum(int(a.nbytes) for a in arrays) + int(self._kinds.rotational_energy.nbytes)
+
+    def snapshot(self) -> Snapshot:
+        """Return all molecules as they are now; nothing in the box changes by being looked at."""
+        m = self._fields[self._present]
+        dt = self._now - m["clock"]
+        position = np.stack([m["x"] + dt * m["vx"], m["y"] + dt * m["vy"], m["z"] + dt * m["vz"]], axis=1)
+        velocity = np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
+        if self.gravity > 0.0:
+            position[:, 2] -= 0.5 * self.gravity * dt * dt
+            velocity[:, 2] -= self.gravity * dt
+        for axis in range(3):
+            if self._periodic[axis]:
+                position[:, axis] = np.mod(position[:, axis], self._sides[axis])
+        spin = np.array(self._kinds.rotational_energy[self._present]) if self._rotates else np.zeros(len(m))
+        return Snapshot(self.time, position, velocity, spin)
+
+    def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
+        """Let time pass until ``until`` [time since the start]: see `Parcel.advance`."""
+        until = number(until, "until")
+        if until < self.time:
+            raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
+        while True:
+            stop = until
+            if self._driver is not None:
+                stop = min(stop, (self._turn + 1) * self._driver.interval)
+            local = stop - float(self._walls.epoch[0])
+            if local > self._epoch_length and self._shift(local, watch):
+                continue
+            self._resolve(local, watch)
+            if self._driver is None or stop < (self._turn + 1) * self._driver.interval:
+                break
+            self._turn += 1
+            self._drive()
+            if watch is not None:
+                watch(self.time)
+            if stop >= until:
+                break
+        self._asked = until
+
+    # ------------------------------------------------------------------ how
+
+    def _piston_turned(self) -> None:
+        velocity = self.piston_velocity
+        if self.ceiling > 1.5 * self._filled or self.ceiling < 0.6 * self._filled:
+            self._lay_out()
+            return
+        lowest = self.ceiling
+        if velocity < 0.0:
+            lowest += velocity * self._driver.interval if self._driver is not None else -math.inf
+        self._replan(
+            self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls,
+            self._now, lowest,
+        )  # fmt: skip
+
+    def _field_changes(self, gravity: float) -> None:
+        _, position, velocity, _ = self.snapshot()
+        for axis, name in enumerate("xyz"):
+            place, side = position[:, axis], self._sides[axis]
+            self._fields[name] = place % side if self._periodic[axis] else place
+            self._fields["v" + name] = velocity[:, axis]
+        self._fields["clock"] = self._now
+        self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
+        self._lay_out()
+
+    def _resolve(self, local: float, watch: Callable[[float], None] | None) -> None:
+        """Resolve all events up to a local time."""
+        self._asked = None
+        crushed = math.inf
+        if self.piston_velocity < 0.0:
+            crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
+            if crushed <= self._now:
+                raise StalledError(why_crushed(self))
+        stop = min(local, crushed)
+        with np.errstate(over="ignore"):
+            while True:
+                status = self._proceed(stop)
+                self._now = max(self._now, min(stop, self._next_time()))
+                if status == ROW_FULL:
+                    self._grow_rows()
+                elif status in _ENDS:
+                    self._now = min(self._next_time(), stop)
+                    raise StalledError(why_stalled(self) if status == STALLED else _WHY_CROWDED)
+                elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
+                    self._now = min(self._next_time(), stop)
+                    raise StalledError(why_crushed(self))
+                elif status == BUSY:
+                    if watch is not None:
+                        watch(float(self._walls.epoch[0]) + self._next_time())
+                else:
+                    break
+        self._now = stop
+        if crushed < local:
+            raise StalledError(why_crushed(self))
+
+    def _proceed(self, until: float) -> int:
+        """Resolve a number of events up to a local time; return a status."""
+        status, _ = self._advance(
+            self._molecules, self._events, self._kinds, self._cells, self._calendar,
+            self._box, self._walls, self._tallies, until, _CHUNK,
+        )  # fmt: skip
+        return int(status)
+
+    def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
+        """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
+
+        By how much depends on events alone, never on where a run is cut.
+        """
+        if self._now < self._epoch_length:
+            self._resolve(self._epoch_length, watch)
+        ahead = self._next_time()
+        if self._driver is not None:
+            ahead = min(ahead, (self._turn + 1) * self._driver.interval - float(self._walls.epoch[0]))
+        if math.isinf(ahead):
+            return False
+        self._rebase(max(1.0, math.floor(ahead / self._epoch_length)) * self._epoch_length)
+        return True
+
+    def _next_time(self) -> float:
+        """Return the local time of the next event."""
+        return float(self._calendar.time[1])
+
+    def _rebase(self, step: float) -> None:
+        """Let all clocks read small numbers again, so that time keeps its digits for ever."""
+        self._fields["clock"] -= step
+        self._events["contact_time"] -= step
+        times = self._calendar.time
+        times -= step
+        self._walls.piston[2] -= step
+        self._tallies.progress[0] -= step
+        self._walls.epoch[0] += step
+        self._now -= step
+
+    def _grow_rows(self) -> None:
+        old = self._cells
+        stride = 2 * old.stride
+        cells = old.number_x * old.number_y * old.number_z
+        row = aligned_records(cells * stride, np.dtype([("i", "u4")]))["i"]
+        row = np.ascontiguousarray(row)
+        row.reshape(cells, stride)[:, : old.stride] = old.row.reshape(cells, old.stride)
+        self._cells = old._replace(row=row, stride=stride)
+
+    def _lay_out(self) -> None:
+        """Choose cells for the box as it is now and plan every molecule's event anew."""
+        n = len(self._fields)
+        moving = self._walls.law[5] == PISTON
+        self._filled = self.ceiling
+        self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
+        self._cells_top = 1.75 * self._filled if moving else self._filled
+        kT = self._mean_kT()
+        weight = float(self._mass.mean()) * self.gravity if n else 0.0
+        contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
+        grid = choose_grid(
+            np.array([self._sides[0], self._sides[1], self._cells_top]),
+            self._periodic,
+            self._size_radius,
+            n if contacts else 1,
+            exact_radius=len(self._kinds.table) == 1,
+            planar=self._planar,
+            filled=self._filled,
+            open_top=bool(moving),
+            scale_height=kT / weight if weight > 0.0 and kT > 0.0 else math.inf,
+        )
+        self._modes = Modes(
+            contacts=contacts,
+            gravity=self.gravity > 0.0,
+            rotation=self._rotates,
+            mixed=len(self._kinds.table) > 1,
+            spanning=grid.spanning,
+            periodic=any(self._periodic),
+            piston=bool(moving),
+            phases=not isinstance(self._present, slice),
+            pool=bool(self._walls.law[4] == POOL),
+            drops=self._first_drop,
+        )
+        place, self._advance, self._replan, self._overlap = specialise(self._modes)
+        self._events = aligned_records(n, EVENT)
+        slot = np.zeros((0, 3), np.uint16)
+        if n:
+            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
+        stride = ROW
+        while True:
+            self._cells = new_cells(grid, slot, stride)
+            self._calendar = new_calendar(n)
+            status = place(
+                self._molecules,
+                self._events,
+                self._kinds,
+                self._cells,
+                self._calendar,
+                self._box,
+                self._walls,
+                self._now,
+            )
+            if status != ROW_FULL:
+                return
+            stride *= 2
+
+    def _mean_kT(self) -> float:
+        if not self.number:
+            return 0.0
+        kinetic, _, potential = self.energy()
+        dimensions = 2.0 if self._planar else 3.0
+        kT = 2.0 * kinetic / (dimensions * self.number)
+        baths = [
+            float(self._walls.schedule_kT[self._walls.schedule[w]]) for w in range(6) if self._walls.law[w] == HEAT_BATH
+        ]
+        return max([kT, *baths]) if kT > 0.0 or baths else potential / self.number

@@ -1,0 +1,279 @@
+r"""The definition of the model, slow and obvious: what the exact engine must agree with.
+
+Before every event everything that lies ahead is worked out from scratch, for all pairs and all walls; the
+list is sorted, all molecules fly to the first event in it, and that one is resolved. There are no cells, no
+calendar, no clocks and nothing remembered, so there is little to get wrong. What a contact and a wall do to
+velocities is not written twice: `resolve_contact`, `share_energy` and `resolve_wall_hit` are the engine's
+own, and so are the random numbers, drawn in the same order.
+
+Every encounter is the closing of a gap. The gap between two spheres, taken as
+:math:`|r + v t|^2 - \sigma^2`, and the height above the floor, below the ceiling or below a moving piston,
+with or without gravity, are all parabolas in time, so one formula (`time_to_close`) says when each closes.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.core.contact import resolve_contact, share_energy
+from atmosbox.engine.core.random import uniform
+from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls, resolve_wall_hit
+
+__all__ = ["Event", "Reference", "time_to_close"]
+
+Array = NDArray[np.float64]
+
+
+class Event(NamedTuple):
+    """What happens, and to whom.
+
+    ``kind`` is "contact", "wall hit" or "crossing" (of a periodic boundary). ``first`` is a molecule;
+    ``second`` is its partner, of higher index, or the wall, 0 to 5 in the order x low, x high, y low, y high,
+    z low, z high.
+    """
+
+    time: float
+    kind: str
+    first: int
+    second: int
+
+
+def time_to_close(a: float, b: float, c: float) -> float:
+    r"""Return when a gap :math:`a t^2 + b t + c` closes.
+
+    Parameters
+    ----------
+    a, b, c
+        Half the acceleration with which the gap opens, the speed with which it does, and its width now.
+
+    Returns
+    -------
+    float
+        Time from now [time] at which the gap is zero and shrinking, ``inf`` if it never is; 0 for a gap that
+        rounding has already closed, if it is still shrinking.
+
+    Notes
+    -----
+    Of the two roots this is the one where the slope is :math:`-\sqrt{b^2 - 4 a c}`, whatever the sign of a,
+    written in the form in which nothing cancels.
+
+    Examples
+    --------
+    Thrown upward at unit speed in unit gravity, a ball is back on the floor after two units of time:
+
+    >>> time_to_close(-0.5, 1.0, 0.0)
+    2.0
+
+    A gap of 3 that shrinks at unit speed closes after 3, one that grows never does:
+
+    >>> time_to_close(0.0, -1.0, 3.0), time_to_close(0.0, 1.0, 3.0)
+    (3.0, inf)
+    """
+    square = b * b - 4.0 * a * c
+    if a < 0.0:
+        square = max(square, 0.0)  # what falls always arrives
+    if square < 0.0:
+        return math.inf
+    root = math.sqrt(square)
+    if b < 0.0:
+        return max(2.0 * c / (root - b), 0.0)
+    return (b + root) / (-2.0 * a) if a < 0.0 else math.inf
+
+
+class Reference:
+    """A set of molecules with its box, advanced the slow way.
+
+    It is given what `ParcelSet` is given, and checks nothing.
+
+    Parameters
+    ----------
+    position, velocity : (molecule, axis)
+        Centres [length] and velocities [length/time].
+    length
+        The three sides of the box [length]; along z up to where the ceiling starts.
+    walls
+        Six laws; a piston moves at its velocity for ever.
+    mass, diameter, rotation : (molecule,) or one number
+        Mass [mass], diameter [length], rotational degrees of freedom.
+    rotational_energy : (molecule,)
+        At the start [energy]; zero by default.
+    gravity
+        Downward acceleration [length/time^2].
+    planar
+        Whether this is a plane gas.
+    collision_number
+        How many contacts pass, on average, between two exchanges of energy with rotation.
+    seed
+        Seed of the random numbers.
+
+    Attributes
+    ----------
+    time
+        Time since the start [time].
+    position, velocity, rotational_energy
+        All molecules at that time.
+
+    Examples
+    --------
+    Two molecules that approach each other along x bounce once and keep their energy:
+
+    >>> pair = Reference([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
+    >>> pair.step()
+    Event(time=0.5, kind='contact', first=0, second=1)
+    >>> pair.velocity[:, 0].tolist()
+    [-1.0, 1.0]
+    """
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        *,
+        length: Sequence[float],
+        walls: Sequence[Wall] = (Specular(),) * 6,
+        mass: ArrayLike = 1.0,
+        diameter: ArrayLike = 1.0,
+        rotation: ArrayLike = 0.0,
+        rotational_energy: ArrayLike = 0.0,
+        gravity: float = 0.0,
+        planar: bool = False,
+        collision_number: float = 1.0,
+        seed: int = 0,
+    ) -> None:
+        self.time = 0.0
+        self.position: Array = np.array(position, np.float64)
+        self.velocity: Array = np.array(velocity, np.float64)
+        self.number = len(self.position)
+        self.length: Array = np.array(length, np.float64)
+        self.walls = new_walls(tuple(walls), float(length[2]))
+        self.periodic = [bool(law == PERIODIC) for law in self.walls.law[::2]]
+        self.mass, self.diameter, self.rotation, self.rotational_energy = (
+            np.array(np.broadcast_to(np.asarray(values, np.float64), self.number))
+            for values in (mass, diameter, rotation, rotational_energy)
+        )
+        self.gravity = float(gravity)
+        self.planar = planar
+        self.exchange = 1.0 / collision_number
+        self.random: Any = np.random.SeedSequence(seed).generate_state(1, np.uint64)
+        for axis in range(3):
+            if self.periodic[axis]:
+                self.position[:, axis] %= self.length[axis]
+
+    def step(self) -> Event | None:
+        """Go to the next event, resolve it and return it; None if nothing will ever happen."""
+        events = self.ahead()
+        if not events:
+            return None
+        self._resolve(events[0])
+        return events[0]
+
+    def advance(self, until: float) -> None:
+        """Let time pass until ``until`` [time since the start]."""
+        while (events := self.ahead()) and events[0].time <= until:
+            self._resolve(events[0])
+        self._fly(until)
+
+    def energy(self) -> float:
+        """Return kinetic, rotational and potential energy together [energy]."""
+        kinetic = 0.5 * np.sum(self.mass * np.sum(self.velocity**2, axis=1))
+        potential = self.gravity * np.sum(self.mass * self.position[:, 2])
+        return float(kinetic + np.sum(self.rotational_energy) + potential)
+
+    # ------------------------------------------------------------------ what lies ahead
+
+    def ahead(self) -> list[Event]:
+        """Return every event that lies ahead if no other came before it, the soonest first."""
+        events = itertools.chain(self._wall_hits(), self._contacts())
+        return sorted(event for event in events if event.time < math.inf)
+
+    def _wall_hits(self) -> Iterator[Event]:
+        for wall in range(6):
+            axis = wall // 2
+            inward = 1.0 if wall % 2 == 0 else -1.0
+            radius = 0.0 if self.periodic[axis] else 0.5 * self.diameter
+            gaps = (inward * (self.position[:, axis] - self.place(wall)) - radius).tolist()
+            speeds = (inward * (self.velocity[:, axis] - self._speed(wall))).tolist()
+            acceleration = -inward * self.gravity if axis == 2 else 0.0
+            kind = "crossing" if self.periodic[axis] else "wall hit"
+            for i in range(self.number):
+                yield Event(self.time + time_to_close(0.5 * acceleration, speeds[i], gaps[i]), kind, i, wall)
+
+    def _contacts(self) -> Iterator[Event]:
+        # until one of them crosses a boundary, two molecules of a periodic box meet in it or across its sides
+        turns = [(-1.0, 0.0, 1.0) if periodic else (0.0,) for periodic in self.periodic]
+        images = self.length * np.array(list(itertools.product(*turns)))
+        for i in range(self.number):
+            for j in range(i + 1, self.number):
+                distance = 0.5 * (self.diameter[i] + self.diameter[j])
+                if distance == 0.0:
+                    continue  # points never meet
+                v = self.velocity[i] - self.velocity[j]
+                r = self.position[i] - self.position[j] + images
+                speed_squared = float(v @ v)
+                slopes = (2.0 * r @ v).tolist()
+                gaps = (np.sum(r * r, axis=1) - distance**2).tolist()
+                for slope, gap in zip(slopes, gaps, strict=True):
+                    yield Event(self.time + time_to_close(speed_squared, slope, gap), "contact", i, j)
+
+    def place(self, wall: int) -> float:
+        """Return where a wall is now [length]."""
+        if wall % 2 == 0:
+            return 0.0
+        return float(self.length[wall // 2] + self._speed(wall) * self.time)
+
+    def _speed(self, wall: int) -> float:
+        return float(self.walls.piston[1]) if self.walls.law[wall] == PISTON else 0.0
+
+    # ------------------------------------------------------------------ what happens
+
+    def _fly(self, time: float) -> None:
+        """Move all molecules to a time, each along its own parabola."""
+        dt = time - self.time
+        self.position += dt * self.velocity
+        self.position[:, 2] -= 0.5 * self.gravity * dt**2
+        self.velocity[:, 2] -= self.gravity * dt
+        self.time = time
+
+    def _resolve(self, event: Event) -> None:
+        self._fly(event.time)
+        with np.errstate(over="ignore"):  # the random numbers count modulo 2^64
+            if event.kind == "contact":
+                self._meet(event.first, event.second)
+            elif event.kind == "wall hit":
+                self._hit(event.first, event.second)
+            else:
+                axis = event.second // 2
+                self.position[event.first, axis] = self.length[axis] if event.second % 2 == 0 else 0.0
+
+    def _hit(self, i: int, wall: int) -> None:
+        axis, across = wall // 2, [other for other in range(3) if other != wall // 2]
+        inward = 1.0 if wall % 2 == 0 else -1.0
+        self.position[i, axis] = self.place(wall) + inward * 0.5 * self.diameter[i]
+        normal, first, second, self.rotational_energy[i] = resolve_wall_hit(
+            self.walls, wall, self.time, self.velocity[i, axis], *self.velocity[i, across],
+            self.rotational_energy[i], self.mass[i], self.rotation[i], self.planar, self.random,
+        )  # fmt: skip
+        self.velocity[i, axis] = normal
+        self.velocity[i, across] = first, second
+
+    def _meet(self, i: int, j: int) -> None:
+        r = self.position[i] - self.position[j]
+        for axis in range(3):
+            if self.periodic[axis]:
+                r[axis] -= self.length[axis] * round(r[axis] / self.length[axis])
+        before = self.velocity[i] - self.velocity[j]
+        mass, other_mass = self.mass[i], self.mass[j]
+        after = before + (1.0 + mass / other_mass) * np.array(resolve_contact(*r, *before, mass, other_mass))
+        if self.rotation.any() and (self.exchange >= 1.0 or uniform(self.random) < self.exchange):
+            relative = 0.5 * mass * other_mass / (mass + other_mass) * (before @ before)
+            shared, self.rotational_energy[i], self.rotational_energy[j] = share_energy(
+                relative + self.rotational_energy[i] + self.rotational_energy[j],
+                2.0 if self.planar else 3.0, self.rotation[i], self.rotation[j], self.random,
+            )  # fmt: skip
+            after *= math.sqrt(shared / relative)
+        self.velocity[i] += (after - before) * other_mass / (mass + other_mass)
+        self.velocity[j] -= (after - before) * mass / (mass + other_mass)

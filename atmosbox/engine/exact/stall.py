@@ -1,0 +1,67 @@
+"""When time can go no further, and which sentence says why."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.packing import packing_fraction
+from atmosbox.engine.core.parcel import Parcel
+from atmosbox.engine.core.walls import WALL_NAMES
+
+__all__ = ["crushing_height", "is_jammed", "why_crushed", "why_stalled"]
+
+
+def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *, planar: bool) -> float:
+    """Return how low a ceiling may come: molecules filling 0.6 of the box, or a thousandth of the start [length].
+
+    Examples
+    --------
+    >>> round(crushing_height(np.array([4.0, 4.0, 10.0]), np.ones(30), planar=False), 3)
+    1.636
+    """
+    lowest = 1e-3 * float(sides[2])
+    if diameter.size:
+        filled = packing_fraction([float(sides[0]), float(sides[1]), 1.0], diameter, planar=planar)
+        lowest = max(lowest, filled / 0.6, 1.02 * float(diameter.max()))
+    return lowest
+
+
+def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.float64], start_energy: float) -> bool:
+    """Tell whether the piston has heated the molecules a million times, as only one that crushes them can.
+
+    Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
+    """
+    m = molecules[: len(mass)]  # behind them there may be drops
+    kinetic = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
+    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
+    usual = start_energy + 2.0 * float(mass.sum()) * parcel.piston_velocity**2
+    return kinetic > 1e6 * (usual + 2.0 * parcel.number * max(baths, default=0.0))
+
+
+def why_crushed(parcel: Parcel) -> str:
+    """Return the sentence on a piston that has come down too far."""
+    return (
+        f"the piston has come down to {parcel.ceiling:.6g} at t = {parcel.time:.6g}, where it would crush the "
+        "molecules: stop it earlier, or let it move more slowly"
+    )
+
+
+def why_stalled(parcel: Parcel) -> str:
+    """Return the sentence on why events pile up, naming what to change."""
+    if parcel.piston_velocity < 0.0:
+        return why_crushed(parcel)
+    kT = parcel.wall_kT()
+    coldest = min((w for w in range(6) if math.isfinite(kT[w])), key=lambda w: kT[w], default=None)
+    mean = 2.0 * parcel.energy()[0] / (3.0 * parcel.number)
+    gravity = parcel.gravity
+    if coldest is not None and (kT[coldest] <= 1e-6 * mean or kT[coldest] < 1e-100 or gravity > 0.0):
+        cause = (
+            f"wall {WALL_NAMES[coldest]} at kT = {kT[coldest]:.3g} is too cold: "
+            f"warm it{f', or reduce the gravity of {gravity:.3g}' if gravity else ''}"
+        )
+    elif gravity > 0.0:
+        cause = f"molecules come to rest: reduce the gravity of {gravity:.3g}, or give them more energy"
+    else:
+        cause = "molecules are jammed: lower the packing fraction"
+    return f"events pile up without end at t = {parcel.time:.6g}: {cause}"

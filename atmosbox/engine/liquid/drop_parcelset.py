@@ -1,0 +1,165 @@
+"""The parcel of moist air with drops that can be seen, advanced exactly."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.kind import classify
+from atmosbox.engine.core.parcel import Array
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.state import KIND, MOLECULE, Kinds, aligned_records
+from atmosbox.engine.exact.cells import size_classes
+from atmosbox.engine.liquid import drop
+from atmosbox.engine.liquid.drop import DropRecords
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from atmosbox.engine.liquid.substance import Drops, Liquid
+
+__all__ = ["DropParcelSet"]
+
+_CHUNK = 200_000
+
+
+class DropParcelSet(MoistParcelSet):
+    """A set of molecules with its box and with drops in it, advanced exactly.
+
+    Examples
+    --------
+    A nucleus catches the vapour that hits it, and lets it go again:
+
+    >>> from atmosbox.engine.liquid.reservoir import Substance
+    >>> water = Substance(mass=1.0, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+    >>> drops = Drops(water, nuclei=5.0, position=((3.0, 3.0, 3.0),))
+    >>> box = DropParcelSet([[1, 1, 1]], [[1, 1, 1]], length=(6, 6, 6), rotation=3.0, liquid=drops)
+    >>> box.advance(100.0)
+    >>> box.condensed > 0, box.number + box.liquid, box.ledger() < 1e-12
+    (True, 1, True)
+    """
+
+    def _draw(self, speed: float) -> None:
+        """Draw anew when the next molecule leaves a drop."""
+        begin = drop.specialise(self._modes)[0]
+        begin(self._kinds, self._drops, self._tallies, self._ledger, self._now)
+
+    def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        """Write down the molecules of the gas, behind them those of the liquid, and at the end the drops."""
+        liquid: Liquid = self._liquid
+        if not isinstance(liquid, Drops):
+            raise RefusedError("this box is for drops: give it Drops")
+        if not (self._diameter > 0.0).all() or not liquid.substance.diameter > 0.0:
+            raise RefusedError("drops cannot be hit by molecules without a diameter: give all of them one")
+        if not self._collisions:
+            raise RefusedError("drops are there to be hit: leave collisions on")
+        substance, more = liquid.substance, int(liquid.number)
+        number = len(liquid.position)
+        held = np.full(number, more // number, np.int64)
+        held[: more % number] += 1
+        self._append_liquid()
+        waters = more + int(np.sum(self._is_vapour()[: len(position)]))
+        cube, ball = liquid.nucleus**3, liquid.molecule_radius**3
+        largest = (number * cube + waters * ball) ** (1.0 / 3.0)
+        radius: Array = np.cbrt(cube + held * ball)
+        where = self._checked(np.array(liquid.position, float), radius, largest)
+        kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
+        self._first_drop = len(kinds.table)
+        table = aligned_records(self._first_drop + number, KIND)
+        table[: self._first_drop] = kinds.table
+        table["mass"][self._first_drop :] = liquid.nucleus_mass + held * substance.mass
+        table["radius"][self._first_drop :] = radius
+        classes, self._size_radius = size_classes(np.append(kinds.table["radius"], np.full(number, largest)))
+        table["size_class"] = classes
+        spin = np.concatenate([rotational_energy, np.zeros(more + number)]) if self._rotates else np.zeros(1)
+        self._kinds = Kinds(table, spin)
+        records = len(position) + more + number
+        self._molecules = aligned_records(records, MOLECULE)
+        self._fields = self._molecules.view(np.ndarray)
+        nowhere = np.zeros((more, 3))
+        places = np.concatenate([position, nowhere, where])
+        speeds = np.concatenate([velocity, nowhere, np.zeros((number, 3))])
+        for axis, name in enumerate("xyz"):
+            self._fields[name] = places[:, axis]
+            self._fields["v" + name] = speeds[:, axis]
+        self._fields["kind"] = np.concatenate([kind, self._first_drop + np.arange(number)])
+        self._fields["clock"][len(position) : len(position) + more] = np.inf
+        self._drops = DropRecords(
+            record=np.arange(records - number, records),
+            held=held,
+            cube=np.full(number, cube),
+            core=np.full(number, float(liquid.nucleus_mass)),
+            alive=np.ones(number, np.int64),
+            merged=np.zeros(1, np.int64),
+            molecule_cube=float(ball),
+            molecule_mass=float(substance.mass),
+            molecule_radius=0.5 * float(substance.diameter),
+        )
+        alike = self._is_vapour()
+        first = int(kind[np.argmax(alike)]) if alike.any() else -1
+        self._open_ledger(np.arange(self._first_drop) == first, kind)
+        self._ledger.surface[0] = 0.0
+
+    def _is_vapour(self) -> NDArray[np.bool_]:
+        """Tell which molecules are as the substance of the liquid says."""
+        substance = self._liquid.substance
+        alike = (self._mass == substance.mass) & (self._rotation == substance.rotation)
+        return np.asarray(alike & (self._diameter == substance.diameter))
+
+    def _checked(self, where: Array, radius: Array, largest: float) -> Array:
+        """Return the centres of the drops, or refuse them."""
+        if where.ndim != 2 or where.shape[1] != 3 or not np.isfinite(where).all():
+            raise RefusedError("the positions of drops are three finite numbers each")
+        for axis in range(3):
+            side = float(self._sides[axis])
+            if side < 2.0 * largest:
+                raise RefusedError(
+                    f"one drop of all the water would be {2.0 * largest:.4g} wide, the box is {side:.4g}: "
+                    "make the box larger, or the molecules in drops smaller"
+                )
+            outside = (where[:, axis] < radius) | (where[:, axis] > side - radius)
+            if not self._periodic[axis] and outside.any():
+                raise RefusedError(f"drop {int(np.argmax(outside))} stands outside the box: move it inside")
+        return where
+
+    @property
+    def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
+        return np.append(self.present, np.zeros(len(self._drops.record), np.bool_))
+
+    def _proceed(self, until: float) -> int:
+        status, _ = self._drop_advance(
+            self._molecules, self._events, self._kinds, self._cells, self._calendar,
+            self._box, self._walls, self._drops, self._tallies, self._ledger, until, _CHUNK,
+        )  # fmt: skip
+        return int(status)
+
+    def _lay_out(self) -> None:
+        super()._lay_out()
+        self._drop_advance = drop.specialise(self._modes)[1]
+
+    def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Return centres [length], radii [length] and numbers of molecules of the drops there are now."""
+        alive = self._drops.alive == 1
+        m = self._fields[self._drops.record[alive]]
+        dt = self._now - m["clock"]
+        centre = np.stack([m[axis] + dt * m["v" + axis] for axis in "xyz"], axis=1)
+        for axis in range(3):
+            if self._periodic[axis]:
+                centre[:, axis] = np.mod(centre[:, axis], self._sides[axis])
+        return centre, np.array(self._kinds.table["radius"][self._first_drop :][alive]), self._drops.held[alive]
+
+    @property
+    def merged(self) -> int:
+        """How often two drops have become one since the start."""
+        return int(self._drops.merged[0])
+
+    @property
+    def condensed_energy(self) -> float:
+        """Energy of the liquid, of its vapour's binding and of the flight of the drops [energy]."""
+        m = self._fields[self._drops.record[self._drops.alive == 1]]
+        mass = self._kinds.table["mass"][self._first_drop :][self._drops.alive == 1]
+        flight = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
+        return super().condensed_energy + flight
+
+    def escaped(self) -> int:
+        """Return how many molecules and drops are outside the box or nowhere: none, or the engine is wrong."""
+        centre = self.drops()[0]
+        lost = ~np.isfinite(centre).all(axis=1) | (centre < 0.0).any(axis=1) | (centre > self.length).any(axis=1)
+        return super().escaped() + int(np.sum(lost)) + int(math.isnan(self.liquid_energy))

@@ -1,0 +1,105 @@
+"""Drops as bodies: what they hold, how large they are, and where a molecule leaves them."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.random import uniform
+
+__all__ = [
+    "DropRecords",
+    "about",
+    "nearest",
+    "placed",
+    "radius_of",
+    "resize",
+    "surface_left",
+    "within",
+]
+
+
+class DropRecords(NamedTuple):
+    """What is known of the drops beside their flight.
+
+    ``record``, ``held : (drop,)`` their numbers among the molecules, and how many molecules each holds; ``cube``,
+    ``core : (drop,)`` cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)`` whether it has
+    not been swallowed; ``merged : (1,)`` how often that happened; then cube of the radius, mass and radius in flight of
+    one molecule.
+    """
+
+    record: Any
+    held: Any
+    cube: Any
+    core: Any
+    alive: Any
+    merged: Any
+    molecule_cube: float
+    molecule_mass: float
+    molecule_radius: float
+
+
+@kernel
+def radius_of(drops, k, held):
+    """Return the radius of drop k if it held so many molecules [length]."""
+    return (drops.cube[k] + held * drops.molecule_cube) ** (1.0 / 3.0)
+
+
+@kernel
+def resize(drops, k, kinds, modes):
+    """Let drop k be as large and as heavy as what it holds."""
+    kind = kinds.table[modes.drops + k]
+    kind.radius = radius_of(drops, k, drops.held[k])
+    kind.mass = drops.core[k] + drops.held[k] * drops.molecule_mass
+
+
+@kernel
+def surface_left(drops, k):
+    """Return the surface from which a molecule leaves drop k, at the distance of its centre [length^2].
+
+    A light drop is hit more often than one at rest, because it flies as well, and so it loses more often.
+    """
+    if drops.alive[k] == 0 or drops.held[k] < 1:
+        return 0.0
+    reach = radius_of(drops, k, drops.held[k] - 1) + drops.molecule_radius
+    heavy = drops.core[k] + (drops.held[k] - 1) * drops.molecule_mass
+    return 4.0 * math.pi * reach * reach * math.sqrt(1.0 + drops.molecule_mass / heavy)
+
+
+@kernel
+def nearest(r, length, inverse):
+    """Return a distance along an axis, to the nearest image if the axis is periodic."""
+    return r - length * np.rint(r * inverse) if inverse != 0.0 else r
+
+
+@kernel
+def about(nx, ny, nz, state):
+    """Return a direction by the cosine law about a normal."""
+    rise = math.sqrt(uniform(state))
+    across = math.sqrt(max(1.0 - rise * rise, 0.0))
+    angle = 2.0 * math.pi * uniform(state)
+    # two axes at right angles to the normal: Duff and others 2017, jcgt.org/published/0006/01/01
+    sign = 1.0 if nz >= 0.0 else -1.0
+    a = -1.0 / (sign + nz)
+    b = nx * ny * a
+    c, s = across * math.cos(angle), across * math.sin(angle)
+    return (
+        c * (1.0 + sign * nx * nx * a) + s * b + rise * nx,
+        c * sign * b + s * (sign + ny * ny * a) + rise * ny,
+        -c * sign * nx - s * ny + rise * nz,
+    )
+
+
+@kernel
+def within(u, radius, length, inverse):
+    """Return a coordinate of a drop, moved inwards if it has grown into a wall."""
+    return u if inverse != 0.0 else min(max(u, radius), max(length - radius, radius))
+
+
+@kernel
+def placed(u, radius, length, inverse, lowest):
+    """Return a coordinate of a molecule, brought back into a periodic box, and whether it is between the walls."""
+    if inverse != 0.0:
+        return u - math.floor((u - lowest) / length) * length, True
+    return u, radius <= u <= length - radius

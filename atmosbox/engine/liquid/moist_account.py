@@ -1,0 +1,162 @@
+"""What a box with liquid in it holds and tells, however it lets time pass."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.parcel import Array, Parcel
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.walls import POOL, SPECULAR
+from atmosbox.engine.liquid.reservoir import (
+    CONDENSED,
+    EVAPORATED,
+    LIQUID,
+    RAINED,
+    RAINED_ENERGY,
+    THERMAL,
+    Ledger,
+    new_ledger,
+)
+from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
+
+__all__ = ["MoistAccount"]
+
+
+class MoistAccount(Parcel):
+    """A box with liquid in it: what the engines have in common that can hold one.
+
+    Every molecule has a number. First come those that are in the box at the start, then those of the liquid; the ledger
+    knows which of them are absent.
+    """
+
+    _liquid: Liquid
+    _ledger: Ledger
+    _vapours: int
+    _turns: float
+
+    def _refuse_what_no_liquid_bears(self) -> None:
+        """Refuse a plane gas, gravity, and a pool that is not the floor; make the floor a pool."""
+        if self._planar:
+            raise RefusedError("a plane gas has no room for liquid: give it three dimensions")
+        if self._gravity > 0.0:
+            raise RefusedError("a box with liquid has no gravity: set it to 0")
+        if isinstance(self._liquid, Pool):
+            if self._walls.law[4] != SPECULAR:
+                raise RefusedError("the floor under a pool is the pool itself: make wall z_low Specular")
+            self._walls.law[4] = POOL
+
+    def _field_changes(self, gravity: float) -> None:
+        raise RefusedError("a box with liquid has no gravity: leave it at 0")
+
+    def _append_liquid(self) -> None:
+        """Append what is known of the molecules of the liquid to what is known of those of the gas."""
+        substance, more = self._liquid.substance, int(self._liquid.number)
+        self._mass = np.append(self._mass, np.full(more, substance.mass))
+        self._diameter = np.append(self._diameter, np.full(more, substance.diameter))
+        self._rotation = np.append(self._rotation, np.full(more, substance.rotation))
+        self._rotates = self._rotates or (bool(more) and substance.rotation > 0.0)
+        self._same_size = bool(len(self._diameter)) and np.ptp(self._diameter) == 0.0
+
+    def _open_ledger(self, alike: NDArray[np.bool_], kind: NDArray[np.integer]) -> None:
+        """Begin the account of the liquid.
+
+        ``alike : (kind,)`` tells which kinds are as the substance of the liquid, ``kind : (molecule,)`` of which kind
+        each molecule is.
+        """
+        liquid, substance = self._liquid, self._liquid.substance
+        vapour = int(np.flatnonzero(alike)[0]) if alike.any() else -1
+        self._vapours = int(np.sum(kind == vapour))
+        cube = float(np.mean(self._diameter**3)) if len(kind) else 0.0
+        sides = self._sides - np.where(self._periodic, 0.0, substance.diameter)
+        area = 1.0  # that of drops changes
+        if isinstance(liquid, Mist):
+            area = liquid.area
+        elif isinstance(liquid, Pool):
+            area = float(sides[0] * sides[1])
+        present = len(kind) - int(liquid.number)
+        rotation = float(substance.rotation) if self._rotates else 0.0
+        ledger = new_ledger(liquid, area, len(kind), present, vapour, cube)
+        self._ledger = ledger._replace(rotation=rotation)
+        self._turns = float(self._rotation.sum())
+
+    @property
+    def number(self) -> int:
+        """Number of molecules of the gas."""
+        return len(self._mass) - int(self._ledger.top[0])
+
+    @property
+    def liquid(self) -> int:
+        """Number of molecules in the liquid."""
+        return int(self._ledger.count[LIQUID])
+
+    @property
+    def vapour(self) -> int:
+        """Number of molecules of the vapour."""
+        return self._vapours - int(self._ledger.top[0])
+
+    @property
+    def condensed(self) -> int:
+        """How many molecules have come into the liquid since the start."""
+        return int(self._ledger.count[CONDENSED])
+
+    @property
+    def evaporated(self) -> int:
+        """How many molecules have left the liquid for the vapour since the start."""
+        return int(self._ledger.count[EVAPORATED])
+
+    @property
+    def rained(self) -> int:
+        """How many molecules have left the box as rain since the start."""
+        return int(self._ledger.count[RAINED])
+
+    @property
+    def liquid_energy(self) -> float:
+        """Thermal energy of the liquid [energy]."""
+        return float(self._ledger.energy[THERMAL])
+
+    @property
+    def liquid_kT(self) -> float:
+        """Temperature of the liquid [energy], NaN where there is none and no nuclei."""
+        capacity = self._ledger.molecule_capacity * self.liquid + self._ledger.nuclei
+        return self.liquid_energy / capacity if capacity > 0.0 else math.nan
+
+    @property
+    def condensed_energy(self) -> float:
+        """Energy of the liquid, of its vapour's binding and of the rain [energy]."""
+        return self._ledger.binding_energy * self.vapour + float(
+            self._ledger.energy[THERMAL] + self._ledger.energy[RAINED_ENERGY]
+        )
+
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """Which of the molecules that the box has ever held are in the gas now."""
+        inside = np.ones(len(self._mass), np.bool_)
+        inside[self._ledger.absent[: self._ledger.top[0]]] = False
+        return inside
+
+    @property
+    def mass(self) -> Array:
+        """Mass of each molecule of the gas [mass]."""
+        return self._mass[self.present]
+
+    @property
+    def diameter(self) -> Array:
+        """Diameter of each molecule of the gas [length]."""
+        return self._diameter[self.present]
+
+    @property
+    def degrees_of_freedom(self) -> float:
+        """Translational and rotational degrees of freedom per molecule of the gas, on average."""
+        rotation = self._turns - self._ledger.rotation * int(self._ledger.top[0])
+        return 3.0 + rotation / max(self.number, 1)
+
+    @property
+    def emitted_energy(self) -> tuple[Array, NDArray[np.int64]]:
+        """Edges of energy [energy], and how many molecules left with so much beyond the binding energy."""
+        edges = self._ledger.bin_width * np.arange(len(self._ledger.spectrum) + 1.0)
+        return edges, np.array(self._ledger.spectrum)
+
+    def _ledger_memory(self) -> int:
+        """Return the bytes that the ledger takes."""
+        return int(self._ledger.absent.nbytes + self._ledger.spectrum.nbytes)

@@ -1,0 +1,118 @@
+"""The parcel of moist air, advanced exactly: molecules that condense leave the box, and come back."""
+
+import math
+from typing import ClassVar, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.core.parcel import Arrangement, Array
+from atmosbox.engine.exact.parcelset import ParcelSet
+from atmosbox.engine.liquid import moist
+from atmosbox.engine.liquid.moist_account import MoistAccount
+from atmosbox.engine.liquid.substance import Liquid
+
+__all__ = ["MoistParcelSet"]
+
+_CHUNK = 200_000
+
+
+class MoistParcelSet(MoistAccount, ParcelSet):
+    """A set of molecules with its box and with liquid in it, advanced exactly.
+
+    What it is given besides, and what it tells, is described at `Parcel`. The molecules that are given are in the
+    box; those in the liquid come to them. Vapour are those that are as the substance of the liquid says.
+
+    Parameters
+    ----------
+    liquid
+        A mist in the box, or a pool on its floor.
+
+    Raises
+    ------
+    RefusedError
+        If a liquid is asked for in a plane gas, in gravity, or a pool on a floor that is no smooth wall.
+
+    Examples
+    --------
+    A molecule of the liquid that is hot enough leaves it; the energy is still there:
+
+    >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
+    >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+    >>> box = MoistParcelSet([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0))
+    >>> box.advance(300.0)
+    >>> box.evaporated > 0, box.number + box.liquid, box.ledger() < 1e-12
+    (True, 1, True)
+    """
+
+    engine: ClassVar[str] = "exact"
+
+    def __init__(self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid, **box: Unpack[Arrangement]) -> None:
+        self._liquid = liquid
+        super().__init__(position, velocity, **box)
+
+    def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        self._refuse_what_no_liquid_bears()
+        super()._begin(position, velocity, rotational_energy)
+        fastest = float(np.sqrt(np.max(np.sum(velocity * velocity, axis=1), initial=0.0)))
+        baths = [float(kT) for kT in self.wall_kT() if math.isfinite(kT)]
+        warm = math.sqrt(8.0 * max(baths, default=0.0) / self._liquid.substance.mass)
+        self._draw(max(fastest, warm, 2.0 * abs(self.piston_velocity)))
+
+    def _draw(self, speed: float) -> None:
+        """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
+        begin = moist.specialise(self._modes)[0]
+        begin(self._molecules, self._box, self._walls, self._tallies, self._ledger, self._now, speed)
+
+    def _piston_turned(self) -> None:
+        super()._piston_turned()
+        speed = 2.0 * abs(self.piston_velocity)
+        if speed > float(self._ledger.bound[0]):  # it may wake molecules at rest
+            self._draw(speed)
+
+    def _bath_changes(self, kT: float) -> None:
+        speed = math.sqrt(8.0 * kT / self._liquid.substance.mass)
+        if speed > float(self._ledger.bound[0]):
+            self._draw(speed)
+
+    def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        """Write down the molecules of the gas, and behind them those of the liquid, which are not in the box."""
+        substance = self._liquid.substance
+        present, more = len(position), int(self._liquid.number)
+        self._append_liquid()
+        nowhere = np.zeros((more, 3))
+        super()._fill(
+            np.concatenate([position, nowhere]),
+            np.concatenate([velocity, nowhere]),
+            np.append(rotational_energy, np.zeros(more)),
+        )
+        self._fields["clock"][present:] = np.inf
+        alike = (self._kinds.table["mass"] == substance.mass) & (self._kinds.table["rotation"] == substance.rotation)
+        alike &= self._kinds.table["radius"] == 0.5 * substance.diameter
+        self._open_ledger(alike, self._fields["kind"])
+
+    @property
+    def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
+        return self.present
+
+    def memory(self) -> int:
+        """Return the bytes that molecules, events, cells, calendar and ledger take."""
+        return super().memory() + self._ledger_memory()
+
+    def _proceed(self, until: float) -> int:
+        status, _ = self._moist_advance(
+            self._molecules, self._events, self._kinds, self._cells, self._calendar,
+            self._box, self._walls, self._tallies, self._ledger, until, _CHUNK,
+        )  # fmt: skip
+        return int(status)
+
+    def _lay_out(self) -> None:
+        super()._lay_out()
+        self._moist_advance = moist.specialise(self._modes)[1]
+
+    def _next_time(self) -> float:
+        return min(super()._next_time(), float(self._ledger.clock.min()))
+
+    def _rebase(self, step: float) -> None:
+        super()._rebase(step)
+        self._ledger.clock[:] -= step

@@ -1,0 +1,173 @@
+"""What condenses, and in which form its liquid is in the box: a mist, drops or a pool."""
+
+import math
+from dataclasses import dataclass
+
+from atmosbox.engine.core.inputs import number, whole
+from atmosbox.engine.core.refusal import RefusedError
+
+__all__ = ["Drops", "Liquid", "Mist", "Pool", "Substance"]
+
+
+def _above_zero(value: float, name: str) -> None:
+    if not number(value, name) > 0.0:
+        raise RefusedError(f"{name} = {value} must be above 0")
+
+
+@dataclass(frozen=True)
+class Substance:
+    """What condenses, as a vapour of hard molecules with a constant binding energy in the liquid.
+
+    Parameters
+    ----------
+    mass, diameter
+        Of a molecule of the vapour [mass, length].
+    binding_energy
+        What it takes to pull a molecule out of the liquid at zero temperature [energy].
+    heat_capacity
+        Of the liquid, per molecule, in units of k.
+    volatility
+        K in the vapour pressure K T^(c_p - c_l) exp(-binding_energy / T), T being kT [energy].
+    rotation
+        Rotational degrees of freedom of the vapour.
+
+    Raises
+    ------
+    RefusedError
+        If a number is impossible.
+
+    Examples
+    --------
+    >>> round(Substance(0.62, 1.0, 20.0, 9.0, 1e6).saturation_pressure(1.0), 6)
+    0.002061
+    """
+
+    mass: float
+    diameter: float
+    binding_energy: float
+    heat_capacity: float
+    volatility: float
+    rotation: float = 3.0
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "binding_energy", "heat_capacity", "volatility"):
+            _above_zero(getattr(self, name), f"{name} of the substance")
+        number(self.diameter, "diameter of the substance", least=0.0)
+        if self.rotation not in (0.0, 2.0, 3.0):
+            raise RefusedError(f"rotation of the substance = {self.rotation}: give 0, 2 or 3 degrees of freedom")
+
+    @property
+    def vapour_heat_capacity(self) -> float:
+        """Heat capacity of the vapour at constant pressure, per molecule, in units of k."""
+        return 2.5 + 0.5 * self.rotation
+
+    def saturation_pressure(self, kT: float) -> float:
+        """Return the pressure of the vapour that a large body of the liquid at kT is in balance with."""
+        power = self.vapour_heat_capacity - self.heat_capacity
+        pressure: float = self.volatility * math.exp(power * math.log(kT) - self.binding_energy / kT)
+        return pressure
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """Liquid in a box: what it is, how much, and how warm.
+
+    Parameters
+    ----------
+    substance
+        What it is.
+    number
+        How many molecules there are in it at the start.
+    kT
+        Its temperature at the start [energy].
+    nuclei
+        Heat capacity of what the droplets sit on, in units of k.
+    sticking
+        Which part of the vapour that meets it stays, above 0 up to 1.
+    rain
+        Rate at which each molecule that is too many falls out of the box [1/time].
+    keeps
+        How many molecules the liquid holds before it rains.
+
+    Raises
+    ------
+    RefusedError
+        If a number is impossible.
+    """
+
+    substance: Substance
+    number: int = 0
+    kT: float = 1.0
+    nuclei: float = 0.0
+    sticking: float = 1.0
+    rain: float = 0.0
+    keeps: int = 0
+
+    def __post_init__(self) -> None:
+        whole(self.number, "number of molecules in the liquid", least=0)
+        number(self.kT, "kT of the liquid", least=0.0)
+        number(self.nuclei, "heat capacity of the nuclei", least=0.0)
+        number(self.rain, "rain", least=0.0)
+        whole(self.keeps, "number of molecules that the liquid keeps", least=0)
+        if not 0.0 < number(self.sticking, "sticking") <= 1.0:
+            raise RefusedError(f"sticking = {self.sticking} is no part above 0 and up to 1: give 1 for all that meet")
+
+
+@dataclass(frozen=True)
+class Mist(Liquid):
+    r"""Droplets too fine to draw, spread evenly and carried along by the air.
+
+    A molecule of speed w relative to the air meets one at the rate :math:`A w Z / 4 V`: as in the pool, what is in
+    balance with the liquid is the partial pressure, the share of the vapour in n k T Z.
+
+    Parameters
+    ----------
+    area
+        Area of all droplets together [length^2].
+    """
+
+    area: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _above_zero(self.area, "area of the mist")
+
+
+@dataclass(frozen=True)
+class Pool(Liquid):
+    """The floor of the box is the surface of the liquid, which itself takes no room."""
+
+
+@dataclass(frozen=True)
+class Drops(Liquid):
+    """Drops that can be seen: spheres that fly, that molecules hit, that grow, shrink and merge.
+
+    Each sits on a nucleus, and carries its share of the molecules; they are all of one temperature. The molecules in
+    the liquid at the start are shared out evenly.
+
+    Parameters
+    ----------
+    position
+        Centres of the nuclei at the start [length], where no molecule is; the drops start at rest.
+    nucleus
+        Radius of a nucleus [length].
+    nucleus_mass
+        Its mass [mass].
+    molecule_radius
+        Radius of the ball by whose volume each molecule makes its drop larger [length].
+    """
+
+    position: tuple[tuple[float, float, float], ...] = ()
+    nucleus: float = 1.0
+    nucleus_mass: float = 10.0
+    molecule_radius: float = 0.5
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _above_zero(self.nucleus, "radius of the nuclei")
+        _above_zero(self.nucleus_mass, "mass of the nuclei")
+        number(self.molecule_radius, "radius of a molecule in a drop", least=0.0)
+        if not self.position:
+            raise RefusedError("drops need nuclei: give the position of one at least")
+        if self.rain:
+            raise RefusedError("drops do not rain: leave rain at 0, or take a mist")

@@ -1,0 +1,7 @@
+"""Where molecules stand at the start, and how they move.
+
+`scatter`    at random
+`overlap`    those that overlap are pushed apart
+`lattice`    on a lattice
+`velocity`   velocities and energies of rotation
+"""

@@ -1,0 +1,152 @@
+"""Molecules that overlap are pushed apart along their line of centres, until none does."""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+
+__all__ = ["push_apart"]
+
+
+@kernel
+def _push_pair(x, radius, low, high, turn, gap, moves, i, j):
+    """Push two molecules apart if they overlap; return whether they did."""
+    dx = x[j, 0] - x[i, 0]
+    dy = x[j, 1] - x[i, 1]
+    dz = x[j, 2] - x[i, 2]
+    if turn[0] > 0.0:
+        dx -= turn[0] * np.rint(dx / turn[0])
+    if turn[1] > 0.0:
+        dy -= turn[1] * np.rint(dy / turn[1])
+    if turn[2] > 0.0:
+        dz -= turn[2] * np.rint(dz / turn[2])
+    touching = radius[i] + radius[j]
+    square = dx * dx + dy * dy + dz * dz
+    if square >= (touching * (1.0 + 0.5 * gap)) ** 2:
+        return 0
+    distance = math.sqrt(square)
+    wanted = touching * (1.0 + gap)
+    if distance < 1e-9 * wanted:
+        dx, dy, dz, distance = wanted * 1e-3, 0.0, wanted * 1e-3, wanted * 1.5e-3
+    # a little more than needed, the larger sphere moving less
+    push = 1.05 * (wanted - distance) / distance
+    share = radius[j] ** 3 / (radius[i] ** 3 + radius[j] ** 3)
+    for axis in range(3):
+        d = dx if axis == 0 else (dy if axis == 1 else dz)
+        x[i, axis] -= share * push * d
+        x[j, axis] += (1.0 - share) * push * d
+        for k in (i, j):
+            if turn[axis] > 0.0:
+                x[k, axis] -= turn[axis] * math.floor(x[k, axis] / turn[axis])
+            else:
+                x[k, axis] = min(max(x[k, axis], low[k, axis]), high[k, axis])
+    moves[i] = True
+    moves[j] = True
+    return 1
+
+
+@kernel(entry=True, allocates=True)
+def push_apart(x, radius, low, high, turn, rounds, gap):
+    """Push overlapping molecules apart, some rounds; return how many pairs were pushed in the last one.
+
+    Parameters
+    ----------
+    x : (molecule, axis)
+        Centres, which are moved [length].
+    radius : (molecule,)
+        Radii [length].
+    low, high : (molecule, axis)
+        The lowest and highest place of each centre [length].
+    turn : (axis,)
+        Side of the box along a periodic axis, 0 along any other [length].
+    rounds
+        How often all pairs are looked at, at most.
+    gap
+        What is left free between two that were pushed, as a share of their distance.
+
+    Returns
+    -------
+    int
+        0 as soon as nobody overlaps any more.
+
+    Notes
+    -----
+    Only pairs of which one has just moved are looked at again, so that late rounds cost little.
+
+    Examples
+    --------
+    >>> x = np.array([[1.0, 1.0, 1.0], [1.5, 1.0, 1.0]])
+    >>> low, high = np.full((2, 3), 0.5), np.full((2, 3), 3.5)
+    >>> push_apart(x, np.full(2, 0.5), low, high, np.zeros(3), 8, 1e-6)
+    0
+    >>> bool(x[1, 0] - x[0, 0] > 1.0)
+    True
+    """
+    n = radius.size
+    widest = 2.0 * radius.max() * (1.0 + gap)
+    number = np.ones(3, np.int64)
+    origin = np.zeros(3)
+    size = np.ones(3)
+    most = max(int((2.0 * n) ** 0.5), 4)
+    for axis in range(3):
+        if turn[axis] > 0.0:
+            size[axis] = turn[axis]
+        else:
+            origin[axis] = low[:, axis].min()
+            size[axis] = max(high[:, axis].max() - origin[axis], 1e-300)
+        number[axis] = max(1, min(int(size[axis] / widest), most))
+        if turn[axis] > 0.0 and number[axis] < 3:
+            number[axis] = 1
+    while number[0] * number[1] * number[2] > 4 * n + 64:
+        number[np.argmax(number)] = max(1, number.max() // 2)
+        for axis in range(3):
+            if turn[axis] > 0.0 and number[axis] < 3:
+                number[axis] = 1
+    head = np.empty(number[0] * number[1] * number[2], np.int64)
+    follower = np.empty(n, np.int64)
+    place = np.empty((n, 3), np.int64)
+    moved = np.ones(n, np.bool_)
+    moves = np.zeros(n, np.bool_)
+    pushed = 0
+    for _ in range(rounds):
+        pushed = 0
+        head[:] = -1
+        moves[:] = False
+        for i in range(n):
+            for axis in range(3):
+                k = int((x[i, axis] - origin[axis]) / size[axis] * number[axis])
+                place[i, axis] = min(max(k, 0), number[axis] - 1)
+            c = (place[i, 0] * number[1] + place[i, 1]) * number[2] + place[i, 2]
+            follower[i] = head[c]
+            head[c] = i
+        for i in range(n):
+            if not moved[i]:
+                continue
+            for a in range(-1, 2):
+                p = place[i, 0] + a
+                if turn[0] > 0.0 and number[0] > 1:
+                    p = p % number[0]
+                if p < 0 or p >= number[0]:
+                    continue
+                for b in range(-1, 2):
+                    q = place[i, 1] + b
+                    if turn[1] > 0.0 and number[1] > 1:
+                        q = q % number[1]
+                    if q < 0 or q >= number[1]:
+                        continue
+                    for c in range(-1, 2):
+                        r = place[i, 2] + c
+                        if turn[2] > 0.0 and number[2] > 1:
+                            r = r % number[2]
+                        if r < 0 or r >= number[2]:
+                            continue
+                        j = head[(p * number[1] + q) * number[2] + r]
+                        while j >= 0:
+                            if j != i and (j > i or not moved[j]):
+                                pushed += _push_pair(x, radius, low, high, turn, gap, moves, i, j)
+                            j = follower[j]
+        if pushed == 0:
+            break
+        moved[:] = moves
+    return pushed

@@ -1,0 +1,197 @@
+r"""A step of a molecule that comes near walls: from hit to hit.
+
+A heat bath emits a molecule at the moment of the hit, and it flies for the rest of the step; one that was to wait
+for the next step would leave the gas too hot. The piston, too, is met where it is at that moment. What a smooth
+wall at rest does is a choice, because simple programs choose differently:
+
+``MIRROR``
+    turns the molecule round at the moment of the hit, as a wall does.
+``FOLD``
+    lets it fly and then mirrors its place and velocity. Without gravity that is the same; with it, the floor lifts
+    what it mirrors and so makes energy, :math:`m g^2 \Delta t / 2` per molecule and unit time.
+``FLIP``
+    turns its velocity and leaves it beyond the wall, from where it comes back a step later.
+``CLAMP``
+    turns its velocity and puts it on the wall.
+``REWIND``
+    turns its velocity and puts it back to where the step began.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
+from atmosbox.engine.core.walls import SPECULAR, resolve_wall_hit
+from atmosbox.engine.stepped.flight import EULER, PARABOLA, SEMI_IMPLICIT
+
+__all__ = ["CLAMP", "FLIP", "FOLD", "MIRROR", "REWIND", "bounce"]
+
+MIRROR, FOLD, FLIP, CLAMP, REWIND = 0, 1, 2, 3, 4
+_BOUNCES = 200
+
+
+@kernel
+def _next_wall(x, y, z, vx, vy, vz, left, gravity, radius, step, box, walls, modes):
+    """Return when the next wall that turns molecules at the moment of the hit is hit, and which; -1 for none."""
+    crude = step.rule != MIRROR
+    soonest = left
+    wall = -1
+    if box.inverse_x == 0.0:
+        t, high = time_to_leave(x, vx, radius, box.length_x - radius)
+        if t < soonest and not (crude and walls.law[high] == SPECULAR):
+            soonest = t
+            wall = 0 + high
+    if box.inverse_y == 0.0 and not box.planar:
+        t, high = time_to_leave(y, vy, radius, box.length_y - radius)
+        if t < soonest and not (crude and walls.law[2 + high] == SPECULAR):
+            soonest = t
+            wall = 2 + high
+    if box.inverse_z == 0.0:
+        top = step.ceiling + step.ceiling_velocity * (step.length - left) - radius
+        if gravity > 0.0:
+            t, high = time_to_leave_in_gravity(z, vz, radius, math.inf if modes.piston else top, gravity)
+        else:
+            t, high = time_to_leave(z, vz, radius, math.inf if modes.piston else top)
+        if t < soonest and not (crude and walls.law[4 + high] == SPECULAR):
+            soonest = t
+            wall = 4 + high
+        if modes.piston:
+            t = time_to_ceiling(top - z, vz - step.ceiling_velocity, gravity)
+            if t < soonest:
+                soonest = t
+                wall = 5
+    return soonest, wall
+
+
+@kernel
+def _book(wall, impulse, gained, tallies, modes):
+    """Write a hit into the books: the change of momentum along the wall's axis, and the energy gained."""
+    tallies.hits[wall] += 1
+    tallies.count[4] += 1
+    tallies.impulse[wall] += impulse if wall & 1 == 0 else -impulse
+    if modes.piston and wall == 5:
+        tallies.work[wall] += gained
+    else:
+        tallies.heat[wall] += gained
+
+
+@kernel
+def _end_along(x, v, old_x, old_v, axis, low, high, side, inverse, step, walls):
+    """Return place and velocity along one axis at the end of the step, and the smooth wall that turned it, or -1."""
+    if inverse > 0.0:
+        x -= side * np.floor(x * inverse)
+        return (0.0 if x >= side else x), v, -1
+    if low <= x <= high:
+        return x, v, -1
+    up = x > high
+    edge = high if up else low
+    wall = 2 * axis + (1 if up else 0)
+    if step.rule == MIRROR or walls.law[wall] != SPECULAR:  # beyond by rounding
+        return edge, v, -1
+    if step.rule == FLIP and (v < 0.0 if up else v > 0.0):  # on its way back
+        return x, v, -1
+    if step.rule == FOLD:
+        x = min(max(2.0 * edge - x, low), high)
+    elif step.rule == CLAMP:
+        x = edge
+    elif step.rule == REWIND:
+        x = old_x
+        v = old_v
+    return x, (-abs(v) if up else abs(v)), wall
+
+
+@kernel
+def bounce(p, state, kinds, step, box, walls, tallies, modes):
+    """Move a molecule through a step in which it comes near walls, and keep their books.
+
+    Parameters
+    ----------
+    p
+        Its slot.
+    state, kinds
+        The molecules: see `atmosbox.engine.stepped.stepped.State`.
+    step
+        The step: see `atmosbox.engine.stepped.stepped.Step`.
+    box, walls, tallies, modes
+        The box, its walls, what is counted, what the scene requires.
+
+    Returns
+    -------
+    float
+        The energy that the scheme itself has made [energy]: what the molecule gained beyond what walls gave.
+    """
+    i = np.int64(state.name[p])
+    kind = kinds.table[i if modes.mixed else 0]
+    mass = kind.mass
+    radius = kind.radius
+    rotation = kind.rotation if modes.rotation else 0.0
+    spin = kinds.rotational_energy[i] if modes.rotation else 0.0
+    gravity = box.gravity if modes.gravity and step.motion == PARABOLA else 0.0
+    old_x, old_y, old_z = state.position[0, p], state.position[1, p], state.position[2, p]
+    old_vx, old_vy, old_vz = state.velocity[0, p], state.velocity[1, p], state.velocity[2, p]
+    x, y, z, vx, vy, vz = old_x, old_y, old_z, old_vx, old_vy, old_vz
+    weight = mass * box.gravity if modes.gravity else 0.0
+    made = -0.5 * mass * (vx * vx + vy * vy + vz * vz) - spin - weight * z
+    if modes.gravity and step.motion == SEMI_IMPLICIT:
+        vz -= box.gravity * step.length
+    left = step.length
+    for _ in range(_BOUNCES):
+        t, wall = _next_wall(x, y, z, vx, vy, vz, left, gravity, radius, step, box, walls, modes)
+        x += t * vx
+        y += t * vy
+        z += t * (vz - 0.5 * gravity * t)
+        vz -= gravity * t
+        left -= t
+        if wall < 0:
+            break
+        before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
+        now = step.time + step.length - left
+        high = wall & 1 == 1
+        if wall < 2:
+            came = vx
+            vx, vy, vz, spin = resolve_wall_hit(
+                walls, wall, now, vx, vy, vz, spin, mass, rotation, box.planar, tallies.random
+            )
+            went = vx
+            x = box.length_x - radius if high else radius
+        elif wall < 4:
+            came = vy
+            vy, vx, vz, spin = resolve_wall_hit(
+                walls, wall, now, vy, vx, vz, spin, mass, rotation, box.planar, tallies.random
+            )
+            went = vy
+            y = box.length_y - radius if high else radius
+        else:
+            came = vz
+            vz, vx, vy, spin = resolve_wall_hit(
+                walls, wall, now, vz, vx, vy, spin, mass, rotation, box.planar, tallies.random
+            )
+            went = vz
+            z = step.ceiling + step.ceiling_velocity * (step.length - left) - radius if high else radius
+        gained = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
+        made -= gained
+        _book(wall, mass * (went - came), gained, tallies, modes)
+    if modes.gravity and step.motion == EULER:
+        vz -= box.gravity * step.length
+    came_x, came_y, came_z = vx, vy, vz
+    x, vx, wall_x = _end_along(
+        x, vx, old_x, old_vx, 0, radius, box.length_x - radius, box.length_x, box.inverse_x, step, walls
+    )  # fmt: skip
+    y, vy, wall_y = _end_along(
+        y, vy, old_y, old_vy, 1, radius, box.length_y - radius, box.length_y, box.inverse_y, step, walls
+    )  # fmt: skip
+    top = step.ceiling + step.ceiling_velocity * step.length - radius
+    z, vz, wall_z = _end_along(z, vz, old_z, old_vz, 2, radius, top, box.length_z, box.inverse_z, step, walls)
+    if wall_x >= 0:
+        _book(wall_x, mass * (vx - came_x), 0.0, tallies, modes)
+    if wall_y >= 0:
+        _book(wall_y, mass * (vy - came_y), 0.0, tallies, modes)
+    if wall_z >= 0:
+        _book(wall_z, mass * (vz - came_z), 0.0, tallies, modes)
+    state.position[0, p], state.position[1, p], state.position[2, p] = x, y, z
+    state.velocity[0, p], state.velocity[1, p], state.velocity[2, p] = vx, vy, vz
+    if modes.rotation:
+        kinds.rotational_energy[i] = spin
+    return made + 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin + weight * z

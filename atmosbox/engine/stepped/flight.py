@@ -1,0 +1,146 @@
+r"""One step of free flight, for all that meet no wall.
+
+Nearly all molecules meet no wall in a step. They are moved by three loops, one per axis, that a processor runs
+four molecules at a time. The few that come near a wall are left where they are: see `bounce`.
+
+How molecules fall is a choice, because simple programs choose differently:
+
+``PARABOLA``
+    as bodies do, :math:`z + v \Delta t - g \Delta t^2 / 2`.
+``EULER``
+    with the velocity from before the step, :math:`z + v \Delta t`, which heats by :math:`m g^2 \Delta t / 2` per
+    molecule and unit time.
+``SEMI_IMPLICIT``
+    with the velocity from after it, :math:`z + (v - g \Delta t) \Delta t`, which cools by as much.
+"""
+
+import math
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+
+__all__ = ["BLOCK", "EULER", "PARABOLA", "SEMI_IMPLICIT", "drift"]
+
+PARABOLA, EULER, SEMI_IMPLICIT = 0, 1, 2
+
+_AWAY = np.int32(-(1 << 28))
+BLOCK = 512
+"""How many molecules are moved together: so many that what is known of them fits into the nearest cache."""
+
+
+@kernel
+def _ahead(x, v, dt, fall, side, inverse, periodic):
+    """Return where a coordinate is a step later; on a periodic axis back in the box."""
+    x = x + v * dt - fall
+    if periodic:
+        x = x - side * np.floor(x * inverse)
+        x = 0.0 if inverse > 0.0 and x >= side else x
+    return x
+
+
+@kernel
+def _along(at, low, high, per_length, last, stride):
+    """Return what a coordinate adds to the number of a cell; a very negative number near a wall."""
+    here = min(np.int32(at * per_length), last) * stride
+    return _AWAY if (at < low) | (at > high) else here
+
+
+@kernel
+def _glide(x, v, old, cell, dt, side, inverse, low, high, per_length, number, stride, periodic):
+    """Move molecules along a level axis, keep where they were, and add the axis to their cells."""
+    last = np.int32(number - 1)
+    stride = np.int32(stride)
+    for p in range(x.size):
+        at = _ahead(x[p], v[p], dt, 0.0, side, inverse, periodic)
+        old[p] = x[p]
+        x[p] = at
+        cell[p] += _along(at, low, high, per_length, last, stride)
+
+
+@kernel
+def _fall(z, v, cell, dt, fall, gain, side, inverse, low, high, per_length, number, stride, periodic):
+    """Add the upright axis to the cells of molecules, and move along it those that come near no wall at all."""
+    last = np.int32(number - 1)
+    stride = np.int32(stride)
+    for p in range(z.size):
+        at = _ahead(z[p], v[p], dt, fall, side, inverse, periodic)
+        cell[p] += _along(at, low, high, per_length, last, stride)
+        stays = cell[p] >= 0
+        z[p] = at if stays else z[p]
+        if gain is not None:
+            v[p] = v[p] - gain if stays else v[p]
+
+
+@kernel
+def drift(state, before, histogram, first, last, step, layers, grid, box, modes):
+    """Move the molecules of one part that meet no wall, and count them into their cells.
+
+    Parameters
+    ----------
+    state
+        The molecules: see `atmosbox.engine.stepped.stepped.State`. Its ``cell`` is filled with the cell that each will
+        be in, a negative number for one that comes near a wall; its ``hitting``, from ``first`` on, with those.
+    before : (2, `BLOCK`)
+        Room for where some of them were.
+    histogram : (cell,)
+        Filled with how many of the others will stand in each cell.
+    first, last
+        The part: slots ``first`` to ``last - 1``.
+    step
+        The step: see `atmosbox.engine.stepped.stepped.Step`.
+    layers
+        Number of layers of cells now.
+    grid, box, modes
+        The cells, the box, what the scene requires.
+
+    Returns
+    -------
+    int
+        How many come near a wall.
+    """
+    dt = step.length
+    gain = box.gravity * dt if modes.gravity else 0.0
+    share = 0.5 if step.motion == PARABOLA else (1.0 if step.motion == SEMI_IMPLICIT else 0.0)
+    fall = share * gain * dt
+    top = step.ceiling + step.ceiling_velocity * dt
+    # where the ceiling comes down the lowest that it is counts; a parabola may reach it although neither end does
+    low_top = min(step.ceiling, top) - 0.5 * gain * dt
+    near_x = grid.margin if box.inverse_x == 0.0 else -math.inf
+    near_y = grid.margin if box.inverse_y == 0.0 else -math.inf
+    near_z = grid.margin if box.inverse_z == 0.0 else -math.inf
+    histogram[:] = 0
+    many = 0
+    for begin in range(first, last, BLOCK):
+        end = min(begin + BLOCK, last)
+        c = state.cell[begin:end]
+        x, y, z = state.position[0, begin:end], state.position[1, begin:end], state.position[2, begin:end]
+        vx, vy, vz = state.velocity[0, begin:end], state.velocity[1, begin:end], state.velocity[2, begin:end]
+        old_x, old_y = before[0, : end - begin], before[1, : end - begin]
+        c[:] = 0
+        side = box.length_x
+        _glide(
+            x, vx, old_x, c, dt, side, box.inverse_x, near_x, side - near_x,
+            grid.inverse_x, grid.number_x, 1, modes.periodic,
+        )  # fmt: skip
+        if not box.planar:
+            side = box.length_y
+            _glide(
+                y, vy, old_y, c, dt, side, box.inverse_y, near_y, side - near_y,
+                grid.inverse_y, grid.number_y, grid.number_x, modes.periodic,
+            )  # fmt: skip
+        _fall(
+            z, vz, c, dt, fall, gain if modes.gravity else None, box.length_z, box.inverse_z, near_z, low_top - near_z,
+            layers / top, layers, grid.number_x * grid.number_y,
+            modes.periodic and not (modes.gravity or modes.piston),
+        )  # fmt: skip
+        for p in range(c.size):
+            if c[p] >= 0:
+                histogram[np.uint32(c[p])] += np.int32(1)
+            else:
+                x[p] = old_x[p]
+                if not box.planar:
+                    y[p] = old_y[p]
+                state.hitting[first + many] = begin + p
+                many += 1
+    return many

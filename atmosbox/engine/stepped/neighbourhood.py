@@ -1,0 +1,197 @@
+"""Who overlaps whom: a search of half of each molecule's neighbourhood.
+
+Cells are at least as wide as the largest molecule, so that two which overlap stand in the same cell or in
+adjacent ones, and molecules are filed by cell (`filing`). A molecule looks at what follows it in its own row and at
+the four rows that follow its own, above and behind; those that precede it have looked already. It looks at eight at a
+time in each of these rows, in single precision.
+"""
+
+import numpy as np
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.stepped.window import LANES, lowest_bit, within
+
+__all__ = ["find_pairs"]
+
+
+@kernel
+def _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes):
+    """Note every later neighbour of record q within reach; return how many pairs there are now."""
+    at_x = records.x[q]
+    at_y = records.y[q]
+    at_z = records.z[q]
+    for dz in range(2):
+        for dy in range(-dz, 2):
+            jz = iz + dz
+            jy = iy + dy
+            if jz == layers:
+                if not grid.wraps_z:
+                    continue
+                jz = 0
+            if jy < 0 or jy == grid.number_y:
+                if not grid.wraps_y:
+                    continue
+                jy += grid.number_y if jy < 0 else -grid.number_y
+            row = (jz * grid.number_y + jy) * grid.number_x
+            own = dz == 0 and dy == 0
+            for turn in range(2):
+                left = max(ix - 1, 0)
+                right = min(ix + 1, grid.number_x - 1)
+                if turn == 1:  # the cell on the far side, where the row goes on round the box
+                    if not grid.wraps_x or (ix > 0 and ix < grid.number_x - 1) or (own and ix == 0):
+                        break
+                    left = right = 0 if ix > 0 else grid.number_x - 1
+                first = q + 1 if own and turn == 0 else np.int64(records.start[row + left])
+                for r in range(first, np.int64(records.start[row + right + 1])):
+                    k = r & 0x7FFFFFFF
+                    rx = records.x[k] - at_x
+                    ry = records.y[k] - at_y
+                    rz = records.z[k] - at_z
+                    if modes.periodic:
+                        rx -= np.float32(box.length_x * np.rint(rx * box.inverse_x))
+                        ry -= np.float32(box.length_y * np.rint(ry * box.inverse_y))
+                        if not (modes.gravity or modes.piston):
+                            rz -= np.float32(box.length_z * np.rint(rz * box.inverse_z))
+                    near = reach
+                    if radius is not None:
+                        near = near + radius[k]
+                    if rx * rx + ry * ry + rz * rz < near * near:
+                        if found < pairs.shape[0]:
+                            pairs[found, 0] = records.slot[q]
+                            pairs[found, 1] = records.slot[k]
+                        found += 1
+    return found
+
+
+@kernel
+def _row(records, grid, iy, iz, layers, cells, shift_y, shift_z):
+    """Return where a row of cells begins and by how much the searcher is to be moved to stand before it."""
+    y = np.float32(0.0)
+    z = np.float32(0.0)
+    if iz == layers:
+        if not grid.wraps_z:
+            return cells, y, z
+        iz = 0
+        z = shift_z
+    if iy < 0 or iy == grid.number_y:
+        if not grid.wraps_y:
+            return cells, y, z
+        y = -shift_y if iy < 0 else shift_y
+        iy = grid.number_y - 1 if iy < 0 else 0
+    return (iz * grid.number_y + iy) * grid.number_x, y, z
+
+
+@kernel
+def _glance(records, radius, a, b, c, d, e, at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach):
+    """Tell who is within reach in five stretches of records; each stretch has its own `LANES` bits of the answer."""
+    x, y, z = records.x, records.y, records.z
+    return (
+        within(x, y, z, radius, a, at_x, at_y, at_z, reach)
+        | within(x, y, z, radius, b, at_x, b_y, at_z, reach) << LANES
+        | within(x, y, z, radius, c, at_x, c_y, c_z, reach) << 2 * LANES
+        | within(x, y, z, radius, d, at_x, at_y, d_z, reach) << 3 * LANES
+        | within(x, y, z, radius, e, at_x, e_y, e_z, reach) << 4 * LANES
+    )
+
+
+@kernel
+def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, modes):
+    """Find all pairs nearer than their mean diameter plus a slack, whose earlier record is in a part of all.
+
+    Parameters
+    ----------
+    first, last
+        The part: records ``first`` to ``last - 1``.
+    layers
+        Number of layers of cells now.
+    slack
+        By how much single precision may misjudge a distance, more than enough [length].
+    records, radius, grid, box, modes
+        The molecules in the order of their cells, their radius (None where equal), the cells, the box and what the
+        scene requires.
+    pairs : (pair, 2)
+        Filled with slots, in the order of the records.
+
+    Returns
+    -------
+    int
+        How many pairs there are; more than ``pairs`` holds if it is too short.
+    """
+    found = 0
+    if first >= last:
+        return found
+    end = np.int64(records.slot.size)
+    number_x = np.int64(grid.number_x)
+    cells = number_x * grid.number_y * layers
+    end_x = number_x - 1
+    x = records.x
+    y = records.y
+    z = records.z
+    start = records.start
+    common = np.float32(grid.reach + slack)
+    shift_y = np.float32(-box.length_y)
+    shift_z = np.float32(-box.length_z)
+    for row in range(np.int64(records.cell[first]) // number_x, np.int64(records.cell[last - 1]) // number_x + 1):
+        iz = row // grid.number_y
+        iy = row - iz * grid.number_y
+        own = row * number_x
+        behind, behind_y, _ = _row(records, grid, iy + 1, iz, layers, cells, shift_y, shift_z)
+        low, low_y, low_z = _row(records, grid, iy - 1, iz + 1, layers, cells, shift_y, shift_z)
+        above, _, above_z = _row(records, grid, iy, iz + 1, layers, cells, shift_y, shift_z)
+        high, high_y, high_z = _row(records, grid, iy + 1, iz + 1, layers, cells, shift_y, shift_z)
+        for r in range(max(np.int64(start[own]), first), min(np.int64(start[own + number_x]), last)):
+            q = r & 0x7FFFFFFF
+            ix = np.int64(records.cell[q]) - own
+            left = max(ix - 1, 0)
+            right = min(ix + 1, end_x) + 1
+            at_x = x[q]
+            at_y = y[q]
+            at_z = z[q]
+            reach = common
+            if radius is not None:
+                reach = reach + radius[q]
+            a = q + 1
+            a_end = np.int64(start[np.uint32(own + right)])
+            b = np.int64(start[np.uint32(behind + left)])
+            b_end = np.int64(start[np.uint32(behind + right)])
+            c = np.int64(start[np.uint32(low + left)])
+            c_end = np.int64(start[np.uint32(low + right)])
+            d = np.int64(start[np.uint32(above + left)])
+            d_end = np.int64(start[np.uint32(above + right)])
+            e = np.int64(start[np.uint32(high + left)])
+            e_end = np.int64(start[np.uint32(high + right)])
+            longest = max(max(a_end - a, b_end - b), max(c_end - c, d_end - d), e_end - e)
+            if modes.periodic and (not grid.simple or (grid.wraps_x and (ix == 0 or ix == end_x))):
+                found = _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes)
+                continue
+            b_y = at_y + behind_y if modes.periodic else at_y
+            c_y, c_z = (at_y + low_y, at_z + low_z) if modes.periodic else (at_y, at_z)
+            d_z = at_z + above_z if modes.periodic else at_z
+            e_y, e_z = (at_y + high_y, at_z + high_z) if modes.periodic else (at_y, at_z)
+            bits = _glance(
+                records, radius, a, b, c, d, e, at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach
+            )  # fmt: skip
+            beyond = 0
+            while True:
+                while bits != 0:
+                    bit = lowest_bit(bits)
+                    bits &= bits - 1
+                    window = bit // LANES
+                    begin, stop = (a, a_end) if window == 0 else ((b, b_end) if window == 1 else (c, c_end))
+                    if window > 2:
+                        begin, stop = (d, d_end) if window == 3 else (e, e_end)
+                    k = begin + beyond + bit % LANES
+                    if k < stop:
+                        if found < pairs.shape[0]:
+                            pairs[found, 0] = records.slot[q]
+                            pairs[found, 1] = records.slot[k & 0x7FFFFFFF]
+                        found += 1
+                beyond += LANES
+                if beyond >= longest:
+                    break
+                # beyond the end of a row, and of all rows, whatever is seen does not count
+                bits = _glance(
+                    records, radius, min(a + beyond, end), min(b + beyond, end), min(c + beyond, end),
+                    min(d + beyond, end), min(e + beyond, end), at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach,
+                )  # fmt: skip
+    return found

@@ -1,0 +1,234 @@
+r"""The time-stepped engine: all move, then those that overlap and approach collide.
+
+This is how simple programs do it. A step of length :math:`\Delta t` has three parts: everybody moves as if alone
+(`flight`, `bounce`); who now overlaps whom is found (`neighbourhood`); every pair that overlaps and still
+approaches gets the impulse of a collision (`contact`). Each collision comes late by up to one step, deeper than it
+should, and a pair that grazes may part before it is seen. With :math:`\delta = \Delta t \sqrt{kT/m} / \sigma` that
+makes, in a dilute gas,
+
+.. math:: \frac{Z - 1}{Z_{exact} - 1} = 1 - \frac{4}{\sqrt{\pi}} \delta, \qquad
+          \frac{\nu}{\nu_{exact}} = 1 - \frac{8}{3} \delta^2
+
+(in a plane :math:`3/\sqrt{\pi}` and 1). In a denser one both are low by another :math:`6.6\, \phi\, \delta` (in a plane
+2.8), because molecules that overlap leave each other more room. Energy is kept to rounding by each impulse, however
+wrong the rest: it says nothing about accuracy.
+
+The virial takes r as it is, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls aside, between
+collisions the sum of r . p changes by twice the kinetic energy alone, and at each by what the virial counts.
+
+Rotation shares the energy of a contact as in the exact engine, but for one thing. Fast pairs are seen too seldom; so an
+outcome is taken with the chance that its reverse would be seen, which keeps detailed balance, and rotation and
+translation at one temperature, for any step.
+
+Notes
+-----
+The rare things, hits on walls and collisions, are done one after the other in the order of the molecules in
+memory, whichever thread found them; so a run has the same bits for any number of threads.
+"""
+
+import functools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.contact import resolve_contact, share_energy
+from atmosbox.engine.core.jit import kernel, prange
+from atmosbox.engine.core.random import uniform
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.stepped.bounce import MIRROR, bounce
+from atmosbox.engine.stepped.filing import count_up, file_molecules
+from atmosbox.engine.stepped.flight import PARABOLA, SEMI_IMPLICIT, drift
+from atmosbox.engine.stepped.neighbourhood import find_pairs
+
+__all__ = ["State", "Step", "specialise"]
+
+_SINGLE = 2.0**-23
+
+
+class State(NamedTuple):
+    """The molecules, in an order of their own: neighbours are kept near each other in memory.
+
+    ``position``, ``velocity : (axis, slot)`` [length, length/time], ``name : (slot,)`` which molecule it is,
+    ``size : (slot,)`` its radius [length], ``cell : (slot,)`` where it stands, ``hitting : (slot,)`` room for those
+    that come near a wall, ``before : (part, 2, BLOCK)`` for where some of them were (`flight`).
+    """
+
+    position: Any
+    velocity: Any
+    name: Any
+    size: Any
+    cell: Any
+    hitting: Any
+    before: Any
+
+
+class Step(NamedTuple):
+    """One step: when it begins and how long it is [time], the ceiling then [length] and its velocity, the rules.
+
+    ``motion`` is how molecules fall (`flight`), ``rule`` what smooth walls do (`bounce`).
+    """
+
+    time: float
+    length: float
+    ceiling: float
+    ceiling_velocity: float
+    motion: int
+    rule: int
+
+
+_MOST_TRIES = 1000
+"""How often an outcome is drawn anew at most; only grazing pairs come near it."""
+
+
+@kernel
+def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, modes):
+    """Let two molecules collide that overlap and approach; count those that overlap and part.
+
+    A pair is seen if a step ends on the first half of its way through the overlap: with the chance of that half over
+    its way in a step, if that is longer. With that chance for its reverse, an outcome with another speed is taken.
+    """
+    x = state.position
+    v = state.velocity
+    rx = x[0, p] - x[0, q]
+    ry = x[1, p] - x[1, q]
+    rz = x[2, p] - x[2, q]
+    if modes.periodic:
+        rx -= box.length_x * np.rint(rx * box.inverse_x)
+        ry -= box.length_y * np.rint(ry * box.inverse_y)
+        if not (modes.gravity or modes.piston):
+            rz -= box.length_z * np.rint(rz * box.inverse_z)
+    i = np.int64(state.name[p])
+    j = np.int64(state.name[q])
+    kind = kinds.table[i if modes.mixed else 0]
+    other = kinds.table[j if modes.mixed else 0]
+    contact = kind.radius + other.radius
+    if rx * rx + ry * ry + rz * rz >= contact * contact:
+        return
+    ux = v[0, p] - v[0, q]
+    uy = v[1, p] - v[1, q]
+    uz = v[2, p] - v[2, q]
+    closing = rx * ux + ry * uy + rz * uz
+    if closing >= 0.0:
+        seen[0] += 1
+        if approaching or closing == 0.0:
+            return
+    dx, dy, dz = resolve_contact(rx, ry, rz, ux, uy, uz, kind.mass, other.mass)
+    if modes.rotation and (box.exchange >= 1.0 or uniform(tallies.random) < box.exchange):
+        spin = kinds.rotational_energy
+        square = ux * ux + uy * uy + uz * uz
+        relative = 0.5 * kind.mass * other.mass / (kind.mass + other.mass) * square
+        energy = relative + spin[i] + spin[j]
+        half = math.sqrt(max(contact * contact - rx * rx - ry * ry - rz * rz + closing * closing / square, 0.0))
+        shared = relative
+        for _ in range(_MOST_TRIES):
+            shared, spin[i], spin[j] = share_energy(
+                energy, 2.0 if box.planar else 3.0, kind.rotation, other.rotation, tallies.random
+            )
+            if uniform(tallies.random) * step_length * math.sqrt(shared / relative * square) < half:
+                break
+        # the elastic contact turns the relative velocity u into u + d (1 + m_i / m_j); now its length is scaled
+        share = 1.0 + kind.mass / other.mass
+        scale = math.sqrt(shared / relative)
+        dx = (scale * (ux + share * dx) - ux) / share
+        dy = (scale * (uy + share * dy) - uy) / share
+        dz = (scale * (uz + share * dz) - uz) / share
+    back = kind.mass / other.mass if modes.mixed else 1.0
+    v[0, p] += dx
+    v[1, p] += dy
+    v[2, p] += dz
+    v[0, q] -= back * dx
+    v[1, q] -= back * dy
+    v[2, q] -= back * dz
+    tallies.count[0] += 1
+    layer = min(max(int((x[2, p] - 0.5 * rz) * tallies.layer_scale), 0), tallies.virial.size - 1)
+    tallies.virial[layer] += kind.mass * (rx * dx + ry * dy + rz * dz)
+
+
+@functools.cache
+def specialise(modes: Modes, parallel: bool) -> Any:
+    """Return the kernel that marches, for one set of modes, on one thread or on several.
+
+    It is called as ``march(state, records, radius, kinds, grid, box, walls, tallies, pairs, numbers, seen, made,
+    total_mass, step_length, motion, rule, approaching, first, steps, phase)`` and returns how many steps are complete.
+    It stops early if ``pairs : (part, pair, 2)`` is too short; ``numbers[:, 0]`` then tells how long it should be, and
+    the step that has begun is completed when it is called again with ``phase`` 1. With ``phase`` 2 nothing moves and
+    nothing collides: only the pairs are found. ``seen[0]`` counts pairs that overlap and part, ``made[0]`` the energy
+    [energy] that the scheme makes of itself.
+    """
+
+    @kernel(entry=True, parallel=parallel)
+    def march(
+        state, records, radius, kinds, grid, box, walls, tallies, pairs, numbers, seen, made, total_mass,
+        step_length, motion, rule, approaching, first, steps, phase,
+    ):  # fmt: skip
+        """Advance by so many steps: see `specialise`."""
+        molecules = state.name.size
+        parts = pairs.shape[0] if parallel else 1
+        crude = motion != PARABOLA or rule != MIRROR
+        fall_heat = 0.0
+        if motion != PARABOLA:
+            fall_heat = 0.5 * (box.gravity * step_length) ** 2
+            if motion == SEMI_IMPLICIT:
+                fall_heat = -fall_heat
+        for it in range(steps):
+            time = (first + it) * step_length
+            speed = walls.piston[1]
+            ceiling = walls.piston[0] + speed * (time - walls.piston[2])
+            length = step_length if phase != 2 else 0.0
+            step = Step(time, length, ceiling, speed, motion, rule)
+            top = ceiling + speed * length
+            layers = max(1, min(grid.number_z, int(top / grid.thinnest)))
+            if phase != 1:
+                if modes.gravity and phase == 0:
+                    made[0] += fall_heat * total_mass
+                for part in prange(parts):
+                    numbers[part, 1] = drift(
+                        state, state.before[part], records.histogram[part],
+                        molecules * part // parts, molecules * (part + 1) // parts, step, layers, grid, box, modes,
+                    )  # fmt: skip
+                for part in range(parts):
+                    begin = molecules * part // parts
+                    for k in range(begin, begin + numbers[part, 1]):
+                        p = np.int64(state.hitting[k])
+                        if phase == 0:
+                            extra = bounce(p, state, kinds, step, box, walls, tallies, modes)
+                            if crude:
+                                mass = kinds.table[np.int64(state.name[p]) if modes.mixed else 0].mass
+                                made[0] += extra - fall_heat * mass
+                        x, y, z = state.position[0, p], state.position[1, p], state.position[2, p]
+                        ix = min(max(int(x * grid.inverse_x), 0), grid.number_x - 1)
+                        iy = min(max(int(y * grid.inverse_y), 0), grid.number_y - 1)
+                        iz = min(max(int(z * (layers / top)), 0), layers - 1)
+                        c = (iz * grid.number_y + iy) * grid.number_x + ix
+                        state.cell[p] = c
+                        records.histogram[part, c] += 1
+                if modes.contacts:
+                    count_up(records, grid.number_x * grid.number_y * layers, grid.number_x, molecules)
+                    for part in prange(parts):
+                        file_molecules(
+                            state.position, state.cell, state.size, records, radius, part,
+                            molecules * part // parts, molecules * (part + 1) // parts,
+                        )  # fmt: skip
+            if modes.contacts:
+                # single precision misplaces each coordinate by half a unit in its last digit
+                slack = 4.0 * _SINGLE * max(box.length_x, box.length_y, top)
+                for part in prange(parts):
+                    numbers[part, 0] = find_pairs(
+                        molecules * part // parts, molecules * (part + 1) // parts,
+                        layers, slack, records, radius, grid, box, pairs[part], modes,
+                    )  # fmt: skip
+                for part in range(parts):
+                    if numbers[part, 0] > pairs.shape[1]:
+                        return it
+                if phase != 2:
+                    for part in range(parts):
+                        for k in range(numbers[part, 0]):
+                            p = np.int64(pairs[part, k, 0])
+                            q = np.int64(pairs[part, k, 1])
+                            _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, modes)
+            if phase == 1:
+                phase = 0
+        return steps
+
+    return march

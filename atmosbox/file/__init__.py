@@ -1,0 +1,10 @@
+"""Files: what a run keeps, and how a file is written whole.
+
+`declaration`  how a variable of a file is declared
+`variables`    every variable that a run can put into its file, declared once
+`dataset`      the dataset of a run, with CF names and units
+`provenance`   where a file comes from: settings, seed, versions
+`output_path`  the path that something is written to: the file is there whole or not at all
+`netcdf`       datasets to netCDF files, and back
+`checkpoint`   the file of a run that is not finished
+"""

@@ -1,0 +1,140 @@
+"""The file of a run that is not finished yet, so that a run that is killed leaves a file that opens.
+
+While a run goes on, a `Checkpoint` keeps what there is so far in ``NAME.part.nc``. Each writing replaces the one
+before as a whole, as `atmosbox.file.netcdf.write` does, and the finished run takes the part's place.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import xarray as xr
+
+from atmosbox.errors import FileError
+from atmosbox.file.netcdf import AnyPath, check_writable, part_path, replace_file
+from atmosbox.file.output_path import write_failure
+
+__all__ = ["Checkpoint"]
+
+SHARE = 0.05  # of a run's time, which its checkpoints may take
+
+
+class Checkpoint:
+    """The file of a run that is not finished: call it after every frame, it writes now and then.
+
+    It writes the whole dataset so far to `part`, at most every so many seconds and so seldom that writing
+    takes less than a twentieth of the run's time. The part of an earlier run that was killed is replaced.
+
+    Parameters
+    ----------
+    path
+        The file that the finished run will have.
+    every_seconds
+        The shortest time between two writings [s].
+    force
+        Whether the finished run may replace a file.
+    clock
+        What tells the time [s].
+
+    Attributes
+    ----------
+    path, part
+        The file of the finished run, and the one of the run so far.
+    stale
+        Whether an earlier run left a part there, which the first writing will replace.
+
+    Raises
+    ------
+    FileError
+        If the file could not be written there, for one of the reasons of `atmosbox.file.netcdf.check_writable`.
+
+    Examples
+    --------
+    >>> import tempfile, xarray
+    >>> from atmosbox.file.netcdf import read
+    >>> from atmosbox.file.provenance import global_attributes
+    >>> so_far = xarray.Dataset(attrs=global_attributes({}, title="Half a box", command="a test"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     checkpoint = Checkpoint(f"{folder}/run.nc", every_seconds=0.0)
+    ...     checkpoint(lambda: so_far), read(checkpoint.part).title, checkpoint.finish(so_far).name
+    (True, 'Half a box', 'run.nc')
+    """
+
+    def __init__(
+        self,
+        path: AnyPath,
+        every_seconds: float = 2.0,
+        *,
+        force: bool = False,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.path = check_writable(path, force)
+        self.part = part_path(self.path)
+        self.stale = check_writable(self.part, force=True).exists()
+        self._force = force
+        self._every = every_seconds
+        self._clock = clock
+        self._begun = self._written = clock()
+        self._spent = self._last = 0.0
+        self._saved = False
+
+    def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
+        """Write the run so far if it is time to, and return whether it was.
+
+        Parameters
+        ----------
+        make_dataset
+            Makes the dataset of the run so far; called only if it is to be written.
+
+        Raises
+        ------
+        DiskFullError
+            If the disk is full; what was written before is kept.
+        FileError
+            If the file cannot be written any more.
+        """
+        now = self._clock()
+        expected = self._spent + 1.5 * self._last  # the file has grown since
+        if now - self._written < self._every or expected > SHARE * (now - self._begun):
+            return False
+        self.save(make_dataset())
+        self._written = self._clock()
+        self._last = self._written - now
+        self._spent += self._last
+        return True
+
+    def save(self, dataset: xr.Dataset) -> Path:
+        """Write the run so far at once, for instance when it is interrupted, and return where it is."""
+        replace_file(self.part, dataset)
+        self._saved = True
+        return self.part
+
+    def finish(self, dataset: xr.Dataset) -> Path:
+        """Write the finished run under its own name, remove the part, and return the file.
+
+        Raises
+        ------
+        DiskFullError
+            If the disk is full; the part that was written before is kept.
+        FileError
+            If a file of that name has appeared meanwhile; the finished run is kept as the part.
+        """
+        self.save(dataset)
+        if self.path.exists() and not self._force:
+            raise FileError(
+                f"{self.path} was made by another program during the run, which is whole in {self.part}: "
+                "move the one or the other to a new name."
+            )
+        try:
+            os.replace(self.part, self.path)
+        except OSError as error:
+            raise write_failure(error, self.path) from error
+        return self.path
+
+    def abandon(self) -> None:
+        """Remove the part that this run has written, when nothing of it is worth keeping."""
+        if self._saved:
+            self.part.unlink(missing_ok=True)

@@ -1,0 +1,189 @@
+"""The dataset of a run: its numbers in SI, with the names, units and CF attributes that `VARIABLES` declares."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from atmosbox.errors import EngineError
+from atmosbox.file.declaration import SUFFIXES, Variable, derived
+from atmosbox.file.variables import VARIABLES, variable
+
+__all__ = ["VARIABLES", "Variable", "dataset", "headline_variables", "variable"]
+
+_LABELS = {"wall": ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high"), "axis": ("x", "y", "z")}
+
+
+class _Headline(Protocol):
+    """One of the few numbers that a run is about, as a scene states it; None where it states nothing."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> float | None: ...
+    @property
+    def standard_error(self) -> float | None: ...
+    @property
+    def theory(self) -> float | None: ...
+    @property
+    def tolerance(self) -> float | None: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def display_unit(self) -> str: ...
+    @property
+    def label(self) -> str: ...
+    @property
+    def reason(self) -> str | None: ...
+
+
+def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
+    """Return the variables that hold one headline: its value, error, answer and tolerance.
+
+    Parameters
+    ----------
+    headline
+        The headline in SI units. A value of None becomes NaN, another None no variable.
+
+    Returns
+    -------
+    dict
+        Variables without dimensions by their names; the attribute ``display_units`` keeps the unit in which
+        a table shows them.
+
+    Examples
+    --------
+    >>> from atmosbox.scene.headline import Headline
+    >>> warm = Headline("final", 300.0, 0.5, None, 0.0, "", "K", "degC", "temperature at the end")
+    >>> held = headline_variables(warm)
+    >>> {name: float(number) for name, number in held.items()}, held["final"].attrs["display_units"]
+    ({'final': 300.0, 'final_se': 0.5, 'final_tolerance': 0.0}, 'degC')
+    """
+    parent = Variable(headline.name, (), headline.unit, headline.label, comment=headline.reason or None)
+    stated = {
+        parent: math.nan if headline.value is None else headline.value,
+        derived(parent, "_se"): headline.standard_error,
+        derived(parent, "_theory"): headline.theory,
+        derived(parent, "_tolerance"): headline.tolerance,
+    }
+    held = {
+        entry.name: xr.Variable((), float(number), entry.attributes(), entry.encoding(()))
+        for entry, number in stated.items()
+        if number is not None
+    }
+    held[parent.name].attrs["display_units"] = headline.display_unit
+    return held
+
+
+def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Return the values in their declared type, refused where they break the books."""
+    array = np.asarray(values)
+    if array.ndim != len(declared.dims):
+        raise ValueError(f"{declared.name} has the shape {array.shape}, but the dimensions {declared.dims}")
+    if declared.dtype == "U":
+        return array.astype(str)
+    if (declared.ledger or declared.dtype[0] == "i") and not np.isfinite(array).all():
+        place = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
+        raise EngineError(f"{declared.name} is not finite at {place}: the books of the run do not close any more.")
+    return array.astype(declared.dtype)
+
+
+def _coordinate(name: str, values: npt.ArrayLike, time_unit: str) -> xr.Variable:
+    """Return a coordinate or its bounds."""
+    if name.endswith("_bnds"):
+        parent = VARIABLES[name.removesuffix("_bnds")]
+        declared = replace(parent, name=name, dims=(*parent.dims, "bounds"))
+        return xr.Variable(declared.dims, _array(declared, values), {}, declared.encoding(()))
+    declared = VARIABLES[name]
+    if declared.dims != (name,):
+        raise KeyError(f"{name!r} is no coordinate")
+    array = _array(declared, values)
+    if declared.dtype != "U" and (np.diff(array) <= 0).any():
+        raise ValueError(f"the coordinate {name} does not rise from each value to the next")
+    attrs = declared.attributes() | ({"units": time_unit} if name == "elapsed_time" else {})
+    return xr.Variable(declared.dims, array, attrs, declared.encoding(array.shape))
+
+
+def dataset(
+    frames: Mapping[str, npt.ArrayLike],
+    coords: Mapping[str, npt.ArrayLike],
+    attrs: Mapping[str, Any],
+    headlines: Iterable[_Headline] = (),
+    time_unit: str = "ns",
+) -> xr.Dataset:
+    """Put the numbers of a run into one dataset that carries all that CF asks for.
+
+    Parameters
+    ----------
+    frames
+        Arrays by the name of their variable, in SI, with the dimensions that `variable` declares.
+    coords
+        Arrays by the name of their coordinate: ``elapsed_time`` in `time_unit`, the others in SI, and the
+        bounds of their cells as ``elapsed_time_bnds``, ``height_bnds``, ``speed_bnds``, ``energy_bnds``, shape (n, 2).
+        The labels of six walls and three axes need not be given.
+    attrs
+        The global attributes.
+    headlines
+        The numbers that the run is about.
+    time_unit
+        The unit of ``elapsed_time``: s, ns or ps.
+
+    Returns
+    -------
+    xarray.Dataset
+        Coordinates, variables and headlines; ``atmosbox_headlines`` lists the names of the headlines.
+
+    Raises
+    ------
+    KeyError
+        If a name is not declared, or a dimension lacks its coordinate.
+    ValueError
+        If a shape is not the declared one, a coordinate does not rise, or a headline bears a variable's name.
+    EngineError
+        If a value of a ledger variable or a count is not finite.
+
+    Examples
+    --------
+    >>> run = dataset(
+    ...     {"air_temperature": [300.0, 301.0]}, {"elapsed_time": [0.5, 1.0]}, {"title": "A box of air"}
+    ... )
+    >>> run.air_temperature.sel(elapsed_time=1.0).item(), run.elapsed_time.units
+    (301.0, 'ns')
+    """
+    if time_unit not in ("s", "ns", "ps"):
+        raise ValueError(f"elapsed_time cannot be in {time_unit!r}, only in s, ns or ps")
+    held: dict[str, xr.Variable] = {}
+    for name, values in frames.items():
+        declared = variable(name)
+        array = _array(declared, values)
+        held[name] = xr.Variable(declared.dims, array, declared.attributes(), declared.encoding(array.shape))
+    sizes = {dim: size for entry in held.values() for dim, size in entry.sizes.items()}
+    given = {dim: names for dim, names in _LABELS.items() if sizes.get(dim) == len(names)} | dict(coords)
+    axes = {name: _coordinate(name, values, time_unit) for name, values in given.items()}
+    for dim in sizes:
+        if dim not in axes and dim not in ("molecule", "drop"):
+            raise KeyError(f"the dimension {dim!r} has no coordinate")
+    for name in axes:
+        if f"{name}_bnds" in axes:
+            axes[name].attrs["bounds"] = f"{name}_bnds"
+    names = []
+    for headline in headlines:
+        names.append(headline.name)
+        for name, entry in headline_variables(headline).items():
+            if name in held or name in axes:
+                raise ValueError(f"the headline {name} has the name of a variable")
+            held[name] = entry
+    for name, entry in held.items():
+        companions = [name + suffix for suffix in SUFFIXES if name + suffix in held]
+        if companions:
+            entry.attrs["ancillary_variables"] = " ".join(companions)
+    bounds = {name: entry for name, entry in axes.items() if name.endswith("_bnds")}
+    only = {name: entry for name, entry in axes.items() if name not in bounds}
+    return xr.Dataset(bounds | held, only, {**attrs, "atmosbox_headlines": json.dumps(names)})

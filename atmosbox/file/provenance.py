@@ -1,0 +1,177 @@
+"""What a file says of where it comes from, and how the run can be repeated from that."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.errors import FileError, SettingError
+from atmosbox.version import __version__
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["FORMAT", "global_attributes", "history_line", "moment", "parameters"]
+
+FORMAT = 1
+"""The version of the layout of the files, in the attribute ``atmosbox_format``."""
+
+
+def moment() -> str:
+    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that the same run can have the same content.
+
+    Returns
+    -------
+    str
+        For example ``2026-11-21T11:18:00Z``.
+
+    Raises
+    ------
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> len(moment())
+    20
+    """
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    try:
+        now = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+    except (ValueError, OverflowError, OSError):
+        problem, fix = "is not a number of seconds since 1970", "type unset SOURCE_DATE_EPOCH"
+        raise SettingError("SOURCE_DATE_EPOCH", epoch, problem, fix) from None
+    return now.strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def history_line(command: str | Sequence[str]) -> str:
+    """Return the line that a step adds to a file's history: the time in UTC and the command.
+
+    Parameters
+    ----------
+    command
+        The command as typed, or its words.
+
+    Returns
+    -------
+    str
+        For example ``2026-11-21T11:18:00Z: atmosbox run lifting-dry --seed 7``.
+
+    Raises
+    ------
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> history_line(["atmosbox", "plot", "my run.nc"]).partition(": ")[2]
+    "atmosbox plot 'my run.nc'"
+    """
+    return f"{moment()}: {command if isinstance(command, str) else shlex.join(command)}"
+
+
+def global_attributes(
+    parameters: Mapping[str, Any],
+    *,
+    title: str,
+    command: str | Sequence[str],
+    comment: str = "",
+    references: str = "",
+    panels: str = "[]",
+    status: str = "complete",
+) -> dict[str, Any]:
+    """Return what a file says about itself: what it is, where it comes from and how to repeat it.
+
+    Parameters
+    ----------
+    parameters
+        Everything that makes the run, as JSON can hold it: ``scene``, ``settings``, ``engine``, ``version``.
+    title
+        What the file holds, in a line.
+    command
+        The command that made it, as typed, or its words.
+    comment
+        The assumptions of the scene.
+    references
+        What the scene is built on.
+    panels
+        The scene's figure, as JSON.
+    status
+        ``complete``, ``partial`` or ``interrupted``.
+
+    Returns
+    -------
+    dict
+        The global attributes by their names.
+
+    Raises
+    ------
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> made = global_attributes(
+    ...     {"scene": "temperature", "engine": "exact"}, title="A box", command="atmosbox run temperature"
+    ... )
+    >>> made["Conventions"], made["atmosbox_parameters"]
+    ('CF-1.11', '{"scene": "temperature", "engine": "exact"}')
+    """
+    version = str(parameters.get("version", __version__))
+    engine = parameters.get("engine")
+    attributes: dict[str, Any] = {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "institution": "not stated; a simulation for teaching",
+        "source": f"atmosbox {version}, colliding hard spheres" + (f", {engine} engine" if engine else ""),
+        "history": history_line(command),
+        "references": references,
+        "comment": comment,
+        "license": "CC0-1.0",
+        "date_created": moment(),
+        "product_version": version,
+        "atmosbox_format": FORMAT,
+        "atmosbox_status": status,
+        "atmosbox_parameters": json.dumps(dict(parameters), allow_nan=False),
+        "atmosbox_panels": panels,
+    }
+    return {name: value for name, value in attributes.items() if value != ""}
+
+
+def parameters(dataset: xr.Dataset) -> dict[str, Any]:
+    """Return everything that made a run, from which it can be repeated.
+
+    Parameters
+    ----------
+    dataset
+        A run.
+
+    Returns
+    -------
+    dict
+        ``scene``, ``settings``, ``engine`` and ``version``, as `global_attributes` was given them.
+
+    Raises
+    ------
+    FileError
+        If the dataset does not say, or says something that is not JSON.
+
+    Examples
+    --------
+    >>> import xarray
+    >>> made = global_attributes({"scene": "temperature"}, title="A box", command="a test")
+    >>> parameters(xarray.Dataset(attrs=made))
+    {'scene': 'temperature'}
+    """
+    try:
+        found = json.loads(dataset.attrs["atmosbox_parameters"])
+    except (KeyError, TypeError, ValueError):
+        found = None
+    if not isinstance(found, dict):
+        name = dataset.encoding.get("source", "This dataset")
+        raise FileError(f"{name} does not say which run it holds: give a file that atmosbox run has written.")
+    return found

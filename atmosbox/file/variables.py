@@ -1,0 +1,245 @@
+"""Every variable that a run can put into its file, declared once.
+
+A variable's name, dimensions, unit and CF names stand in `VARIABLES` and nowhere else. A name that ends in
+``_se``, ``_count``, ``_theory`` or ``_tolerance`` needs no entry of its own: `variable` derives it from its
+parent, as the standard error, the number of samples, the closed-form answer or the deviation allowed. What a
+declaration says is told in :mod:`atmosbox.file.declaration`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from atmosbox.file.declaration import SUFFIXES, Variable, derived
+
+__all__ = ["VARIABLES", "variable"]
+
+_TIME, _MOLECULE, _PATH = ("elapsed_time",), ("molecule",), ("elapsed_time", "molecule", "axis")
+_MEAN, _POINT = "elapsed_time: mean", "elapsed_time: point"
+_SUM = "Summed since the start of the run."
+
+
+def _declared(dims: tuple[str, ...], *rows: tuple[str, ...], **common: Any) -> dict[str, Variable]:
+    """Return variables of the same dimensions, each row a name, a unit, the words and a CF standard name."""
+    return {
+        name: Variable(name, dims, unit, words, standard[0] if standard else None, **common)
+        for name, unit, words, *standard in rows
+    }
+
+
+VARIABLES: dict[str, Variable] = {
+    # Coordinates
+    **_declared(_TIME, ("elapsed_time", "s", "time since the start of the run"), ledger=True),
+    **_declared(("height",), ("height", "m", "height of the middle of the layer", "height"),
+                axis="Z", positive="up", ledger=True),
+    **_declared(("speed",), ("speed", "m s-1", "speed of a molecule, middle of the bin"), ledger=True),
+    **_declared(("energy",), ("energy", "J", "energy of a molecule of water above that of one at rest in the liquid, "
+                 "middle of the bin"), ledger=True),
+    **_declared(("wall",), ("wall", "", "wall of the box"), dtype="U"),
+    **_declared(("axis",), ("axis", "", "direction in space, z upwards"), dtype="U"),
+    **_declared(_MOLECULE, ("molecule", "1", "number of the molecule"), dtype="i8"),
+    # Every run, frame by frame
+    **_declared(
+        _TIME,
+        ("air_temperature", "K", "temperature of the air in the box", "air_temperature"),
+        ("air_pressure", "Pa", "pressure of the air on the walls", "air_pressure"),
+        cell_methods=_MEAN,
+    ),
+    **_declared(
+        _TIME,
+        ("kinetic_energy", "J", "kinetic energy of the molecules"),
+        ("rotational_energy", "J", "rotational energy of the molecules"),
+        ("potential_energy", "J", "potential energy of the molecules in gravity"),
+        ("numerical_heat", "J", "energy that the scheme of an approximate engine has made by itself"),
+        ("ledger_residual", "1", "energy missing from the ledger, as a share of what there is or has passed"),
+        cell_methods=_POINT, ledger=True,
+    ),
+    **_declared(
+        _TIME,
+        ("collision_count", "1", "number of collisions between molecules"),
+        ("wall_hit_count", "1", "number of hits of molecules on walls"),
+        cell_methods=_POINT, comment=_SUM, dtype="i8",
+    ),
+    **_declared(_TIME, ("work_by_piston", "J", "work done on the molecules by the piston"),
+                ("work_by_gravity", "J", "energy given to the molecules by changes of gravity"),
+                cell_methods=_POINT, comment=_SUM, ledger=True),
+    **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, which was changed by hand"),
+                cell_methods=_POINT),
+    **_declared((*_TIME, "wall"), ("heat_from_wall", "J", "heat given to the molecules by the wall"),
+                cell_methods=_POINT, comment=_SUM, ledger=True),
+    **_declared((*_TIME, "wall"), ("wall_pressure", "Pa", "pressure of the air on the wall", "air_pressure"),
+                cell_methods=_MEAN),
+    **_declared(_TIME, ("air_temperature_noise", "K", "expected scatter of a thermometer of so few molecules"),
+                difference=True),
+    **_declared((*_TIME, "wall"), ("wall_temperature", "K", "temperature of the wall"), cell_methods=_POINT),
+    # A parcel that is lifted
+    **_declared(
+        _TIME,
+        ("parcel_temperature", "K", "temperature of the parcel", "air_temperature"),
+        ("parcel_pressure", "Pa", "pressure of the parcel", "air_pressure"),
+        ("parcel_potential_temperature", "K", "potential temperature of the parcel, reduced to 1000 hPa",
+         "air_potential_temperature"),
+        cell_methods=_POINT,
+    ),
+    **_declared(_TIME, ("parcel_height", "m", "height of the parcel above the ground", "height"),
+                positive="up"),
+    **_declared(
+        _TIME,
+        ("environment_temperature", "K", "temperature of the air around the parcel", "air_temperature"),
+        ("environment_dew_point_temperature", "K", "dewpoint of the air around the parcel", "dew_point_temperature"),
+        ("environment_virtual_temperature", "K", "virtual temperature of the air around the parcel",
+         "virtual_temperature"),
+        ("parcel_virtual_temperature", "K", "virtual temperature of the parcel, without the weight of its droplets",
+         "virtual_temperature"),
+        ("parcel_buoyancy", "m s-2", "buoyancy of the parcel"),
+        ("environment_pressure", "Pa", "pressure of the air around the parcel", "air_pressure"),
+        ("adiabat_temperature", "K", "temperature of the adiabat at this pressure", "air_temperature"),
+        ("dry_air_adiabat_temperature", "K", "temperature of the adiabat of dry air at this pressure",
+         "air_temperature"),
+    ),
+    **_declared(
+        _TIME,
+        ("parcel_volume", "m3", "volume of the parcel"),
+        ("piston_height", "m", "distance of the piston from the floor of the box"),
+        ("piston_velocity", "m s-1", "velocity of the piston, positive outwards"),
+        cell_methods=_POINT, ledger=True,
+    ),
+    # Water
+    **_declared(
+        _TIME,
+        ("water_vapor_partial_pressure", "Pa", "vapour pressure", "water_vapor_partial_pressure_in_air"),
+        ("saturation_vapor_pressure", "Pa", "saturation vapour pressure at the temperature of the air, over water"),
+        ("relative_humidity", "1", "relative humidity", "relative_humidity"),
+        ("humidity_mixing_ratio", "kg kg-1", "mass of vapour per mass of dry air", "humidity_mixing_ratio"),
+        ("cloud_liquid_water_mixing_ratio", "kg kg-1", "mass of liquid water per mass of dry air",
+         "cloud_liquid_water_mixing_ratio"),
+        ("rain_mixing_ratio", "kg kg-1", "mass of water that has rained out so far per mass of dry air"),
+        ("liquid_temperature", "K", "temperature of the liquid water"),
+        ("drop_area", "m2", "area of all drops on which molecules hit them"),
+        ("condensation_rate", "s-1", "number of molecules that condense per time"),
+        ("evaporation_rate", "s-1", "number of molecules that evaporate per time"),
+        cell_methods=_MEAN,
+    ),
+    **_declared(
+        _TIME,
+        ("vapor_molecule_count", "1", "number of molecules of vapour"),
+        ("liquid_molecule_count", "1", "number of molecules in the liquid"),
+        ("rained_molecule_count", "1", "number of molecules that have left as rain"),
+        ("drop_count", "1", "number of drops"),
+        cell_methods=_POINT, dtype="i8",
+    ),
+    **_declared(_TIME, ("largest_drop_radius", "m", "radius of the largest drop"), cell_methods=_POINT),
+    **_declared(
+        _TIME,
+        ("condensed_energy", "J", "energy of liquid and rain, and of what the vapour is above the liquid"),
+        cell_methods=_POINT, ledger=True,
+    ),
+    **_declared(
+        _TIME,
+        ("gas_temperature", "K", "temperature of air and vapour by all their energy, rotation included",
+         "air_temperature"),
+        ("liquid_saturation_vapor_pressure", "Pa", "saturation vapour pressure at the temperature of the liquid"),
+        cell_methods=_MEAN,
+    ),
+    # Molecules that leave the liquid and those that stay, by energy
+    **_declared(
+        ("energy",),
+        ("leaving_energy_probability_density", "J-1", "share of the molecules that evaporate per unit of energy"),
+        ("staying_energy_probability_density", "J-1", "share of the molecules in the liquid per unit of energy"),
+        cell_methods="energy: mean",
+    ),
+    # A column of air, layer by layer
+    **_declared(
+        ("height",),
+        ("number_density", "m-3", "number of molecules in a cubic metre of the layer"),
+        ("air_density", "kg m-3", "density of the layer", "air_density"),
+        ("layer_temperature", "K", "temperature of the layer", "air_temperature"),
+        ("layer_pressure", "Pa", "pressure of the layer", "air_pressure"),
+        cell_methods="height: mean",
+    ),
+    **_declared(
+        ("height",),
+        ("number_density_barometric", "m-3", "number density by the barometric law"),
+        ("layer_pressure_barometric", "Pa", "pressure by the barometric law", "air_pressure"),
+        ("layer_temperature_standard", "K", "temperature of the standard atmosphere", "air_temperature"),
+        cell_methods="height: mean",
+    ),
+    # Speeds, bin by bin
+    **_declared(("speed",), ("speed_probability_density", "s m-1", "share of molecules per unit of speed"),
+                cell_methods="speed: mean"),
+    # Discs that collide in a plane
+    **_declared(
+        _TIME,
+        ("kinetic_energy_light", "J", "mean kinetic energy of a disc of the light half"),
+        ("kinetic_energy_heavy", "J", "mean kinetic energy of a disc of the heavy half"),
+        ("running_energy_light", "J", "mean kinetic energy of a light disc since the start"),
+        ("running_energy_heavy", "J", "mean kinetic energy of a heavy disc since the start"),
+        ("energy_change", "1", "change of the kinetic energy since the start, as a share of it"),
+        ("momentum_residual", "1", "momentum that neither the discs have nor the walls took, as a share"),
+        cell_methods=_POINT, ledger=True,
+    ),
+    **_declared((*_TIME, "axis"), ("momentum", "kg m s-1", "total momentum of the discs"),
+                cell_methods=_POINT, ledger=True),
+    **_declared(("axis",), ("box_length", "m", "length of the box"), ledger=True),
+    **_declared(
+        _PATH,
+        ("disc_position", "m", "position of the middle of the disc"),
+        ("disc_velocity", "m s-1", "velocity of the disc"),
+        cell_methods=_POINT, ledger=True,
+    ),
+    **_declared(_MOLECULE, ("disc_mass", "kg", "mass of the disc"), ledger=True),
+    **_declared(_MOLECULE, ("disc_diameter", "m", "diameter of the disc"), ledger=True),
+    # Molecules, on request; one that condensed has no position
+    **_declared(_PATH, ("molecule_position", "m", "position of the molecule"),
+                cell_methods=_POINT, dtype="f4"),
+    **_declared(_PATH[:2], ("molecule_speed", "m s-1", "speed of the molecule"),
+                cell_methods=_POINT, dtype="f4"),
+    **_declared(_MOLECULE, ("species", "", "species of the molecule"),
+                dtype="i1", flags=("dry_air", "water")),
+    **_declared(_MOLECULE, ("molecule_mass", "kg", "mass of the molecule"), ledger=True),
+    **_declared(_MOLECULE, ("molecule_diameter", "m", "diameter with which the molecule collides"), ledger=True),
+    # The box around them, and the drops in it; those that have merged into others have no position
+    **_declared((*_TIME, "axis"), ("box_side", "m", "length of the box at this time"),
+                cell_methods=_POINT, ledger=True),
+    **_declared(("wall",), ("wall_law", "", "what the wall does to a molecule that hits it"),
+                dtype="i1", flags=("specular", "periodic", "heat_bath", "piston", "pool")),
+    **_declared((*_TIME, "drop", "axis"), ("drop_position", "m", "position of the middle of the drop"),
+                cell_methods=_POINT),
+    **_declared((*_TIME, "drop"), ("drop_radius", "m", "radius of the drop"), cell_methods=_POINT),
+}  # fmt: skip
+"""Every variable of a file by its name."""
+
+
+def variable(name: str) -> Variable:
+    """Return what is declared under a name, also under that of a standard error or of an answer.
+
+    Parameters
+    ----------
+    name
+        A name in `VARIABLES`, or one with ``_se``, ``_count``, ``_theory`` or ``_tolerance`` behind it.
+
+    Returns
+    -------
+    Variable
+        The declaration.
+
+    Raises
+    ------
+    KeyError
+        If nothing of that name is declared.
+
+    Examples
+    --------
+    The error of a temperature is a difference of temperatures, so 1 K is not -272.15 degC:
+
+    >>> error = variable("air_temperature_se")
+    >>> error.standard_name, error.units_metadata
+    ('air_temperature standard_error', 'temperature: difference')
+    """
+    if name in VARIABLES:
+        return VARIABLES[name]
+    for suffix in SUFFIXES:
+        parent = VARIABLES.get(name.removesuffix(suffix))
+        if parent is not None and name.endswith(suffix):
+            return derived(parent, suffix)
+    raise KeyError(f"{name!r} is not declared in atmosbox.file.dataset.VARIABLES")

@@ -1,0 +1,143 @@
+"""A film as a file: it appears only when it is whole, and the same run gives the same GIF."""
+
+from __future__ import annotations
+
+import os
+import uuid
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox.errors import FileError
+from atmosbox.file.output_path import named, write_whole
+from atmosbox.film.encoder import Picture, encode_gif, encode_mp4, movie_program
+from atmosbox.film.film_box import box, has_discs, has_molecules
+from atmosbox.film.film_sheet import Sheet
+from atmosbox.film.pace import Pace, pace
+from atmosbox.plot.plane import discs
+from atmosbox.plot.theme import Theme, find, style
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["FORMATS", "save"]
+
+FORMATS = ("gif", "mp4")
+_SIZES = {"gif": {"notes": (800, 450), "slides": (960, 540)}, "mp4": {"notes": (1280, 720), "slides": (1280, 720)}}
+_WIDE = {"notes": 7.2, "slides": 40.0 / 3.0}  # inch
+_SMOOTH = 0.1  # where molecules move less from frame to frame, in sides of the box, they are seen to move
+_CHOSEN_FROM = 6  # pictures from which the colours of a GIF are chosen
+
+
+def save(
+    dataset: xr.Dataset,
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    *,
+    theme: str = "notes",
+    fps: float | None = None,
+    seconds: float | None = None,
+    graphs: bool = False,
+    force: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Path, Pace]:
+    """Film a run into a file.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, with its molecules unless `graphs` are wanted alone.
+    path : str or path-like
+        The file. Its suffix says the format; where ``format`` says it, a suffix that is missing is added.
+    format : {"gif", "mp4"}, optional
+        The format; MP4 needs the extra ``movie``.
+    theme : {"notes", "slides"}
+        Small type for a page, or large type for a screen.
+    fps, seconds : float, optional
+        Pictures a second, and how long the film lasts; see `pace`.
+    graphs : bool
+        Whether the graphs are filmed alone.
+    force : bool
+        Whether a file of that name may be replaced.
+    progress : callable, optional
+        Told how much is done, from 0 to 1.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+    Pace
+        Its pictures.
+
+    Raises
+    ------
+    FileError
+        If the file exists, cannot be written, or the run has nothing to film.
+    SettingError
+        If format, theme, pace or length are none, or an MP4 is wanted and the extra ``movie`` is not installed.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> save(xr.Dataset(), "parcel.avi")
+    Traceback (most recent call last):
+    atmosbox.errors.SettingError: format = avi is unknown: give a file name or --format of gif or mp4.
+    """
+    path, kind = named(path, format, FORMATS, force=force, what="film")
+    look = sized(find(theme), kind)
+    if kind == "mp4":
+        movie_program()
+    count = dataset.sizes.get("elapsed_time", 0)
+    if not graphs and not has_discs(dataset) and not has_molecules(dataset):
+        raise FileError(
+            f"{dataset.encoding.get('source', 'The file')} has no molecules to film: run the scene again with "
+            "--save-molecules, or film its graphs alone with --graphs."
+        )
+    smooth = count > 1 and not graphs and _step(dataset) < _SMOOTH
+    chosen = pace(max(count, 1), fps=fps, seconds=seconds, smooth=smooth)
+    with style(look):
+        sheet = Sheet(dataset, look, graphs=graphs, frames=chosen.frames)
+
+        def pictures() -> Iterator[Picture]:
+            for done, frame in enumerate(chosen.frames, 1):
+                yield sheet.picture(int(frame))
+                if progress is not None:
+                    progress(done / chosen.frames.size)
+
+        if kind == "gif":
+            some = np.linspace(0, chosen.frames.size - 1, min(_CHOSEN_FROM, chosen.frames.size)).round().astype(int)
+            samples = [sheet.picture(int(chosen.frames[each])) for each in some]
+            write_whole(path, encode_gif(pictures(), samples, chosen.fps))
+        else:
+            part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
+            try:
+                encode_mp4(pictures(), part, chosen.fps)
+                os.replace(part, path)
+            finally:
+                part.unlink(missing_ok=True)
+    return path, chosen
+
+
+def sized(theme: Theme, kind: str) -> Theme:
+    """Return a theme with the size that the pictures of a film have.
+
+    Examples
+    --------
+    >>> look = sized(find("notes"), "gif")
+    >>> [round(look.dots_per_inch * side) for side in look.wide]
+    [800, 450]
+    """
+    wide, high = _SIZES[kind][theme.name]
+    dots = wide / _WIDE[theme.name]
+    return replace(theme, wide=(wide / dots, high / dots), dots_per_inch=dots, grows=False)
+
+
+def _step(dataset: xr.Dataset) -> float:
+    """Return how far molecules are from where they were a frame before, in sides of the box."""
+    if has_molecules(dataset):
+        return box(dataset).step
+    found = discs(dataset, "m")
+    return float(np.median(np.linalg.norm(np.diff(found.place, axis=0), axis=2)) / np.ptp(found.box[:, 0]))

@@ -1,0 +1,67 @@
+"""The page of a run as a file, which is there whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from atmosbox.errors import SettingError
+from atmosbox.file.output_path import write_whole
+from atmosbox.page.document import THEMES, view_page
+from atmosbox.page.frame import pack
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["save"]
+
+
+def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str = "auto", force: bool = False) -> Path:
+    """Write the page that shows a run, or two side by side.
+
+    Parameters
+    ----------
+    runs : sequence of xarray.Dataset
+        One run or two, with their molecules, as `atmosbox.file.netcdf.read` returns them.
+    path : str or path-like
+        The file; it should end in ``.html``.
+    theme : {"auto", "light", "dark"}
+        The colours of the page.
+    force : bool
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+
+    Raises
+    ------
+    FileError
+        If a run holds no molecules, or the file cannot be written.
+    SettingError
+        If the theme is unknown.
+
+    Notes
+    -----
+    Neither the date nor chance enters the page: the same runs give the same bytes.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> save([xr.Dataset()], "page.html", theme="pink")
+    Traceback (most recent call last):
+    atmosbox.errors.SettingError: theme = pink is unknown: give --theme auto, light or dark.
+    """
+    from atmosbox.file.netcdf import check_writable
+    from atmosbox.page.saved_run import pages
+
+    if theme not in THEMES:
+        raise SettingError("theme", theme, "is unknown", f"give --theme {', '.join(THEMES[:-1])} or {THEMES[-1]}")
+    target = check_writable(path, force)
+    told = pages(runs)
+    text = view_page([page.record for page in told], [pack(page.frames) for page in told], theme=theme)
+    write_whole(target, text.encode("utf-8"))
+    return target

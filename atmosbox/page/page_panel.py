@@ -1,0 +1,159 @@
+"""The graphs of a scene, as the page is told of them: which values, and how SI becomes the unit that is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.file.variables import variable
+from atmosbox.scene.panels import Line, Panel
+
+__all__ = ["Meaning", "declared", "names", "panel_record"]
+
+
+class Meaning(NamedTuple):
+    """What a variable is: its unit in the file, and its words."""
+
+    unit: str
+    words: str
+
+
+def declared(name: str, time_unit: str = "ns") -> Meaning:
+    """Return what a variable means, by its declaration.
+
+    Parameters
+    ----------
+    name : str
+        Its name; "heat_from_wall[z_low]" is the part of it at a label.
+    time_unit : str
+        The unit of the elapsed time.
+
+    Returns
+    -------
+    Meaning
+        Its unit and its words; of a name that nobody declared, "1" and the name itself.
+
+    Examples
+    --------
+    >>> declared("air_pressure"), declared("elapsed_time", "ps").unit
+    (Meaning(unit='Pa', words='pressure of the air on the walls'), 'ps')
+    """
+    name = name.partition("[")[0]
+    if name == "elapsed_time":
+        return Meaning(time_unit, "time")
+    try:
+        found = variable(name)
+    except KeyError:
+        return Meaning("1", name.replace("_", " "))
+    return Meaning(found.units or "1", found.long_name)
+
+
+def names(panels: Iterable[Panel]) -> tuple[str, ...]:
+    """Return the variables that the graphs of the page need, each once.
+
+    Parameters
+    ----------
+    panels : iterable of Panel
+        The panels of the scene. One of the kind ``discs`` needs none, for the stage itself shows the discs.
+
+    Returns
+    -------
+    tuple of str
+        Names, in order.
+
+    Examples
+    --------
+    >>> names([Panel("line", "Air", (Line("elapsed_time", "air_pressure", "walls"),)), Panel("discs", "The box")])
+    ('elapsed_time', 'air_pressure')
+    """
+    return tuple(dict.fromkeys(name for panel in panels if panel.kind != "discs" for name in panel.variables))
+
+
+def panel_record(
+    panel: Panel,
+    meaning: Callable[[str], Meaning],
+    *,
+    sentences: Sequence[str] = (),
+    marks: dict[str, float] | None = None,
+) -> dict[str, Any]:
+    """Return a panel as the page is told of it.
+
+    Parameters
+    ----------
+    panel : Panel
+        The panel, of any kind but ``discs``.
+    meaning : callable
+        Tells the unit and the words of a variable by its name.
+    sentences : sequence of str
+        The headline numbers that it carries.
+    marks : dict of str to float, optional
+        Pressures that a skew-T marks [hPa].
+
+    Returns
+    -------
+    dict
+        What JSON can hold. A value of a line is shown as ``value * factor + offset``.
+
+    Raises
+    ------
+    FileError
+        If the unit of a variable cannot be turned into that of the panel.
+
+    Examples
+    --------
+    >>> air = Line("elapsed_time", "air_temperature", "air")
+    >>> record = panel_record(Panel("line", "Temperature", (air,), y_unit="degC"), declared)
+    >>> record["y"]["unit"], record["lines"][0]["y"]
+    ('°C', {'name': 'air_temperature', 'factor': 1.0, 'offset': -273.15})
+    """
+    from atmosbox.plot.unit import of_difference, spelled
+
+    first = panel.lines[0]
+    shown = {
+        "x": panel.x_unit or meaning(first.x).unit,
+        "y": panel.y_unit or meaning(first.y).unit,
+    }
+    measured = "x" if panel.measured_across else "y"
+    labels = {"x": panel.x_label or meaning(first.x).words, "y": panel.y_label or meaning(first.y).words}
+    units = dict(shown)
+    if first.minus is not None:
+        units[measured] = of_difference(shown[measured])
+    scales = {"x": (panel.x_scale, panel.x_invert), "y": (panel.y_scale, panel.y_invert)}
+    return {
+        "kind": panel.kind,
+        "title": panel.title,
+        "note": panel.note,
+        "across": panel.measured_across,
+        "averages": panel.averages,
+        "sentences": list(sentences),
+        "marks": marks or {},
+        **{
+            axis: {
+                "label": labels[axis],
+                "unit": "" if units[axis] == "1" else spelled(units[axis]),
+                "log": scales[axis][0] == "log",
+                "invert": scales[axis][1],
+            }
+            for axis in ("x", "y")
+        },
+        "lines": [_line_record(line, shown, measured, meaning) for line in panel.lines],
+    }
+
+
+def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Callable[[str], Meaning]) -> dict[str, Any]:
+    """Return a line of a panel, each of its variables with the way into the unit that is shown."""
+
+    def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
+        from atmosbox.plot.unit import convert
+
+        zero, one = convert(np.array([0.0, 1.0]), meaning(name).unit, unit, name=name, difference=difference)
+        return {"name": name, "factor": float(f"{one - zero:.12g}"), "offset": float(f"{zero:.12g}")}
+
+    record = {"label": line.label, "role": line.role, "x": way(line.x, shown["x"]), "y": way(line.y, shown["y"])}
+    if line.error is not None:
+        record["error"] = way(line.error, shown[measured], difference=True)
+    if line.minus is not None:
+        record["minus"] = way(line.minus, shown[measured])
+    return record

@@ -1,0 +1,289 @@
+"""What there is to see, said once: the box, the molecules and how they are drawn, the graphs, the words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.page.frame import encode
+from atmosbox.page.page_box import Box, length_text
+from atmosbox.page.page_liquid import clumps, layer
+from atmosbox.page.page_panel import Meaning, declared, names, panel_record
+from atmosbox.page.thinning import MOST, chosen
+from atmosbox.scene.panels import Panel
+from atmosbox.theory.constants import DRY_AIR
+
+__all__ = ["Stage", "stage"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+_SEEN = 0.034  # diameter that can be seen, over the side of a cube as large as the box, if there are _CROWD of them
+_CROWD = 800
+_ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+_ALIKE = 0.01
+_PARTICLES = {False: "molecule", True: "disc"}
+
+
+class Stage(NamedTuple):
+    """What the page is told once, and what it needs to be told where everything is.
+
+    Attributes
+    ----------
+    record : dict
+        The stage as JSON can hold it.
+    shown : (shown,)
+        Which molecules are drawn, of those of the run.
+    variables : tuple of str
+        The variables that the graphs need.
+    """
+
+    record: dict[str, Any]
+    shown: Indices
+    variables: tuple[str, ...]
+
+    def frame(
+        self,
+        sequence: int,
+        time: float,
+        length: ArrayLike,
+        position: ArrayLike,
+        speed: ArrayLike,
+        *,
+        drops: ArrayLike | None = None,
+        liquid: int = 0,
+        rained: int = 0,
+    ) -> bytes:
+        """Return one moment as the page reads it.
+
+        Parameters
+        ----------
+        sequence : int
+            The number of the frame.
+        time : float
+            In the unit of the stage.
+        length : (axis,)
+            Sides of the box now [m].
+        position, speed : (molecule, axis) and (molecule,)
+            Of all molecules of the run [m, m/s]; NaN for one that is in the liquid.
+        drops : (drop, 4), optional
+            Positions and radii of drops that have a place [m]; rows of NaN are left out.
+        liquid, rained : int
+            How many molecules are in a mist or a pool, and how many have left as rain.
+
+        Returns
+        -------
+        bytes
+            See `atmosbox.page.frame.encode`.
+
+        Examples
+        --------
+        >>> box = Box(length=(2e-8, 2e-8, 2e-8))
+        >>> air = stage(scene="air", title="Air", box=box, mass=[4.8e-26], diameter=[3.7e-10], fastest=900.0)
+        >>> len(air.frame(0, 0.5, box.length, [[1e-8, 1e-8, 1e-8]], [470.0]))
+        40
+        """
+        metre = self.record["metre"]
+        sides = np.asarray(length, np.float64) * metre
+        place = np.asarray(position, np.float64)[self.shown] * metre
+        fast = np.asarray(speed, np.float64)[self.shown]
+        water = self.record["water"]
+        wet = np.zeros((0, 4))
+        if drops is not None:
+            wet = np.asarray(drops, np.float64).reshape(-1, 4)
+            wet = wet[np.isfinite(wet).all(axis=1)] * metre
+        elif self.record["box"]["walls"][4] == "pool":
+            wet = layer(liquid, water)
+        elif liquid:
+            wet = clumps(liquid, water, sides, self.record["species"][-1]["drawn"])
+        wet = np.concatenate((wet, layer(rained, water, rain=True)))
+        return encode(sequence, time, sides, place, fast, self.record["speed"]["high"], wet)
+
+
+def stage(
+    *,
+    scene: str,
+    title: str,
+    box: Box,
+    mass: ArrayLike,
+    diameter: ArrayLike,
+    fastest: float,
+    water: ArrayLike | None = None,
+    story: str = "",
+    facts: Iterable[tuple[str, str]] = (),
+    settings: Iterable[tuple[str, str]] = (),
+    version: str = "",
+    seed: int | None = None,
+    engine: str = "exact",
+    time_unit: str = "ns",
+    panels: Sequence[Panel] = (),
+    most: int = MOST,
+    discs: bool = False,
+    meaning: Callable[[str], Meaning] | None = None,
+    sentences: Sequence[Sequence[str]] = (),
+    marks: Mapping[int, dict[str, float]] | None = None,
+) -> Stage:
+    """Return what the page is told of a run.
+
+    Parameters
+    ----------
+    scene, title : str
+        The name of the scene, and what it is called.
+    box : Box
+        The box at the start.
+    mass, diameter : (molecule,)
+        Of every molecule of the run [kg, m]; NaN where it is not known.
+    fastest : float
+        Speed that the scale of colours must reach [m/s]; it ends at the next round number.
+    water : (molecule,), optional
+        Which molecules are water.
+    story, facts, settings, version, seed, engine
+        What the caption says.
+    time_unit : str
+        The unit of the times of frames.
+    panels : sequence of Panel
+        The graphs.
+    most : int
+        How many molecules may be drawn.
+    discs : bool
+        Whether the molecules are called discs and have sizes of their own.
+    meaning : callable, optional
+        Tells unit and words of a variable; by default its declaration does.
+    sentences : sequence of sequence of str
+        The headlines of each panel.
+    marks : mapping of int to dict, optional
+        Pressures that panels mark, by the number of the panel.
+
+    Returns
+    -------
+    Stage
+        The record, which molecules it shows, and the variables it needs.
+
+    Examples
+    --------
+    Molecules that would be specks are drawn wider, and the stage says so:
+
+    >>> box = Box(length=(8.4e3, 8.4e3, 2.5e4), gravity=True)
+    >>> column = stage(
+    ...     scene="atmosphere", title="A column", box=box, mass=np.full(9, 4.8e-26), diameter=np.full(9, 50.0),
+    ...     fastest=900.0, time_unit="s",
+    ... )
+    >>> column.record["box"]["unit"], column.record["exaggeration"]
+    ('km', 'Molecules collide as if 50 m wide, and are drawn 10 times as wide.')
+    """
+    heavy = np.atleast_1d(np.asarray(mass, np.float64))
+    wide = np.atleast_1d(np.asarray(diameter, np.float64))
+    wet = None if water is None else np.asarray(water, np.bool_)
+    shown = chosen(len(heavy), most, wet)
+    kinds, kind = _kinds(heavy, wet, discs=discs)
+    lengths = np.array([side for axis, side in enumerate(box.length) if not (box.planar and axis == 1)])
+    wider, said = _width(wide, float(np.exp(np.log(lengths).mean())), len(shown), discs=discs, unit=box.unit)
+    drawn = wide * wider
+    if not discs and np.ptp(wide[np.isfinite(wide)]) == 0.0:
+        drawn = drawn * np.cbrt(heavy / np.nanmax(heavy))  # alike in diameter, told apart by their masses
+    species = [
+        {
+            "name": name,
+            "mass": _mean(heavy[kind == number]),
+            "diameter": _mean(wide[kind == number]) * box.metre,
+            "drawn": _mean(drawn[kind == number]) * box.metre,
+            "count": int(np.sum(kind == number)),
+        }
+        for number, name in enumerate(kinds)
+    ]
+    tell = meaning or (lambda name: declared(name, time_unit))
+    graphs = [(number, panel) for number, panel in enumerate(panels) if panel.kind != "discs"]
+    record = {
+        "scene": scene,
+        "title": title,
+        "story": story,
+        "facts": [list(fact) for fact in facts],
+        "settings": [[name.replace("_", " "), text.replace("degC", "°C")] for name, text in settings],
+        "version": version,
+        "seed": seed,
+        "engine": engine,
+        "particle": _PARTICLES[discs],
+        "molecules": len(heavy),
+        "molecules_shown": len(shown),
+        "exaggeration": said,
+        "metre": box.metre,
+        "box": box.as_record(),
+        "species": species,
+        "kind": kind[shown].tolist(),
+        "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
+        "water": 0 if wet is None else int(wet.sum()),
+        "time": {"unit": time_unit},
+        "speed": {"unit": "m/s", "low": 0.0, "high": _round_up(fastest)},
+        "panels": [
+            panel_record(
+                panel,
+                tell,
+                sentences=sentences[number] if number < len(sentences) else (),
+                marks=(marks or {}).get(number),
+            )
+            for number, panel in graphs
+        ],
+        "variables": {name: {"units": tell(name).unit, "long_name": tell(name).words} for name in names(panels)},
+    }
+    return Stage(record, shown, names(panels))
+
+
+def _kinds(mass: Floats, water: NDArray[np.bool_] | None, *, discs: bool) -> tuple[tuple[str, ...], Indices]:
+    """Return the names of the kinds of molecules, and of which kind each is."""
+    if water is not None and water.any():
+        return ("dry air", "water"), water.astype(np.intp)
+    kind = np.zeros(len(mass), np.intp)
+    if discs:
+        if not len(mass) or mass.min() == mass.max():
+            return ("disc",), kind
+        kind[np.argsort(mass, kind="stable")[len(mass) // 2 :]] = 1
+        return ("light half", "heavy half"), kind
+    airy = len(mass) > 0 and abs(float(np.nanmean(mass)) / DRY_AIR.molecule_mass - 1.0) < _ALIKE
+    return ("dry air" if airy else "molecule",), kind
+
+
+def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str) -> tuple[float, str]:
+    """Return by which factor molecules are drawn wider than they collide, and the sentence that says so."""
+    known = diameter[np.isfinite(diameter)]
+    size = float(known.mean()) if known.size else 0.0
+    particle = _PARTICLES[discs].capitalize()
+    wanted = _SEEN * side * min(1.2, (_CROWD / max(count, 1)) ** (1.0 / 6.0))
+    if size <= 0.0:
+        return 1.0, f"{particle}s are points and collide with no one in particular."
+    ratio = wanted / size
+    power = 10.0 ** math.floor(math.log10(ratio)) if ratio > 1.0 else 1.0
+    factor = 1.0 if ratio <= 1.0 else power * min(_ROUND, key=lambda each: abs(math.log(each * power / ratio)))
+    as_drawn = "are drawn true to size" if factor == 1.0 else f"are drawn {factor:g} times as wide"
+    if discs:
+        return factor, f"{particle}s {as_drawn}."
+    real = size / DRY_AIR.diameter
+    if unit in ("nm", "µm") and abs(real - 1.0) < _ALIKE:
+        return factor, f"{particle}s {as_drawn if factor == 1.0 else as_drawn + ' as they are'}."
+    if unit in ("nm", "µm"):
+        also = "drawn as wide as they collide" if factor == 1.0 else f"drawn {factor:g} times wider still"
+        return factor, f"{particle}s collide as if {real:.2g} times as wide as those of air, and are {also}."
+    also = "drawn so" if factor == 1.0 else f"drawn {factor:g} times as wide"
+    return factor, f"{particle}s collide as if {length_text(size, 3)} wide, and are {also}."
+
+
+def _round_up(value: float) -> float:
+    """Return the next round number; 1 for what is no positive number."""
+    if not (math.isfinite(value) and value > 0.0):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(f"{next(step for step in _ROUND if step * power >= value * (1.0 - 1e-9)) * power:.6g}")
+
+
+def _mean(values: Floats) -> float:
+    """Return the mean of what is known."""
+    known = values[np.isfinite(values)]
+    return float(f"{known.mean():.6g}") if known.size else 0.0
+
+
+def _figures(values: Floats) -> list[float]:
+    """Return numbers in so many figures as a picture needs."""
+    return [float(f"{value:.5g}") for value in values]

@@ -1,0 +1,190 @@
+"""From the dataset of a run to what its page is told: the stage, the frames, the values of the graphs, the words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import FileError
+from atmosbox.page.moment import Moments, moments
+from atmosbox.page.page_box import Box
+from atmosbox.page.page_panel import Meaning, names
+from atmosbox.page.page_stage import Stage, stage
+from atmosbox.page.thinning import share
+from atmosbox.page.word import changed, footer_of, notes, settings_of, story_of
+from atmosbox.scene.panels import Panel, from_json
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Page", "pages"]
+
+_FASTEST = 99.9  # percentile of the speeds at which the scale of colours ends
+_FIGURES, _TIME_FIGURES = 6, 9
+
+Floats = NDArray[np.float64]
+
+
+class Page(NamedTuple):
+    """A run as its page is told of it: what is said once, and the frames."""
+
+    record: dict[str, Any]
+    frames: list[bytes]
+
+
+def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
+    """Return what the page of some runs is told.
+
+    Parameters
+    ----------
+    runs : sequence of xarray.Dataset
+        The runs, with their molecules. Of several, each is headed by what differs.
+
+    Returns
+    -------
+    list of Page
+        One for each.
+
+    Raises
+    ------
+    FileError
+        If a run holds no molecules, or no frame.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> pages([xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "temperature"}'})])
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run temperature --save-molecules.
+    """
+    headings = changed(runs) if len(runs) > 1 else [""]
+    every = [moments(run) for run in runs]
+    units = {str(run["elapsed_time"].attrs.get("units", "ns")) for run in runs}
+    if len(units) > 1:
+        raise FileError(
+            f"The runs count their time in {' and '.join(sorted(units))}, and cannot share a clock: view one by one."
+        )
+    fastest = max(_fastest(seen.speed) for seen in every)
+    return [
+        _page(run, seen, heading, fastest, len(runs)) for run, seen, heading in zip(runs, every, headings, strict=True)
+    ]
+
+
+def _page(dataset: xr.Dataset, seen: Moments, heading: str, fastest: float, runs: int) -> Page:
+    room = share(seen.position.shape[1], len(seen.time), runs)
+    kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
+    panels, marks, sentences = _graphs(dataset)
+    told = stage(
+        scene=seen.scene,
+        title=str(dataset.attrs.get("title", seen.scene)),
+        story=story_of(dataset),
+        settings=settings_of(dataset),
+        version=str(dataset.attrs.get("product_version", "")),
+        seed=seen.seed,
+        engine=seen.engine,
+        box=seen.box,
+        mass=seen.mass,
+        diameter=seen.diameter,
+        water=seen.water,
+        fastest=fastest,
+        time_unit=str(dataset["elapsed_time"].attrs.get("units", "ns")),
+        panels=panels,
+        most=room.molecules,
+        discs=seen.discs,
+        meaning=lambda name: _meaning(dataset, name),
+        sentences=sentences,
+        marks=marks,
+    )
+    record = {
+        "stage": told.record,
+        "heading": heading,
+        "footer": footer_of(dataset),
+        "notes": notes(seen, told.record, frames=len(kept)),
+        **_values(dataset, panels, seen.box),
+    }
+    return Page(record, list(_frames(told, seen, kept)))
+
+
+def _frames(told: Stage, seen: Moments, kept: NDArray[np.int_]) -> Iterator[bytes]:
+    """Yield the frames that are kept."""
+    for sequence, index in enumerate(kept):
+        yield told.frame(
+            sequence,
+            float(seen.time[index]),
+            seen.side[index],
+            seen.position[index],
+            seen.speed[index],
+            drops=None if seen.drops is None else seen.drops[index],
+            liquid=int(seen.liquid[index]),
+            rained=int(seen.rained[index]),
+        )
+
+
+def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str, float]], list[list[str]]]:
+    """Return the panels that the file can fill, the pressures that they mark, and their sentences in numbers."""
+    from dataclasses import replace
+
+    from atmosbox.plot.caption import headlines
+    from atmosbox.plot.skewt import levels
+
+    if "atmosbox_panels" not in dataset.attrs:
+        return (), {}, []
+    try:
+        stated = from_json(dataset.attrs["atmosbox_panels"])
+    except ValueError as error:
+        raise FileError(f"The file does not say what its graphs show, because {error}") from error
+    panels: list[Panel] = []
+    for panel in stated:
+        lines = tuple(line for line in panel.lines if all(_held(dataset, name) for name in line.variables))
+        if lines and panel.kind != "discs":
+            panels.append(replace(panel, lines=lines))
+    marks = {number: levels(dataset, panel) for number, panel in enumerate(panels) if panel.kind == "skewt"}
+    return tuple(panels), marks, headlines(dataset, tuple(panels))
+
+
+def _held(dataset: xr.Dataset, name: str) -> bool:
+    """Tell whether a run that may have been stopped early has a variable."""
+    name = name.partition("[")[0]
+    return name in dataset.variables and dataset[name].size > 0
+
+
+def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str, Any]:
+    """Return the values of the graphs by name, and which of them go with time."""
+    from atmosbox.plot.curve import read
+
+    walls = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
+    warm = [f"wall_temperature[{wall}]" for wall, law in zip(walls, box.walls, strict=True) if law == "heat_bath"]
+    values: dict[str, Any] = {}
+    timed: list[str] = []
+    for name in dict.fromkeys(("elapsed_time", *names(panels), *warm)):
+        if not _held(dataset, name):
+            continue
+        variable = read(dataset, name)
+        if variable.ndim > 1:
+            raise FileError(f"The variable {name!r} of the file has {variable.ndim} dimensions, and a graph needs one.")
+        figures = _TIME_FIGURES if name == "elapsed_time" else _FIGURES
+        values[name] = [_figure(value, figures) for value in np.atleast_1d(variable.values)]
+        if variable.dims == ("elapsed_time",):
+            timed.append(name)
+    return {"values": values, "timed": timed}
+
+
+def _figure(value: float, figures: int) -> float | None:
+    """Return a number in so many figures, None for one that is not finite."""
+    return float(f"{value:.{figures}g}") if math.isfinite(value) else None
+
+
+def _meaning(dataset: xr.Dataset, name: str) -> Meaning:
+    """Return what a variable of the file means."""
+    attrs = dataset[name.partition("[")[0]].attrs
+    return Meaning(str(attrs.get("units", "1")), str(attrs.get("long_name", name.replace("_", " "))))
+
+
+def _fastest(speed: NDArray[np.floating]) -> float:
+    """Return a speed that hardly any molecule exceeds [m/s]."""
+    known = speed[np.isfinite(speed)]
+    return float(np.percentile(known, _FASTEST)) if known.size else 0.0

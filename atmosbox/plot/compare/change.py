@@ -1,0 +1,211 @@
+"""What differs between runs, in words: the changed setting, and it alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox import scenarios
+from atmosbox.errors import AtmosboxError
+from atmosbox.file.provenance import parameters
+from atmosbox.scene.parameter import Parameter
+from atmosbox.scene.quantity import phrase
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Change", "Naming", "naming"]
+
+_MADE_BY = ("scene", "engine", "version")
+_NOT_SAID = "-"
+_MOST_SAID = 2  # changes that a label says; of more, the title speaks
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something that is not the same in all runs.
+
+    Parameters
+    ----------
+    name : str
+        What differs: a setting, ``scene``, ``engine`` or ``version``.
+    values : tuple of str
+        Its value in each run, with its unit.
+
+    Examples
+    --------
+    >>> str(Change("temperature", ("5 degC", "25 degC")))
+    'temperature 5 degC / 25 degC'
+    """
+
+    name: str
+    values: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """Return the name and all values."""
+        return f"{self.name.replace('_', ' ')} {' / '.join(self.values)}"
+
+
+@dataclass(frozen=True)
+class Naming:
+    """What runs are called by.
+
+    Parameters
+    ----------
+    scenes : tuple of str
+        The scene of each.
+    changes : tuple of Change
+        What differs, the scene first.
+    labels : tuple of str
+        What to call each run, all different.
+    same : bool
+        Whether all hold the same numbers.
+
+    Examples
+    --------
+    >>> Naming(("temperature",) * 2, (Change("seed", ("1", "2")),), ("seed 1", "seed 2"), same=False).title
+    'seed 1 / 2'
+    """
+
+    scenes: tuple[str, ...]
+    changes: tuple[Change, ...]
+    labels: tuple[str, ...]
+    same: bool
+
+    @property
+    def title(self) -> str:
+        """What differs beside the scenes, in one line."""
+        said = ", ".join(str(change) for change in self.changes if change.name != "scene")
+        if self.changes:
+            return said or "with the same settings"
+        return "the same run" if self.same else "the same settings, other numbers"
+
+
+def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
+    """Return what differs between runs, and what each is called by.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        The runs.
+    files : sequence of str
+        What they are called by where nothing differs.
+
+    Returns
+    -------
+    Naming
+        The names. Runs of different scenes are named by these and by the settings that they share.
+
+    Raises
+    ------
+    FileError
+        If a file does not say what it holds.
+
+    Examples
+    --------
+    >>> import json, xarray as xr
+    >>> def run(temperature, seed=1):
+    ...     made = {"scene": "temperature", "settings": {"temperature": temperature, "seed": seed}, "engine": "exact"}
+    ...     return xr.Dataset(attrs={"atmosbox_parameters": json.dumps(made)})
+    >>> named = naming([run(5.0), run(25.0)], ["a", "b"])
+    >>> named.title, named.labels
+    ('temperature 5 degC / 25 degC', ('5 degC', '25 degC'))
+    >>> naming([run(5.0), run(25.0, 2)], ["a", "b"]).labels
+    ('temperature 5 degC, seed 1', 'temperature 25 degC, seed 2')
+    """
+    made = [parameters(dataset) for dataset in datasets]
+    scenes = tuple(str(each.get("scene", "")) for each in made)
+    settings = [each.get("settings") for each in made]
+    held: list[Mapping[str, Any]] = [each if isinstance(each, dict) else {} for each in settings]
+    known = _parameters(scenes[0]) if len(set(scenes)) == 1 else {}
+    names = list(dict.fromkeys(name for each in held for name in each))
+    if len(set(scenes)) > 1:
+        known = {name: p for scene in reversed(scenes) for name, p in _parameters(scene).items()}
+        names = [name for name in names if all(name in each for each in held)]
+    changes = [
+        Change(name, tuple(str(each.get(name, _NOT_SAID)) for each in made))
+        for name in _MADE_BY
+        if len({str(each.get(name, _NOT_SAID)) for each in made}) > 1
+    ]
+    for name in names:
+        values = tuple(_value(each.get(name), known.get(name)) for each in held)
+        if len(set(values)) > 1:
+            changes.append(Change(name, values))
+    same = not changes and all(_equal(datasets[0], other) for other in datasets[1:])
+    return Naming(scenes, tuple(changes), _labels(changes, files), same)
+
+
+def _parameters(scene: str) -> dict[str, Parameter]:
+    """Return the settings of a scene that comes with atmosbox; none of another, whose file is never run for this."""
+    try:
+        if scene not in scenarios.names():
+            return {}
+        return {parameter.name: parameter for parameter in scenarios.load(scene).Settings.describe()}
+    except AtmosboxError:
+        return {}
+
+
+def _value(value: object, parameter: Parameter | None) -> str:
+    """Return the value of a setting with its unit."""
+    if value is None:
+        return _NOT_SAID
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, int | float):
+        return phrase(value, parameter.unit if parameter else "1")
+    return str(value)
+
+
+def _labels(changes: Sequence[Change], files: Sequence[str]) -> tuple[str, ...]:
+    """Return what to call each run; where two would be called alike, their files tell them apart."""
+    first = next((change for change in changes if change.name == "scene"), None)
+    if first is not None and len(set(first.values)) == len(files):
+        made = list(first.values)
+    elif not changes or (len(changes) > _MOST_SAID and len(set(files)) == len(files)):
+        made = list(files)
+    elif len(changes) == 1 and (changes[0].name in ("scene", "engine") or _says_what(changes[0])):
+        made = list(changes[0].values)
+    else:
+        made = [
+            ", ".join(
+                change.values[run]
+                if change.name in ("scene", "engine")
+                else f"{_spoken(change.name)} {change.values[run]}"
+                for change in changes
+            )
+            for run in range(len(files))
+        ]
+    alike = {label for label in made if made.count(label) > 1}
+    made = [
+        f"{label} ({file})" if label in alike and label != file else label
+        for label, file in zip(made, files, strict=True)
+    ]
+    return tuple(
+        f"{label} [{made[:k].count(label) + 1}]" if label in made[:k] else label for k, label in enumerate(made)
+    )
+
+
+def _spoken(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _says_what(change: Change) -> bool:
+    """Tell whether the values alone say what they are of, by their unit."""
+    return all(" " in value for value in change.values)
+
+
+def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
+    """Tell whether two runs hold the same numbers."""
+    if set(one.variables) != set(other.variables):
+        return False
+    return all(
+        one[name].dims == other[name].dims and _same_values(one[name].values, other[name].values)
+        for name in one.variables
+    )
+
+
+def _same_values(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
+    return one.shape == other.shape and np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f")

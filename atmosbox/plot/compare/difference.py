@@ -1,0 +1,148 @@
+"""The headline numbers of several runs, and by how much they differ."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from atmosbox.errors import FileError, UnitError
+from atmosbox.scene.conversion import from_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Compared", "Measured", "compared"]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A headline number of one run.
+
+    Parameters
+    ----------
+    value, error : float
+        The measurement and its standard error [unit]; NaN where the run has none.
+    theory : float
+        The answer of the textbook [unit]; NaN where there is none.
+
+    Examples
+    --------
+    >>> Measured(15.0, 0.3, math.nan).value
+    15.0
+    """
+
+    value: float
+    error: float
+    theory: float
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A headline number of several runs.
+
+    Parameters
+    ----------
+    name, label : str
+        Its name in the file, and what a table calls it.
+    unit : str
+        The unit of all numbers; differences of degC are in K.
+    runs : tuple of Measured
+        The number of each run.
+
+    Examples
+    --------
+    By how much it is warmer, in standard errors:
+
+    >>> warm = Compared("t", "temperature", "degC", (Measured(5.0, 0.3, 5.1), Measured(25.0, 0.4, 24.9)))
+    >>> warm.difference(1), warm.error(1), warm.sigma(1)
+    (20.0, 0.5, 40.0)
+    """
+
+    name: str
+    label: str
+    unit: str
+    runs: tuple[Measured, ...]
+
+    def difference(self, run: int) -> float:
+        """Return the number of a run less that of the first."""
+        return self.runs[run].value - self.runs[0].value
+
+    def error(self, run: int) -> float:
+        """Return the standard error of that difference, of runs that chance has made independent."""
+        return math.hypot(self.runs[run].error, self.runs[0].error)
+
+    def sigma(self, run: int) -> float:
+        """Return the difference in standard errors; NaN where there is none."""
+        error = self.error(run)
+        return self.difference(run) / error if error > 0.0 else math.nan
+
+    def expected(self, run: int) -> float:
+        """Return the difference that theory expects; NaN where there is no theory."""
+        return self.runs[run].theory - self.runs[0].theory
+
+
+def compared(datasets: Sequence[xr.Dataset]) -> tuple[Compared, ...]:
+    """Return the headline numbers that at least two runs have measured.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        The runs.
+
+    Returns
+    -------
+    tuple of Compared
+        The numbers, in the units in which tables show them.
+
+    Raises
+    ------
+    FileError
+        If a file does not say which numbers it is about.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> def run(value):
+    ...     numbers = {"t": ((), value, {"units": "K", "display_units": "degC"}), "t_se": 0.5}
+    ...     return xr.Dataset(numbers, attrs={"atmosbox_headlines": '["t"]'})
+    >>> (found,) = compared([run(278.15), run(298.15)])
+    >>> found.unit, found.difference(1)
+    ('degC', 20.0)
+    """
+    names = list(dict.fromkeys(name for dataset in datasets for name in _headlines(dataset)))
+    found = [_compared(datasets, name) for name in names]
+    return tuple(each for each in found if sum(math.isfinite(run.value) for run in each.runs) > 1)
+
+
+def _headlines(dataset: xr.Dataset) -> list[str]:
+    """Return the names of the headline numbers of a run."""
+    try:
+        found = json.loads(dataset.attrs.get("atmosbox_headlines", "[]"))
+    except (TypeError, ValueError):
+        found = None
+    if not isinstance(found, list):
+        raise FileError("The attribute atmosbox_headlines of the file cannot be read: it was not written by atmosbox.")
+    return [str(name) for name in found]
+
+
+def _compared(datasets: Sequence[xr.Dataset], name: str) -> Compared:
+    """Return one number of all runs, in the unit of the first that has it."""
+    attrs = next(dataset[name].attrs for dataset in datasets if name in dataset.variables)
+    unit = str(attrs.get("display_units", attrs.get("units", "1")))
+    label = str(attrs.get("long_name", name.replace("_", " ")))
+    return Compared(name, label, unit, tuple(_measured(dataset, name, unit) for dataset in datasets))
+
+
+def _measured(dataset: xr.Dataset, name: str, unit: str) -> Measured:
+    def shown(part: str, *, difference: bool = False) -> float:
+        if part not in dataset.variables:
+            return math.nan
+        try:
+            return from_si(float(dataset[part].values), unit, difference=difference)
+        except UnitError:
+            return math.nan
+
+    return Measured(shown(name), shown(f"{name}_se", difference=True), shown(f"{name}_theory"))

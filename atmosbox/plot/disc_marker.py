@@ -1,0 +1,207 @@
+"""The molecules themselves: a flat box with its discs, true to size, coloured by their speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import LogNorm, to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from atmosbox.plot.plane import Discs, colour_scale, discs
+from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, Theme
+from atmosbox.plot.tick import put_ticks
+from atmosbox.plot.unit import spelled
+from atmosbox.scene.panels import Panel
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# The rim of a heavy disc is at most so wide, in diameters; the box is about so high, in heights of the figure.
+_BROADEST_RIM, _BOX_HEIGHT = 0.12, 0.6
+# A trail goes so many frames back. It is left out where a molecule crosses much of the box between two frames.
+_TRAIL_FRAMES = 12
+_MOST_SEGMENTS = 6000
+_LONGEST_STEP = 0.1
+
+
+def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
+    """Draw the last frame of a flat scene: box, discs, and where they come from.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    panel : Panel
+        A panel of the kind ``discs``; its ``x_unit`` is the unit of length, nm where it is empty.
+    dataset : xarray.Dataset
+        The run, with ``disc_position`` and ``disc_velocity`` (elapsed_time, molecule, axis),
+        ``disc_diameter`` and ``disc_mass`` (molecule). The box reaches from 0 to ``box_length``, one number
+        or one for each axis; without that variable it is as large as the room that the discs have taken.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    list of tuple
+        The entries of the legend: none, or the light and the heavy discs.
+
+    Raises
+    ------
+    FileError
+        If the file lacks one of the variables.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> place = (("elapsed_time", "molecule", "axis"), [[[1e-9, 2e-9], [3e-9, 1e-9]]], {"units": "m"})
+    >>> size = ("molecule", [4e-10, 8e-10], {"units": "m"})
+    >>> dataset = xr.Dataset(
+    ...     {
+    ...         "disc_position": place,
+    ...         "disc_velocity": (*place[:2], {"units": "m s-1"}),
+    ...         "disc_diameter": size,
+    ...         "disc_mass": ("molecule", [1.0, 4.0], {"units": "kg"}),
+    ...     }
+    ... )
+    >>> axes = Figure().add_subplot()
+    >>> [label for _, label in draw_discs(axes, Panel("discs", "The box"), dataset, THEMES["notes"])]
+    ['light half', 'heavy half: 4 × the mass']
+    """
+    found = discs(dataset, panel.x_unit or "nm")
+    trail = trails(found.place, found.box, theme)
+    if trail is not None:
+        axes.add_collection(trail)
+    drawn = put_discs(axes, found, theme)
+    log = isinstance(drawn.norm, LogNorm)
+    bar = axes.figure.colorbar(drawn, cax=axes.inset_axes((1.04, 0.1, 0.03, 0.8)), extend="both" if log else "max")
+    bar.set_label(f"speed ({spelled(found.speed_unit)})")
+    if log:
+        put_ticks(bar.ax.yaxis, log=True, length=10.0 * theme.text, size=theme.text)
+    else:
+        bar.locator = MaxNLocator(4)
+    return _entries(found.heavy, found.mass, theme)
+
+
+def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
+    """Draw the discs of the last frame in their box.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    found : Discs
+        The discs.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    matplotlib.collections.EllipseCollection
+        The discs, coloured by their speed.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> one = Discs(np.ones((1, 1, 2)), np.ones((1, 1)), np.ones(1), np.ones(1), np.array([[0, 0], [2, 2]]), "m s-1")
+    >>> put_discs(Figure().add_subplot(), one, THEMES["notes"]).get_offsets().tolist()
+    [[1.0, 1.0]]
+    """
+    norm = colour_scale(found.speed)
+    drawn = EllipseCollection(
+        found.diameter,
+        found.diameter,
+        np.zeros_like(found.diameter),
+        units="xy",
+        offsets=found.place[-1],
+        offset_transform=axes.transData,
+        cmap=FIELD_COLOURS,
+        norm=norm,
+        edgecolors=DARK,
+        linewidths=np.minimum(_rims(axes, found.diameter, found.box), theme.line)
+        * np.where(found.heavy, 1.0, 1.0 / 3.0),
+        zorder=3.0,
+    )
+    drawn.set_array(found.speed[-1])
+    axes.add_collection(drawn)
+
+    axes.set_aspect("equal", adjustable="box", anchor="NW")
+    axes.set_xlim(found.box[0, 0], found.box[1, 0])
+    axes.set_ylim(found.box[0, 1], found.box[1, 1])
+    axes.spines[:].set(visible=True, linewidth=theme.line * 1.2, color=DARK)
+    return drawn
+
+
+def trails(places: NDArray[np.float64], box: NDArray[np.float64], theme: Theme) -> LineCollection | None:
+    """Return the ways that discs have come in the last frames.
+
+    Parameters
+    ----------
+    places : ndarray, (frame, molecule, 2)
+        Their places up to now.
+    box : ndarray, (2, 2)
+        The lower and the upper corner of the box.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    matplotlib.collections.LineCollection or None
+        The ways, which fade into the past; None where there are none, or where they jump.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> trails(np.zeros((1, 5, 2)), np.array([[0.0, 0.0], [1.0, 1.0]]), THEMES["notes"]) is None
+    True
+    """
+    frames = min(_TRAIL_FRAMES, _MOST_SEGMENTS // places.shape[1], len(places) - 1)
+    if frames < 1:
+        return None
+    path = places[-frames - 1 :]
+    steps = np.median(np.linalg.norm(np.diff(path, axis=0), axis=2), axis=0)
+    path = path[:, steps <= _LONGEST_STEP * float(np.min(box[1] - box[0]))]
+    if not path.size:
+        return None
+    segments = np.stack((path[:-1], path[1:]), axis=2).reshape(-1, 2, 2)
+    alpha = np.repeat(np.linspace(0.1, 0.8, frames), path.shape[1])
+    colours = np.column_stack((np.tile(to_rgb(FAINT), (alpha.size, 1)), alpha))
+    return LineCollection(list(segments), colors=colours, linewidths=theme.line * 0.8, zorder=2.0)
+
+
+def _rims(axes: Axes, sizes: NDArray[np.float64], box: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how broad rims may be [pt], lest they hide the colours of small discs."""
+    drawing = axes.get_figure(root=True)
+    height = 72.0 * drawing.get_figheight() if drawing else 0.0
+    return _BROADEST_RIM * _BOX_HEIGHT * height * sizes / float(np.max(box[1] - box[0]))
+
+
+def _ratio(value: float) -> str:
+    """Return a ratio in two digits and without exponent."""
+    return f"{float(f'{value:.2g}'):,.15g}".replace(",", "\u2009" if value >= 1e4 else "")
+
+
+def _entries(heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
+    """Return what the legend says of two kinds of discs, nothing if they are all alike."""
+    if not heavy.any():
+        return []
+    ratio = float(np.median(mass[heavy]) / np.median(mass[~heavy]))
+
+    def disc(scale: float, width: float) -> Line2D:
+        return Line2D(
+            [], [], linestyle="none", marker="o", markersize=theme.marker * scale, markerfacecolor="white",
+            markeredgecolor=DARK, markeredgewidth=width,
+        )  # fmt: skip
+
+    return [
+        ((disc(1.4, theme.line / 3),), "light half"),
+        ((disc(2.2, theme.line),), f"heavy half: {_ratio(ratio)} × the mass"),
+    ]

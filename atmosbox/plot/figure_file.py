@@ -1,0 +1,113 @@
+"""A figure as a file: the same run gives the same bytes, and a file appears only when it is whole."""
+
+from __future__ import annotations
+
+import io
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.figure import Figure
+
+from atmosbox.file.output_path import named, write_whole
+from atmosbox.plot import sweep_figure, tradeoff_figure
+from atmosbox.plot.layout import figure
+from atmosbox.plot.theme import find, style
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMATS = ("png", "svg", "pdf")
+
+
+def save(
+    dataset: xr.Dataset,
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    *,
+    theme: str = "notes",
+    force: bool = False,
+) -> Path:
+    """Draw the figure of a run into a file.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, as `figure` takes it.
+    path : str or path-like
+        The file. Its suffix says the format; where ``format`` says it, a suffix that is missing is added.
+    format : {"png", "svg", "pdf"}, optional
+        The format.
+    theme : {"notes", "slides"}
+        A figure for a page, or one for a screen.
+    force : bool
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+
+    Raises
+    ------
+    FileError
+        If the file exists, its folder does not, it cannot be written, or the run has nothing to draw.
+    SettingError
+        If the format or the theme is unknown.
+
+    Notes
+    -----
+    Neither the date nor chance enters the file: SVG's names are derived from a fixed salt, and PDF and SVG
+    carry no date. PNG has 300 dots per inch; PDF embeds its type, so that its text can be searched.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> save(xr.Dataset(), "parcel.gif")
+    Traceback (most recent call last):
+    atmosbox.errors.SettingError: format = gif is unknown: give a file name or --format of png, svg or pdf.
+    """
+    path, kind = named(path, format, FORMATS, force=force)
+    find(theme)
+    drawing = _drawn(dataset, theme)
+    title = str(dataset.attrs.get("title", "atmosbox"))
+    parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
+    write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
+    return path
+
+
+def _drawn(dataset: xr.Dataset, theme: str) -> Figure:
+    """Return the figure of a run, or of a measurement of many."""
+    if "rung" in dataset.dims:
+        return tradeoff_figure.figure(dataset, theme)
+    return sweep_figure.figure(dataset, theme) if sweep_figure.is_sweep(dataset) else figure(dataset, theme)
+
+
+def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: str) -> bytes:
+    """Return the bytes of a figure.
+
+    Parameters
+    ----------
+    drawing : matplotlib.figure.Figure
+        The figure.
+    kind : {"png", "svg", "pdf"}
+        The format.
+    theme : {"notes", "slides"}
+        The theme it was drawn in.
+    title, parameters : str
+        What the file says of itself.
+
+    Examples
+    --------
+    >>> render(Figure(), "png", "notes", title="Nothing", parameters="{}")[1:4]
+    b'PNG'
+    """
+    metadata: dict[str, dict[str, Any]] = {
+        "png": {"Title": title, "Software": "atmosbox", "Description": parameters},
+        "svg": {"Title": title, "Creator": "atmosbox", "Description": parameters, "Date": None},
+        "pdf": {"Title": title, "Creator": "atmosbox", "Keywords": parameters, "CreationDate": None},
+    }
+    stream = io.BytesIO()
+    with style(find(theme)):
+        drawing.savefig(stream, format=kind, dpi=300, metadata=metadata[kind])
+    return stream.getvalue()

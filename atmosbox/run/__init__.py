@@ -1,0 +1,8 @@
+"""A run: prepared, advanced, recorded and verified.
+
+`accuracy`      how accurate a run will be: the measured table, and the cheapest way that meets a wish
+`preparation`   a scene made ready to run: its settings, its engine, its box
+`recording`     a run in progress: what is sampled frame by frame
+`verification`  whether the energy ledger closes, and whether the run agrees with theory
+`runner`        all of it, from the name of a scene to its dataset
+"""

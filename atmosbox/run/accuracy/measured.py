@@ -1,0 +1,177 @@
+"""What was measured: every way of running a scene, with its cost and the errors of its headlines."""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from atmosbox.run.accuracy.wish import Wish
+
+__all__ = ["FILE", "ExpectedError", "Measured", "Table", "load", "said"]
+
+FILE = Path(__file__).with_name("accuracy.json")
+"""The table that comes with atmosbox."""
+
+
+class ExpectedError(NamedTuple):
+    """The measured error of a headline: in K if ``unit`` is K, else as a share of the theory.
+
+    ``bias`` is the mean misfit to theory and ``bias_se`` its standard error, ``noise`` the standard deviation of a
+    single run, and ``theory`` what theory said [SI].
+    """
+
+    unit: str
+    bias: float
+    bias_se: float
+    noise: float
+    theory: float
+
+    @property
+    def total(self) -> float:
+        """Root mean square error to expect of a single run.
+
+        What is not known of the bias counts in full.
+
+        Examples
+        --------
+        >>> ExpectedError("K", 0.3, 0.0, 0.4, 288.0).total
+        0.5
+        """
+        return math.hypot(self.bias, self.bias_se, self.noise)
+
+    def size(self, theory: float | None) -> float:
+        """Return one unit of the error in that of a headline [SI], for what theory says in a run."""
+        return 1.0 if self.unit == "K" else abs(theory or 0.0)
+
+    def excess(self, wish: Wish) -> float:
+        """Return the error as a multiple of what a wish allows; 0 where it has no limit."""
+        if self.unit != "K":
+            return self.total / wish.share
+        relative = self.total / abs(self.theory) / wish.share if wish.absolute else 0.0
+        return max(self.total / wish.kelvin, relative)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A way of running a scene whose errors were measured.
+
+    Parameters
+    ----------
+    engine
+        The engine with its options.
+    settings
+        What differs from the scene's defaults.
+    cost
+        Processor time of the engine, as a multiple of that in the scene's default run.
+    members
+        How many runs were made.
+    errors
+        The error of each headline, by name.
+    """
+
+    engine: str
+    settings: Mapping[str, Any]
+    cost: float
+    members: int
+    errors: Mapping[str, ExpectedError]
+
+    @property
+    def label(self) -> str:
+        """The words that ask for this run, but for the scene."""
+        return ", ".join([self.engine, *(said(name, value) for name, value in self.settings.items())])
+
+    def excess(self, wish: Wish) -> float:
+        """Return the largest error as a multiple of what a wish allows."""
+        return max((error.excess(wish) for error in self.errors.values()), default=math.inf)
+
+
+@dataclass(frozen=True)
+class Table:
+    """What was measured of a scene.
+
+    Parameters
+    ----------
+    varies
+        The settings that trade accuracy for time; every other makes a different experiment.
+    labels
+        What a table calls the headlines, by name.
+    ways
+        The ways of running it.
+    how
+        How it was measured: the version, the budget [s], the command.
+    """
+
+    varies: tuple[str, ...]
+    labels: Mapping[str, str]
+    ways: tuple[Measured, ...]
+    how: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Table:
+        """Return the table that an entry of the file is."""
+        about = entry["headlines"]
+        return cls(
+            tuple(entry["varies"]),
+            {name: one["label"] for name, one in about.items()},
+            tuple(
+                Measured(
+                    way["engine"],
+                    way["settings"],
+                    way["cost"],
+                    way["members"],
+                    {
+                        name: ExpectedError(about[name]["unit"], bias, bias_se, noise, about[name]["theory"])
+                        for name, (bias, bias_se, noise) in way["errors"].items()
+                    },
+                )
+                for way in entry["ways"]
+            ),
+            entry["measured"],
+        )
+
+    def same_experiment(self, settings: Mapping[str, Any]) -> tuple[Measured, ...]:
+        """Return the ways of running the experiment that a user has set, in so far as any of them tells it apart.
+
+        A switch or a word makes another experiment; of numbers, those count that come nearest to the user's.
+        """
+        apart = {name: value for way in self.ways for name, value in way.settings.items() if name not in self.varies}
+        other = {name for name, value in apart.items() if isinstance(value, bool | str)}
+
+        def misses(way: Measured, names: set[str]) -> int:
+            return sum(way.settings.get(name) != settings.get(name) for name in names)
+
+        same = [way for way in self.ways if not misses(way, other)]
+        fewest = min((misses(way, set(apart)) for way in same), default=0)
+        return tuple(way for way in same if misses(way, set(apart)) == fewest)
+
+
+@functools.cache
+def load() -> Mapping[str, Table]:
+    """Return the measured table that comes with atmosbox, by scene.
+
+    Examples
+    --------
+    >>> "temperature" in load()
+    True
+    """
+    held = json.loads(FILE.read_text(encoding="utf-8"))
+    return MappingProxyType({scene: Table.of(entry) for scene, entry in held["scenes"].items()})
+
+
+def said(name: str, value: bool | int | float | str) -> str:
+    """Return a setting in words.
+
+    Examples
+    --------
+    >>> said("ascent", 400.0), said("plane", True)
+    ('ascent=400', 'plane=on')
+    """
+    if isinstance(value, bool):
+        return f"{name}={'on' if value else 'off'}"
+    return f"{name}={value:.12g}" if isinstance(value, float) else f"{name}={value}"

@@ -1,0 +1,106 @@
+"""How large the error of a run may be, as a user wishes it."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from atmosbox.errors import SettingError
+from atmosbox.scene.spelling import nearest, plain
+
+__all__ = ["FIX", "TARGETS", "Wish", "parse"]
+
+
+class Wish(NamedTuple):
+    """How large the expected error of a single run may be.
+
+    Parameters
+    ----------
+    text
+        As a user types it.
+    kelvin
+        The largest error of a temperature [K]; ``inf`` where there is no limit.
+    share
+        The largest error of everything else, as a share of the theory; ``inf`` where there is no limit.
+    absolute
+        Whether `share` holds for temperatures, too, as a share of the absolute temperature.
+    best
+        Whether the most accurate run is wanted, in units of the two limits, and not the cheapest within them.
+    """
+
+    text: str
+    kelvin: float = math.inf
+    share: float = math.inf
+    absolute: bool = False
+    best: bool = False
+
+    @property
+    def limits(self) -> str:
+        """The limits in words."""
+        limits = [f"{100.0 * self.share:g} %"] if math.isfinite(self.share) else []
+        return " and ".join([*limits, f"{self.kelvin:g} K"] if math.isfinite(self.kelvin) else limits)
+
+
+TARGETS: Mapping[str, Wish] = MappingProxyType(
+    {
+        wish.text: wish
+        for wish in (
+            Wish("sketch", 3.0, 0.05),  # a quick look: on a figure it lies beside the theory
+            Wish("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
+            Wish("reference", 0.5, 0.01, best=True),  # whatever it costs, of all that was measured
+        )
+    }
+)
+"""The wishes that have a name, the same for all scenes."""
+
+_NUMBER = re.compile(r"([0-9]+\.?[0-9]*(?:e[+-]?[0-9]{1,3})?|\.[0-9]+(?:e[+-]?[0-9]{1,3})?)\s*(\S*)", re.IGNORECASE)
+FIX = "give --accuracy lecture, or an error such as 0.5K or 2%"
+
+
+def parse(text: object) -> Wish:
+    """Return the wish that a text stands for.
+
+    Parameters
+    ----------
+    text
+        The name of a target, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
+
+    Raises
+    ------
+    SettingError
+        If it is neither.
+
+    Examples
+    --------
+    >>> parse("lecture").limits, parse("0.5 K").kelvin, parse("2%").share
+    ('1 % and 0.5 K', 0.5, 0.02)
+    """
+    if not isinstance(text, str):
+        raise SettingError("accuracy", text, "is not a text", FIX)
+    word = text.strip()
+    if plain(word) in TARGETS:
+        return TARGETS[plain(word)]
+    found = _NUMBER.fullmatch(word.replace(",", ".")) if len(word) < 100 else None
+    if found is None:
+        near = nearest(word, TARGETS)
+        problem = f"is neither one of {', '.join(TARGETS)} nor an error"
+        raise SettingError("accuracy", text, problem, f"give --accuracy {near}" if near else FIX)
+    size, unit = float(found[1]), found[2]
+
+    def refusal(problem: str, *units: str) -> SettingError:
+        fix = " or ".join(f"--accuracy {size:g}{one}" for one in units) if 0.0 < size <= 100.0 else ""
+        return SettingError("accuracy", text, problem, f"give {fix}" if fix else FIX)
+
+    if unit.casefold() in ("degc", "°c", "c", "degf", "°f", "f"):
+        raise refusal("is a temperature and not the error of one", "K")
+    if unit not in ("K", "k", "%"):
+        raise refusal(f"has {'an unknown unit' if unit else 'no unit'}", "K", "%")
+    if not 0.0 < size <= (100.0 if unit == "%" else 1000.0):
+        raise refusal("is not an error above 0 and of at most " + ("100 %" if unit == "%" else "1000 K"))
+    if "," in word:
+        raise refusal("is written with a comma", unit)
+    name = f"{found[1]}{unit.upper()}"
+    return Wish(name, share=size / 100.0, absolute=True) if unit == "%" else Wish(name, kelvin=size)

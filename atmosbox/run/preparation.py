@@ -1,0 +1,169 @@
+"""A scenario made ready to run: loaded, its settings checked, its box built."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from atmosbox import scenarios
+from atmosbox.engine import PackingError as EnginePackingError
+from atmosbox.engine import RefusedError
+from atmosbox.engine.core.marching import MarchingParcel
+from atmosbox.errors import EngineError, PackingError, SettingError
+from atmosbox.run import accuracy as accuracies
+from atmosbox.run.accuracy import Expectation
+from atmosbox.scene.engines import EXACT, EngineChoice, choose
+from atmosbox.scene.parameter import Parameter
+from atmosbox.scene.settings import SceneSettings
+from atmosbox.scene.setup import Setup
+from atmosbox.version import __version__
+
+__all__ = ["Card", "Prepared", "build", "card", "prepare"]
+
+_MEMORY = 8e9
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scenario with its settings, checked and ready to run."""
+
+    scene: str
+    module: ModuleType
+    settings: SceneSettings
+    save_molecules: bool = False
+    engine: EngineChoice = EXACT
+    expectation: Expectation | None = None
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Everything that makes the run, and the errors that are expected of it, as JSON can hold it."""
+        known = {} if self.expectation is None else {"accuracy": self.expectation.as_dict()}
+        return {
+            "scene": self.scene,
+            "settings": self.settings.as_dict(),
+            "engine": str(self.engine),
+            "version": __version__,
+            "save_molecules": self.save_molecules,
+            **known,
+        }
+
+
+class Card(NamedTuple):
+    """The model card of a scene."""
+
+    scene: str
+    title: str
+    story: str
+    facts: tuple[tuple[str, str], ...]
+    parameters: tuple[Parameter, ...]
+
+
+def prepare(
+    scene: str | os.PathLike[str],
+    settings: Mapping[str, Any],
+    *,
+    engine: str | EngineChoice | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+) -> Prepared:
+    """Load a scenario and check its settings; nothing is computed yet.
+
+    Parameters
+    ----------
+    scene
+        A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
+    settings
+        Values by name, numbers in the documented unit or texts with a unit.
+    engine
+        What lets time pass, with its options: ``stepped:delta=0.02``; ``exact`` if nothing is said.
+    accuracy
+        A wish that picks the engine and the settings that trade accuracy for time, as `atmosbox.run.accuracy.parse`
+        reads it; what is in `settings` stays as it is.
+    save_molecules
+        Whether places and speeds of all molecules are kept in every frame.
+
+    Returns
+    -------
+    Prepared
+        What `execute` takes.
+
+    Raises
+    ------
+    AtmosboxError
+        If the scene is unknown or a setting is refused.
+
+    Examples
+    --------
+    >>> prepare("lifting-dry", {"temperature": "20 degC"}).settings.temperature
+    20.0
+    """
+    module = scenarios.load(scene)
+    checked = module.Settings.from_user(settings)
+    name = os.fspath(scene).replace("_", "-")
+    name = name if name in scenarios.names() else os.fspath(scene)
+    if accuracy is not None:
+        if engine is not None:
+            raise SettingError("accuracy", accuracy, "picks the engine itself", f"leave it out, or the engine {engine}")
+        picked = accuracies.choose(name, accuracy, checked.changed())
+        own = {setting.strip().replace("-", "_"): value for setting, value in settings.items()}
+        checked = module.Settings.from_user({**picked.sets, **own})
+        engine = picked.way.engine
+    chosen = choose(EXACT if engine is None else engine)
+    if chosen != EXACT and "engine" not in inspect.signature(module.build).parameters:
+        raise SettingError(
+            "engine", str(chosen), f"is not for the scene {os.fspath(scene)}, whose build takes no engine",
+            f"give --engine {EXACT}, or let its build take one: build(settings, engine)",
+        )  # fmt: skip
+    expectation = None
+    if accuracy is not None:
+        expectation = picked.at(checked.changed())
+    elif chosen.name != EXACT.name:
+        expectation = accuracies.expect(name, str(chosen), checked.changed())
+    return Prepared(name, module, checked, save_molecules, chosen, expectation)
+
+
+def card(prepared: Prepared) -> Card:
+    """Return the model card: the story, the facts for these settings, the parameters.
+
+    Examples
+    --------
+    >>> dict(card(prepare("lifting-dry", {"molecules": 100})).facts)["gamma"]
+    '7/5'
+    """
+    setup = build(prepared)
+    story = (prepared.module.__doc__ or "").strip()
+    title = getattr(prepared.module, "title", prepared.scene)
+    return Card(prepared.scene, title, story, tuple(setup.facts.items()), tuple(prepared.settings.describe()))
+
+
+def build(prepared: Prepared) -> Setup:
+    """Build the box, in the words of a user where it cannot be built."""
+    try:
+        with_engine = "engine" in inspect.signature(prepared.module.build).parameters
+        setup: Setup = prepared.module.build(prepared.settings, *([prepared.engine] if with_engine else []))
+        if isinstance(setup.parcel, MarchingParcel):
+            setup.parcel.divide(setup.frame / setup.samples)
+    except EnginePackingError as error:
+        molecules = getattr(prepared.settings, "molecules", None)
+        raise PackingError("molecules", molecules, "do not fit", str(error)) from error
+    except (RefusedError, ValueError) as error:
+        if isinstance(error, SettingError):
+            raise
+        if prepared.engine.name != EXACT.name:
+            raise SettingError(
+                "engine", str(prepared.engine), f"cannot do {prepared.scene} ({error})", f"give --engine {EXACT}"
+            ) from error
+        raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
+    if prepared.save_molecules:
+        molecules = setup.parcel.present.size
+        needed = 16.0 * molecules * setup.frames
+        if needed > _MEMORY:
+            raise SettingError(
+                "molecules", molecules, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
+                "leave out --save-molecules, or take fewer molecules",
+            )  # fmt: skip
+    return setup

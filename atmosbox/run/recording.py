@@ -1,0 +1,118 @@
+"""A run under way: its box advances from frame to frame, and its instruments look."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox.run.preparation import Prepared
+from atmosbox.run.verification import with_bias
+from atmosbox.scene.headline import Headline
+from atmosbox.scene.instruments import Instrument, Molecules, Readings
+from atmosbox.scene.setup import Setup
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.engine import Snapshot
+
+__all__ = ["Recording"]
+
+
+@dataclass
+class Recording:
+    """A run under way: its box, its instruments, and the times of its frames.
+
+    A recording may begin when some frames, `first` of them, have passed. Its instruments look once at that moment, so
+    that they count from there on, and what they then saw is left out.
+    """
+
+    prepared: Prepared
+    setup: Setup
+    attributes: dict[str, Any]
+    times: list[float] = field(default_factory=lambda: [0.0])
+    busy: float = 0.0
+    first: int = 0
+    instruments: tuple[Instrument, ...] = ()
+
+    def __post_init__(self) -> None:
+        extra = (Molecules(),) if self.prepared.save_molecules else ()
+        self.instruments = (*(self.instruments or self.setup.instruments), *extra)
+        if self.first:
+            snapshot = self.setup.parcel.snapshot()
+            self.look(snapshot)
+            self.close(snapshot)
+
+    @property
+    def frames(self) -> int:
+        """How many frames are complete."""
+        return len(self.times) - 1 - bool(self.first)
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Let the instruments look at the molecules as they are now."""
+        for instrument in self.instruments:
+            instrument.look(self.setup.parcel, snapshot)
+
+    def close(self, snapshot: Snapshot) -> None:
+        """Close a frame."""
+        for instrument in self.instruments:
+            instrument.close(self.setup.parcel, snapshot)
+        self.times.append(self.setup.parcel.time)
+
+    def advance(self, watch: Callable[[float], None]) -> None:
+        """Advance by one frame and measure."""
+        parcel = self.setup.parcel
+        frame = self.first + self.frames
+        for sample in range(1, self.setup.samples + 1):
+            busy = time.process_time()
+            parcel.advance(max(self.setup.moment(frame, sample), parcel.time), watch)
+            self.busy += time.process_time() - busy
+            snapshot = parcel.snapshot()
+            self.look(snapshot)
+        self.close(snapshot)
+
+    def dataset(
+        self, status: str, *, settle: int | None = None, judged: bool = True
+    ) -> tuple[xr.Dataset, tuple[Headline, ...]]:
+        """Return all that has been measured so far, with theory beside it.
+
+        Parameters
+        ----------
+        status
+            How far the run is, for the attribute of that name.
+        settle
+            How many frames averages leave out; as many as the scene says, if it is not said here.
+        judged
+            Whether the scene's headlines are drawn from it.
+        """
+        from atmosbox.file import dataset as diagnostics
+
+        setup, settings, module = self.setup, self.prepared.settings, self.prepared.module
+        unseen = int(bool(self.first))
+        in_unit = setup.scale.time / {"s": 1.0, "ns": 1e-9, "ps": 1e-12}[setup.time_unit]
+        times = np.array(self.times) * in_unit
+        readings = Readings()
+        rest = min(setup.settle if settle is None else settle, max(self.frames - 2, 0)) + unseen
+        for instrument in self.instruments:
+            readings.update(instrument.readings(setup.scale, rest))
+        names = ("height", "height_bnds", "speed", "speed_bnds", "energy", "energy_bnds")
+        coords = {name: readings.pop(name) for name in names if name in readings}
+        coords["elapsed_time"] = times[1:]
+        coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
+        attributes = self.attributes | {"atmosbox_status": status}
+        seen = {"elapsed_time": slice(unseen, None)}
+        measured = diagnostics.dataset(readings, coords, attributes, time_unit=setup.time_unit)
+        if self.frames < 2:
+            return measured.isel(seen) if unseen else measured, ()
+        answers = module.theory(measured, settings)
+        full = diagnostics.dataset(readings | answers, coords, attributes, time_unit=setup.time_unit)
+        if not judged or unseen:
+            return full.isel(seen) if unseen else full, ()
+        headlines = with_bias(module.headlines(full, settings), self.prepared.parameters)
+        return diagnostics.dataset(
+            readings | answers, coords, attributes, headlines, time_unit=setup.time_unit
+        ), headlines

@@ -1,0 +1,144 @@
+"""A run looked at again: whether its books balance, and whether it agrees with theory."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.errors import FileError
+from atmosbox.run.accuracy import ExpectedError
+from atmosbox.scene.engines import EXACT
+from atmosbox.scene.headline import Headline
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["LEDGER_LIMIT", "Check", "headlines_of", "verify", "with_bias"]
+
+LEDGER_LIMIT = 1e-10
+"""By how much, relative to the energy there is or has passed, the ledger of a sound run may fail to close."""
+
+
+class Check(NamedTuple):
+    """One thing that was verified of a file."""
+
+    name: str
+    passed: bool
+    sentence: str
+
+
+def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> tuple[Headline, ...]:
+    """Return headlines that know by how much their approximate engine was measured to be off, at the same settings."""
+    known = parameters.get("accuracy")
+    if not known or known["differs"] or known["engine"] == str(EXACT):
+        return tuple(headlines)
+    found = []
+    for headline in headlines:
+        if headline.name in known["errors"]:
+            stated = known["errors"][headline.name]
+            error = ExpectedError(*(stated[name] for name in ExpectedError._fields))
+            size = error.size(headline.theory)
+            headline = replace(headline, bias=size * error.bias, bias_se=size * error.bias_se)
+        found.append(headline)
+    return tuple(found)
+
+
+def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
+    """Return the headlines that a dataset carries.
+
+    Raises
+    ------
+    FileError
+        If the file names headlines that it does not hold.
+
+    Examples
+    --------
+    >>> from atmosbox.run.runner import run
+    >>> box = run("elastic-collisions", duration="2 s")
+    >>> headlines_of(box)[0].name
+    'energy_of_light_discs'
+    """
+    found = []
+    try:
+        for name in json.loads(dataset.attrs.get("atmosbox_headlines", "[]")):
+            value = dataset[name]
+            theory = dataset.get(f"{name}_theory")
+            error = dataset.get(f"{name}_se")
+            tolerance = dataset.get(f"{name}_tolerance")
+            found.append(
+                Headline(
+                    name,
+                    float(value),
+                    float(error) if error is not None else 0.0,
+                    float(theory) if theory is not None else None,
+                    float(tolerance) if tolerance is not None else 0.0,
+                    str(value.attrs.get("comment", "")),
+                    str(value.attrs["units"]),
+                    str(value.attrs.get("display_units", value.attrs["units"])),
+                    str(value.attrs["long_name"]),
+                )
+            )
+        return with_bias(found, json.loads(dataset.attrs.get("atmosbox_parameters", "{}")))
+    except (KeyError, ValueError, TypeError) as error:
+        raise FileError(f"The headlines of this file cannot be read ({error}): run the scene again.") from error
+
+
+def verify(dataset: xr.Dataset) -> list[Check]:
+    """Check a dataset again: that it is complete, its ledger closes, and theory agrees within error.
+
+    Examples
+    --------
+    >>> from atmosbox.run.runner import run
+    >>> all(check.passed for check in verify(run("elastic-collisions", seed=2)))
+    True
+    """
+    checks = []
+    status = str(dataset.attrs.get("atmosbox_status", "unknown"))
+    frames = int(dataset.sizes.get("elapsed_time", 0))
+    what = f"the sweep is {status}" if "member" in dataset.sizes else f"the run is {status}, with {frames} frames"
+    checks.append(Check("complete", status == "complete", what))
+    bad = [
+        str(name)
+        for name, values in dataset.data_vars.items()
+        if values.dtype.kind == "f" and np.isinf(values.values).any()
+    ]
+    checks.append(Check("finite", not bad, f"infinite numbers in {', '.join(bad)}" if bad else "no number is infinite"))
+    if "ledger_residual" in dataset:
+        worst = float(np.max(dataset["ledger_residual"].values)) if frames else math.nan
+        checks.append(Check("ledger", worst <= LEDGER_LIMIT, f"the energy ledger closes to {worst:.1e}"))
+        checks.append(_balance(dataset))
+    for headline in headlines_of(dataset):
+        if headline.agrees is not None:
+            checks.append(
+                Check(
+                    headline.name,
+                    bool(headline.agrees),
+                    f"{headline.label}: misfit {headline.misfit:.3g} {headline.unit}, allowed {headline.allowed:.3g}"
+                    + (f", for its engine is known to be off by {headline.bias:.3g}" if headline.excused else ""),
+                )
+            )
+    return checks
+
+
+def _balance(dataset: xr.Dataset) -> Check:
+    """Sum the ledger anew from its entries."""
+    stores = ("kinetic_energy", "rotational_energy", "potential_energy", "condensed_energy")
+    total = sum(dataset[name].values for name in stores if name in dataset)
+    heat, work = dataset["heat_from_wall"].values, dataset["work_by_piston"].values
+    if "work_by_gravity" in dataset:
+        work = work + dataset["work_by_gravity"].values
+    made = dataset["numerical_heat"].values if "numerical_heat" in dataset else 0.0
+    start = total - (heat.sum(axis=1) + work + made)
+    scale = np.maximum.reduce([np.abs(total), np.abs(start), np.abs(heat).sum(axis=1) + np.abs(work)])
+    worst = float(np.max(np.abs(start - start[0]) / np.where(scale > 0.0, scale, 1.0))) if len(start) else math.nan
+    return Check(
+        "balance",
+        worst <= LEDGER_LIMIT,
+        f"energy less heat{', what the scheme made' if np.any(made) else ''} and work is the same in all frames to "
+        f"{worst:.1e}",
+    )

@@ -1,0 +1,105 @@
+"""What a scene is written with.
+
+A scene of your own needs little more than the names below, ``from atmosbox.scene import Setup, Panel, ...``; each is
+imported when it is first used.
+
+`settings`     what a user may set: `parameter`, `quantity`, `conversion` and `spelling` check it
+`setup`        what a scene hands to the run: its box, its instruments, its times
+`units`        the scale of a scene: engine units to SI
+`engines`      the engines a scene may use, and their options
+`instruments`  what is measured, one class each
+`statistics`   means with their standard errors
+`headline`     the numbers that a run is about, beside theory
+`panels`       the graphs of its figure, declared
+`knob`         what a class may change while the box runs
+`moisture`     water for a scene
+`piston`       a parcel under a piston
+`ascent`       what the scenes of lifted air share
+`exchange`     what the scenes of vapour over liquid share
+`sounding`     measured profiles of the atmosphere, read and checked
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from atmosbox.scene.engines import EngineChoice
+    from atmosbox.scene.headline import Headline
+    from atmosbox.scene.instruments import (
+        LAWS,
+        Air,
+        Discs,
+        DropSizes,
+        Environment,
+        Instrument,
+        Layers,
+        Leaving,
+        Lift,
+        MoistLift,
+        Molecules,
+        Readings,
+        Speeds,
+        Water,
+        wall_laws,
+    )
+    from atmosbox.scene.panels import Line, Panel
+    from atmosbox.scene.settings import SceneSettings, setting
+    from atmosbox.scene.setup import Series, Setup
+    from atmosbox.scene.statistics import block_average
+    from atmosbox.scene.units import Scale
+
+_HOMES = {
+    "engines": "EngineChoice",
+    "headline": "Headline",
+    "instruments": (
+        "LAWS Air Discs DropSizes Environment Instrument Layers Leaving "
+        "Lift MoistLift Molecules Readings Speeds Water wall_laws"
+    ),
+    "panels": "Line Panel",
+    "settings": "SceneSettings setting",
+    "setup": "Series Setup",
+    "statistics": "block_average",
+    "units": "Scale",
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
+
+__all__ = [
+    "LAWS",
+    "Air",
+    "Discs",
+    "DropSizes",
+    "EngineChoice",
+    "Environment",
+    "Headline",
+    "Instrument",
+    "Layers",
+    "Leaving",
+    "Lift",
+    "Line",
+    "MoistLift",
+    "Molecules",
+    "Panel",
+    "Readings",
+    "Scale",
+    "SceneSettings",
+    "Series",
+    "Setup",
+    "Speeds",
+    "Water",
+    "block_average",
+    "setting",
+    "wall_laws",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from the file that defines it."""
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

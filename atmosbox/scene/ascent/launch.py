@@ -1,0 +1,119 @@
+"""A parcel of moist air under its piston, ready to go."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.engine import FollowPressure, Mist
+from atmosbox.scene.ascent.finite_size import haste, least_cloud, walk
+from atmosbox.scene.ascent.way import RAIN, MoistAscent
+from atmosbox.scene.engines import EngineChoice
+from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
+from atmosbox.scene.knob import altitude, way
+from atmosbox.scene.moisture import water
+from atmosbox.scene.piston import CLOSING, moist_parcel, size_of_parcel
+from atmosbox.scene.setup import Setup
+from atmosbox.theory.constants import DRY_AIR
+
+__all__ = ["rise"]
+
+Array = NDArray[np.float64]
+Profile = Callable[[float], float]
+
+
+def rise(
+    ascent: MoistAscent,
+    engine: EngineChoice,
+    *,
+    height: Profile,
+    around: Profile,
+    frames: int,
+    looks: int,
+    seed: int,
+) -> Setup:
+    """Return a parcel of moist air at the start of its way.
+
+    Vapour that is more than saturation condenses in the first moments.
+
+    Parameters
+    ----------
+    ascent
+        The way.
+    engine
+        What lets its time pass.
+    height, around
+        Height of the parcel [m] and temperature of the air outside [K] when a share of the time, 0 to 1, has passed.
+    frames, looks
+        Into how many frames the way is divided, and how often the parcel is looked at in each.
+    seed
+        Seed of all random numbers.
+    """
+    rng = np.random.default_rng(seed)
+    scale, n = ascent.scale, ascent.molecules
+    density, sides, excess = size_of_parcel(scale, n, ascent.pressure, ideal=engine.ideal)
+    mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+    if engine.ideal:  # nobody is crowded towards anybody
+        mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
+    duration = ascent.length * mean_free_time
+    shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
+    driver = FollowPressure(
+        list(shares * duration),
+        list(outside / scale.pressure),
+        mean_free_time=mean_free_time,
+        relaxation=CLOSING,
+        excess=excess,
+    )
+    mist = Mist(
+        water(scale),
+        kT=1.0,
+        nuclei=ascent.nuclei,
+        rain=RAIN / mean_free_time if ascent.rains else 0.0,
+        keeps=ascent.keeps,
+        area=ascent.area * float(sides[0] * sides[1]),
+    )
+    parcel = moist_parcel(engine, n, ascent.vapour, sides, driver=driver, liquid=mist, rng=rng, seed=seed)
+    lasted = duration * scale.time
+    environment = Environment(
+        height=lambda time: height(min(time / lasted, 1.0)),
+        pressure=lambda time: math.exp(np.interp(time / lasted, shares, np.log(outside))),
+        temperature=lambda time: around(min(time / lasted, 1.0)),
+    )
+
+    def curve(pressure: Array) -> Array:
+        return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * looks)).temperature
+
+    warmth = ascent.temperature * haste(ascent).finite_speed(ascent.top_pressure)
+    base = ascent.base
+    return Setup(
+        parcel,
+        scale,
+        duration,
+        frames,
+        (Air(), Water(), MoistLift(driver, environment, curve, lambda p: walk(ascent, p))),
+        samples=looks,
+        facts={
+            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)
+            + " nm at the start, real size",
+            "weight of a molecule": "1: every molecule stands for itself",
+            "exaggeration": f"molecules {ascent.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+            "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
+            "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
+            "ascent": f"in {duration * scale.time * 1e9:.3g} ns",
+            **(
+                {"rain": f"comparable with theory from {1000.0 * least_cloud(ascent):.1f} g/kg on"}
+                if ascent.rains
+                else {}
+            ),
+            "error by the finite speed": f"up to {warmth:.2g} K",
+        },
+        knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
+        ends=True,
+    )
+
+
+def _climbs(height: Profile) -> bool:
+    """Return whether the way goes up all the time."""
+    return bool(np.all(np.diff([height(float(share)) for share in np.linspace(0.0, 1.0, 101)]) > 0.0))

@@ -1,0 +1,137 @@
+"""The way of a parcel of moist air, as theory knows it."""
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.scene.moisture import nuclei_heat_capacity, vapour_molecules
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+__all__ = ["RAIN", "MoistAscent"]
+
+Array = NDArray[np.float64]
+RAIN = 0.05
+"""How often a molecule that is too many for the cloud falls out per mean free time at the start, if it rains.
+
+Few molecules are liquid, and how many scatters: were it faster, each chance surplus would rain before it is gone.
+"""
+
+
+@dataclass(frozen=True)
+class MoistAscent:
+    """A way up of moist air, as theory knows it.
+
+    Parameters
+    ----------
+    molecules
+        How many there are at the start, of air and of vapour.
+    diameter
+        Of a molecule [m].
+    temperature, pressure, vapour_pressure
+        At the start [K, Pa, Pa].
+    route
+        Pressure outside at equal times, from the start to the end [Pa].
+    length
+        How long the way is, in mean free times at its start.
+    area
+        Area of all droplets, in floors of the box at the start.
+    most_liquid
+        Liquid that the cloud holds before it rains, in mass per dry air; infinite if it does not [kg kg-1].
+    """
+
+    molecules: int
+    diameter: float
+    temperature: float
+    pressure: float
+    vapour_pressure: float
+    route: tuple[float, ...]
+    length: float
+    area: float
+    most_liquid: float = math.inf
+
+    @property
+    def top_pressure(self) -> float:
+        """Lowest pressure on the way [Pa]."""
+        return min(self.route)
+
+    @property
+    def travel(self) -> float:
+        """By how much the logarithm of the pressure changes on the way, up and down."""
+        return float(np.abs(np.diff(np.log(self.route))).sum())
+
+    @property
+    def scale(self) -> Scale:
+        """The units of the box."""
+        return Scale(self.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
+
+    @property
+    def vapour(self) -> int:
+        """How many molecules are vapour at the start."""
+        return vapour_molecules(self.molecules, self.vapour_pressure, self.pressure)
+
+    @property
+    def total_water(self) -> float:
+        """Water per dry air, in mass: whole molecules make it a little other than asked for [kg kg-1]."""
+        return law.WATER_MASS_RATIO * self.vapour / (self.molecules - self.vapour)
+
+    @property
+    def nuclei(self) -> float:
+        """Heat capacity of the nuclei, in k."""
+        return nuclei_heat_capacity(self.molecules - self.vapour)
+
+    @property
+    def nuclei_heat(self) -> float:
+        """Heat capacity of the nuclei per molecule of air, in k."""
+        return self.nuclei / (self.molecules - self.vapour)
+
+    @property
+    def keeps(self) -> int:
+        """How many molecules of liquid the cloud holds before it rains, if it does."""
+        if math.isinf(self.most_liquid):
+            return 0
+        return round(self.most_liquid / law.WATER_MASS_RATIO * (self.molecules - self.vapour))
+
+    @property
+    def rains(self) -> bool:
+        """Whether liquid falls out."""
+        return math.isfinite(self.most_liquid)
+
+    def path(self, pressure: Array, share: Array) -> law.ParcelPath:
+        """Return temperature and water along pressures [Pa], met when these shares of the time, 0 to 1, have passed."""
+        start = self.pressure, self.temperature, self.total_water
+        if not self.rains:
+            return law.parcel_path(pressure, *start, nuclei_heat=self.nuclei_heat)
+        return law.raining_path(share * self.length, pressure, *start, RAIN, self.most_liquid, self.nuclei_heat)
+
+    @functools.cached_property
+    def planned(self) -> tuple[Array, law.ParcelPath]:
+        """The shares of the time of the route, and the path along it."""
+        shares = np.linspace(0.0, 1.0, len(self.route))
+        return shares, self.path(np.array(self.route), shares)
+
+    def planned_at(self, pressure: float) -> law.ParcelPath:
+        """Return temperature and water where the route first meets a pressure [Pa]."""
+        path = self.planned[1]
+        rising = slice(0, int(np.argmin(self.route)) + 1)
+        where = np.log(np.array(self.route)[rising])[::-1]
+        return law.ParcelPath(*(np.interp(np.log([pressure]), where, each[rising][::-1]) for each in path))
+
+    @property
+    def base(self) -> float:
+        """Pressure of the lifting condensation level [Pa], 0 if the air is dry."""
+        if not self.vapour:
+            return 0.0
+        e = self.pressure * self.vapour / self.molecules
+        dewpoint = min(float(law.dewpoint(e)), self.temperature)
+        return float(law.lcl(self.pressure, self.temperature, dewpoint, self.nuclei_heat)[0])
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """Where its temperature is compared with the adiabat [Pa]."""
+        shown = dict.fromkeys((85_000.0, 70_000.0, 50_000.0, self.top_pressure))
+        return tuple(p for p in shown if self.top_pressure <= p < self.pressure)

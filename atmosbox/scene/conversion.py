@@ -1,0 +1,215 @@
+"""From one unit to another: what a unit means, however it is spelled.
+
+The units that scenes declare are known here by heart; any other that a user types, from feet to inches of
+mercury, is looked up in pint, which is imported only then. What a user types is read by :mod:`atmosbox.scene.quantity`.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+import unicodedata
+from typing import Any, NamedTuple
+
+from atmosbox.errors import UnitError
+
+__all__ = ["MEASURES", "SIGNS", "Unit", "declared_unit", "from_si", "known_unit", "to_si"]
+
+
+class Unit(NamedTuple):
+    """A unit: value * up / down + offset is the value in the SI unit `si`."""
+
+    si: str
+    up: float = 1.0
+    down: float = 1.0
+    offset: float = 0.0
+
+
+_UNITS = {
+    "1": Unit("1"), "%": Unit("1", 1, 1e2), "kg kg-1": Unit("kg kg-1"), "g kg-1": Unit("kg kg-1", 1, 1e3),
+    "K": Unit("K"), "degC": Unit("K", offset=273.15),
+    "Pa": Unit("Pa"), "hPa": Unit("Pa", 1e2), "kPa": Unit("Pa", 1e3),
+    "m": Unit("m"), "km": Unit("m", 1e3), "cm": Unit("m", 1, 1e2), "mm": Unit("m", 1, 1e3),
+    "um": Unit("m", 1, 1e6), "nm": Unit("m", 1, 1e9),
+    "s": Unit("s"), "min": Unit("s", 60), "h": Unit("s", 3600), "ms": Unit("s", 1, 1e3),
+    "us": Unit("s", 1, 1e6), "ns": Unit("s", 1, 1e9), "ps": Unit("s", 1, 1e12), "fs": Unit("s", 1, 1e15),
+    "m s-1": Unit("m s-1"), "km h-1": Unit("m s-1", 1, 3.6), "m s-2": Unit("m s-2"),
+    "K m-1": Unit("K m-1"), "K km-1": Unit("K m-1", 1, 1e3), "J": Unit("J"),
+    "kg": Unit("kg"), "g": Unit("kg", 1, 1e3),
+    "kg mol-1": Unit("kg mol-1"), "g mol-1": Unit("kg mol-1", 1, 1e3),
+}  # fmt: skip
+
+MEASURES = {
+    "1": "a pure number", "K": "a temperature", "Pa": "a pressure", "m": "a length", "s": "a time",
+    "kg": "a mass", "J": "an energy", "N": "a force", "m2": "an area", "m3": "a volume", "s-1": "a frequency",
+    "m s-1": "a speed", "m s-2": "an acceleration", "K m-1": "a lapse rate", "kg m-3": "a density",
+    "kg kg-1": "a mixing ratio", "kg mol-1": "a molar mass",
+}  # fmt: skip
+"""What is measured in each unit of the SI that scenes use, in words."""
+
+_SPELLINGS = {
+    "C": "degC", "c": "degC", "celsius": "degC", "Celsius": "degC", "centigrade": "degC",
+    "F": "degF", "f": "degF", "fahrenheit": "degF", "Fahrenheit": "degF",
+    "k": "K", "kelvin": "K", "Kelvin": "K", "kelvins": "K", "pa": "Pa", "hpa": "hPa", "kpa": "kPa",
+    "mbar": "hPa", "mb": "hPa", "millibar": "hPa", "millibars": "hPa",
+    "μm": "um", "μs": "us", "percent": "%", "Torr": "torr",
+}  # fmt: skip
+_UNCLEAR = {"deg", "degree", "degrees"}  # of temperature or of angle, and which scale
+
+_DEGREES = re.compile(r"(?:°|\b(?i:deg(?:rees?)?))[\s_]*((?i:[cfk]|celsius|fahrenheit|kelvin))(?![A-Za-z])")
+_FACTOR = re.compile(r"([A-Za-zμÅΩ_]+|%)(?:(?:\^|\*\*)?([+-]?[1-9][0-9]?))?")
+_BETWEEN = re.compile(r"\s*(?:(/)|·|⋅|(?<!\*)\*(?!\*))\s*|\s+")
+SIGNS = str.maketrans({"−": "-", "º": "°", "˚": "°"})
+"""What keyboards and word processors put for - and °, for ``str.translate``."""
+
+
+def _canonical(text: str) -> str | None:
+    """Return the one spelling of a unit ("m s-2" for "m/s^2"), or None where the text cannot be one."""
+    if text in _UNITS:
+        return text
+    text = unicodedata.normalize("NFKC", text).translate(SIGNS)  # "m s⁻²" is "m s-2", "℃" is "°C"
+    text = _DEGREES.sub(lambda match: f"deg{match[1][0].upper()}", text).replace("degK", "K")
+    text = re.sub(r"\s*(\^|\*\*)\s*", r"\1", re.sub(r"\s+per\s+", "/", text))
+    parts = _BETWEEN.split(text)
+    factors: list[tuple[str, int]] = []
+    for part, slash in zip(parts[::2], [None, *parts[1::2]], strict=True):
+        match = _FACTOR.fullmatch(part)
+        if match is None or match[1] in _UNCLEAR or match[1].startswith("delta"):
+            return None
+        factors.append((_SPELLINGS.get(match[1], match[1]), int(match[2] or 1) * (-1 if slash else 1)))
+    if len(factors) > 1 or factors[0][1] != 1:  # a degree in a product is one of difference, as in degC/km
+        factors = [({"degC": "K", "degF": "delta_degF"}.get(name, name), power) for name, power in factors]
+    return " ".join(name if power == 1 else f"{name}{power}" for name, power in factors)
+
+
+@functools.cache
+def _registry() -> Any:
+    """Return pint's units, imported when the first unit is met that is not known by heart."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def _looked_up(name: str) -> Unit | None:
+    """Return a canonical unit from pint; None for no unit, a pure number or a logarithmic scale."""
+    from pint import PintError
+
+    registry = _registry()
+
+    def parsed(unit: str) -> Any:
+        return registry.parse_units(re.sub(r"([^\W\d]+)([+-]?\d+)", r"\1**\2", unit).replace(" ", "*"))
+
+    try:
+        unit = parsed(name)
+        zero, one, two = (registry.Quantity(x, unit).to_base_units().magnitude for x in (0.0, 1.0, 2.0))
+    except (PintError, ArithmeticError, LookupError, ValueError):  # no such unit, or one like "m-99"
+        return None
+    if unit.dimensionless or not math.isclose(two - one, one - zero):
+        return None
+    alike = (si for si in MEASURES if si not in ("1", "kg kg-1") and parsed(si).dimensionality == unit.dimensionality)
+    return Unit(next(alike, str(unit.dimensionality)), float(one - zero), 1.0, float(zero))
+
+
+@functools.lru_cache(maxsize=256)
+def known_unit(text: str) -> Unit | None:
+    """Return the unit of any spelling, known by heart or else from pint; None where there is none.
+
+    Parameters
+    ----------
+    text
+        The unit as a user types it.
+
+    Examples
+    --------
+    >>> known_unit("m/s^2") == known_unit("m s-2"), known_unit("blorp")
+    (True, None)
+    """
+    name = _canonical(text)
+    return None if name is None else _UNITS.get(name) or _looked_up(name)
+
+
+def declared_unit(unit: str) -> Unit:
+    """Return the unit that a scene declares.
+
+    Parameters
+    ----------
+    unit
+        The unit, such as "hPa", "degC", "K/km", "%", or "1" for a pure number.
+
+    Raises
+    ------
+    UnitError
+        If there is no such unit.
+
+    Examples
+    --------
+    >>> declared_unit("hPa").si
+    'Pa'
+    """
+    known = known_unit(unit)
+    if known is None:
+        raise UnitError("unit", unit, "is not known", 'give one such as "hPa", "degC", "K/km" or "1"')
+    return known
+
+
+def to_si(value: float, unit: str, *, difference: bool = False) -> float:
+    """Return a value in SI units.
+
+    Parameters
+    ----------
+    value
+        A number in `unit`.
+    unit
+        The unit, such as "hPa", "degC", "K/km", "%", or "1" for a pure number.
+    difference
+        Whether the value is a difference or an error bar: one of 2 degC is one of 2 K, not of 275.15 K.
+
+    Returns
+    -------
+    float
+        The value in Pa, K, K m-1, 1, ...
+
+    Raises
+    ------
+    UnitError
+        If there is no such unit.
+
+    Examples
+    --------
+    >>> to_si(25.0, "degC"), to_si(1013.25, "hPa"), to_si(0.5, "degC", difference=True)
+    (298.15, 101325.0, 0.5)
+    """
+    known = declared_unit(unit)
+    return value * known.up / known.down + (0.0 if difference else known.offset)
+
+
+def from_si(value: float, unit: str, *, difference: bool = False) -> float:
+    """Return a value of the SI in another unit; the inverse of :func:`to_si`.
+
+    Parameters
+    ----------
+    value
+        A number in Pa, K, K m-1, 1, ...
+    unit
+        The unit wanted.
+    difference
+        Whether the value is a difference or an error bar, to which no offset is added.
+
+    Returns
+    -------
+    float
+        The value in `unit`.
+
+    Raises
+    ------
+    UnitError
+        If there is no such unit.
+
+    Examples
+    --------
+    >>> from_si(298.15, "degC"), from_si(0.0098, "K/km")
+    (25.0, 9.8)
+    """
+    known = declared_unit(unit)
+    return (value - (0.0 if difference else known.offset)) * known.down / known.up

@@ -1,0 +1,168 @@
+"""Every engine as it is declared: its name, its options, and the class of its boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from atmosbox.errors import SettingError
+from atmosbox.scene.parameter import Parameter
+
+if TYPE_CHECKING:
+    from atmosbox.engine import Liquid, Parcel
+
+__all__ = ["ENGINES", "Engine"]
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine as it is declared.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    summary
+        What it does, in one line.
+    parcel
+        What returns the class of its parcels; nothing of the engine is loaded before.
+    parameters
+        Its options.
+    ideal
+        Whether its molecules take no room from each other: the pressure is n kT, without Z.
+    reference
+        What its method is described in, if anywhere but here.
+    moist
+        What returns the class of its parcels with a liquid in them, if it has one.
+    """
+
+    name: str
+    summary: str
+    parcel: Callable[[], type[Parcel]]
+    parameters: tuple[Parameter, ...] = ()
+    ideal: bool = False
+    reference: str = ""
+    moist: Callable[[Liquid], type[Parcel]] | None = None
+
+
+def _exact() -> type[Parcel]:
+    from atmosbox.engine import ParcelSet
+
+    return ParcelSet
+
+
+def _moist_exact(liquid: Liquid) -> type[Parcel]:
+    from atmosbox.engine import Drops
+    from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+    from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+
+    return DropParcelSet if isinstance(liquid, Drops) else MoistParcelSet
+
+
+def _stepped() -> type[Parcel]:
+    from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
+
+    return SteppedParcel
+
+
+def _dsmc() -> type[Parcel]:
+    from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+
+    return DsmcParcel
+
+
+def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
+    from atmosbox.engine import Drops
+    from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
+
+    if isinstance(liquid, Drops):
+        raise SettingError("engine", "dsmc", "knows no drops that can be seen", "give --engine exact, or a mist")
+    return MoistDsmcParcel
+
+
+def _classic() -> type[Parcel]:
+    from atmosbox.engine.classic.classic import ClassicParcel
+
+    return ClassicParcel
+
+
+def _number(name: str, default: float, low: float, high: float, help: str) -> Parameter:
+    return Parameter(name, "1", default, low, high, None, help, "float")
+
+
+def _word(name: str, choices: tuple[str, ...], help: str) -> Parameter:
+    return Parameter(name, "", choices[0], None, None, choices, help, "str")
+
+
+def _count(name: str, default: int, high: int, help: str) -> Parameter:
+    return Parameter(name, "1", default, 1, high, None, help, "int")
+
+
+def _switch(name: str, default: bool, help: str) -> Parameter:
+    return Parameter(name, "", default, None, None, None, help, "bool")
+
+
+_COLLISIONS = _switch("collisions", True, "whether molecules meet each other, and not walls alone")
+_DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
+
+ENGINES: Mapping[str, Engine] = MappingProxyType(
+    {
+        engine.name: engine
+        for engine in (
+            Engine(
+                "exact",
+                "every contact and every wall hit at its exact time, in order",
+                _exact,
+                (_COLLISIONS,),
+                reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
+                moist=_moist_exact,
+            ),
+            Engine(
+                "stepped",
+                "equal steps: all molecules move, then those that overlap and approach collide",
+                _stepped,
+                (
+                    _number("delta", 0.05, 1e-6, 1e3, _DELTA),
+                    _word("motion", ("parabola", "euler", "semi-implicit"), "how molecules fall"),
+                    _word(
+                        "smooth_walls",
+                        ("mirror", "fold", "flip", "clamp", "rewind"),
+                        "what smooth walls do with a molecule that has gone through them",
+                    ),
+                    _switch("approaching", True, "whether only pairs that approach collide"),
+                    _COLLISIONS,
+                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
+                ),
+            ),
+            Engine(
+                "dsmc",
+                "equal steps: in each cell molecules collide with whom chance chooses; for a hundred thousand and more",
+                _dsmc,
+                (
+                    _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
+                    _number("occupancy", 10.0, 1.0, 1e4, "mean number of molecules in a cell"),
+                    _number("cell", 0.5, 1e-3, 1e3, "side of a cell in mean free paths, in place of an occupancy"),
+                    _COLLISIONS,
+                    _count("threads", 1, 256, "on how many threads; the result is the same for any number"),
+                ),
+                ideal=True,
+                reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
+                moist=_moist_dsmc,
+            ),
+            Engine(
+                "classic",
+                "steps, as teaching applets take them: overlapping pairs swap velocities",
+                _classic,
+                (
+                    _number("delta", 0.1, 1e-6, 1e3, _DELTA),
+                    _word("scheme", ("spheres", "lookahead", "strips"), "which scheme, if not what suits the box"),
+                    _switch("closing_only", True, "whether pairs that are already parting are let go"),
+                    _COLLISIONS,
+                ),
+            ),
+        )
+    }
+)
+"""The engines by name, the one that is right to rounding first."""

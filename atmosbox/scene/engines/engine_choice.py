@@ -1,0 +1,166 @@
+"""The engine that is asked for, with its options: checked once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.errors import SettingError, UnknownSettingError
+from atmosbox.scene.engines.declared import ENGINES, Engine
+from atmosbox.scene.parameter import Value
+from atmosbox.scene.spelling import nearest
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import ArrayLike
+
+    from atmosbox.engine import Parcel
+
+__all__ = ["EXACT", "EngineChoice", "choose", "names", "used"]
+
+
+@dataclass(frozen=True)
+class EngineChoice:
+    """An engine with its options.
+
+    Parameters
+    ----------
+    engine
+        The engine.
+    options
+        The options that were given, by name; the engine has its own defaults for the rest.
+
+    Examples
+    --------
+    >>> str(choose("exact"))
+    'exact'
+    """
+
+    engine: Engine
+    options: Mapping[str, Value] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        """Return the words that ask for it."""
+        options = ",".join(f"{name}={_typed(value)}" for name, value in self.options.items())
+        return self.engine.name + (f":{options}" if options else "")
+
+    @property
+    def name(self) -> str:
+        """The name of the engine."""
+        return self.engine.name
+
+    @property
+    def ideal(self) -> bool:
+        """Whether the molecules of the engine take no room from each other, as those that never meet."""
+        return self.engine.ideal or self.options.get("collisions") is False
+
+    def make(self, position: ArrayLike, velocity: ArrayLike, **box: Any) -> Parcel:
+        """Return a parcel of this engine: what a scene calls in place of `atmosbox.engine.ParcelSet`.
+
+        Raises
+        ------
+        RefusedError
+            If the engine cannot do what the box asks for.
+        SettingError
+            If there is a ``liquid`` in the box, and the engine knows none.
+        """
+        parcel: Callable[..., Parcel] = self.engine.parcel()
+        if "liquid" in box:
+            if self.engine.moist is None:
+                able = " or ".join(f"--engine {engine.name}" for engine in ENGINES.values() if engine.moist is not None)
+                raise SettingError("engine", str(self), "knows no liquid water", f"give {able}")
+            parcel = self.engine.moist(box["liquid"])
+        return parcel(position, velocity, **self.options, **box)
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of the engines.
+
+    Examples
+    --------
+    >>> names()[0]
+    'exact'
+    """
+    return tuple(ENGINES)
+
+
+def choose(text: str | EngineChoice) -> EngineChoice:
+    """Return the engine that a text asks for.
+
+    Parameters
+    ----------
+    text
+        A name, or a name and options: ``stepped:delta=0.02``.
+
+    Raises
+    ------
+    SettingError
+        If there is no such engine or option, or the value of one is not allowed.
+
+    Examples
+    --------
+    >>> choose("exakt")
+    Traceback (most recent call last):
+        ...
+    atmosbox.errors.SettingError: engine = exakt is not one of exact, stepped, dsmc, classic: give --engine exact.
+    """
+    if isinstance(text, EngineChoice):
+        return text
+    name, colon, rest = str(text).strip().partition(":")
+    if name not in ENGINES:
+        near = nearest(name, ENGINES) or next(iter(ENGINES))
+        raise SettingError("engine", name, f"is not one of {', '.join(ENGINES)}", f"give --engine {near}")
+    engine = ENGINES[name]
+    if colon and not rest.strip():
+        raise SettingError("engine", text, "ends in a colon without options", f"give --engine {name}")
+    parameters = {parameter.name: parameter for parameter in engine.parameters}
+    options: dict[str, Value] = {}
+    for piece in rest.split(",") if rest else ():
+        key, equals, value = piece.partition("=")
+        key = key.strip().replace("-", "_")
+        if key not in parameters:
+            raise UnknownSettingError(key or piece, value, f"is no option of the engine {name}", _fix(engine, key))
+        if not equals:
+            raise SettingError(key, "", "has no value", _fix(engine, key))
+        if key in options:
+            raise SettingError(key, value, "is given twice", _fix(engine, key))
+        try:
+            options[key] = parameters[key].parse(value.strip())
+        except SettingError as error:
+            fix = error.fix.replace("--set ", f"--engine {name}:")
+            raise type(error)(error.setting, error.value, error.problem, fix) from None
+    return EngineChoice(engine, options)
+
+
+def used(dataset: xr.Dataset) -> EngineChoice:
+    """Return the engine that made a dataset.
+
+    Raises
+    ------
+    SettingError
+        If this version has no such engine.
+    """
+    made = json.loads(dataset.attrs.get("atmosbox_parameters", "{}"))
+    return choose(str(made.get("engine", "exact")))
+
+
+EXACT = EngineChoice(ENGINES["exact"])
+"""The engine that every scene runs on unless another is asked for."""
+
+
+def _typed(value: Value) -> str:
+    """Return a value as it is typed."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+
+def _fix(engine: Engine, key: str) -> str:
+    """Return what to type in place of an option that does not exist."""
+    known = {parameter.name: parameter for parameter in engine.parameters}
+    if not known:
+        return f"give --engine {engine.name}, which has no options"
+    near = known[nearest(key, known) or next(iter(known))]
+    return f"give --engine {engine.name}:{near.name}={near.typed()}"

@@ -1,0 +1,159 @@
+"""Moist air in a closed box of one temperature, as theory knows it: what saturates it, and how soon."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox import theory as law
+from atmosbox.scene.moisture import vapour_molecules
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+__all__ = ["MoistBox"]
+
+
+@dataclass(frozen=True)
+class MoistBox:
+    """A cube of moist air between heat baths, with liquid in it.
+
+    Parameters
+    ----------
+    molecules
+        How many there are, of air and of vapour.
+    temperature, pressure
+        Of the walls [K], and of the gas at the start [Pa].
+    humidity
+        Relative humidity at the start [1].
+    ideal
+        Whether molecules take no room.
+
+    Examples
+    --------
+    What condenses is what is too much; the fewer molecules there are, the more they scatter about that:
+
+    >>> box = MoistBox(10_000, 293.15, 1e5, 1.5)
+    >>> box.vapour, round(box.full)
+    (350, 233)
+    """
+
+    molecules: int
+    temperature: float
+    pressure: float
+    humidity: float
+    ideal: bool = False
+
+    @property
+    def scale(self) -> Scale:
+        """The units of the box."""
+        return Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
+
+    @functools.cached_property
+    def _packing(self) -> tuple[float, float]:
+        """Number density [1/diameter^3] and compressibility factor."""
+        wanted = self.pressure / self.scale.pressure
+        density, factor = wanted, 1.0
+        for _ in range(100):
+            factor = 1.0 if self.ideal else float(law.compressibility_factor(law.packing_fraction(density, 1.0)))
+            density = math.sqrt(density * wanted / factor)
+        return density, factor
+
+    @property
+    def side(self) -> float:
+        """Side of the cube that centres can reach [diameter]."""
+        return float((self.molecules / self._packing[0]) ** (1.0 / 3.0))
+
+    @property
+    def face(self) -> float:
+        """Area of one of its faces [m^2]."""
+        return (self.side * self.scale.length) ** 2
+
+    @property
+    def saturated(self) -> float:
+        """Vapour pressure of saturation [Pa]."""
+        return float(law.saturation_vapor_pressure(self.temperature))
+
+    @property
+    def full(self) -> float:
+        """How many molecules of vapour saturate the air, as far as pressure tells."""
+        return self.molecules * self.saturated / self.pressure
+
+    @property
+    def vapour(self) -> int:
+        """How many molecules of vapour there are at the start."""
+        return vapour_molecules(self.molecules, self.humidity * self.saturated, self.pressure)
+
+    @functools.cached_property
+    def share(self) -> float:
+        """Mean vapour pressure over that of saturation: a little less than 1, if so few molecules can saturate it."""
+        return self.share_at(self.temperature)
+
+    def share_at(self, temperature: float) -> float:
+        """Return the same when the walls of this box have another temperature [K]: then its water may not suffice."""
+        room = (self.side * self.scale.length) ** 3 / self._packing[1]
+        full = float(law.saturation_vapor_pressure(temperature)) * room / (BOLTZMANN * temperature)
+        return law.isothermal_vapor_number(self.vapour, temperature, room).mean / full
+
+    @property
+    def flux(self) -> float:
+        """How many molecules meet the liquid per area and time once they have settled [1/(m^2 s)]."""
+        return self.flux_at(self.temperature)
+
+    def flux_at(self, temperature: float) -> float:
+        """Return the same when the walls of this box have another temperature [K]."""
+        return self.share_at(temperature) * float(law.hertz_knudsen_flux(temperature))
+
+    def over_drops(self, liquid: ArrayLike, drops: ArrayLike, ball: float) -> NDArray[np.float64]:
+        r"""Return the vapour pressure over drops at rest, over that of saturation.
+
+        A drop that takes up a molecule pushes the gas away from the volume v that the molecule fills, with the room
+        that others' centres keep from it. That work raises the vapour pressure (Poynting),
+
+        .. math:: e = e_s\, e^{n v} \frac{L + 1}{L + D} .
+
+        Real molecules fill too little for that to show: drops s times too wide fill s^3 times too much. The last
+        factor counts the ways to share L molecules out among D drops, some of which have none to give.
+
+        Parameters
+        ----------
+        liquid, drops : (time,)
+            How many molecules L are in how many drops D.
+        ball
+            Radius of the ball that a molecule fills, and of a nucleus [diameter].
+
+        Examples
+        --------
+        >>> air = MoistBox(10_000, 293.15, 1e5, 1.5)
+        >>> [round(float(air.over_drops(300, 1, size * 0.52)), 3) for size in (1, 6, 8)]
+        [1.001, 1.176, 1.467]
+        """
+        liquid, drops = np.asarray(liquid, np.float64), np.asarray(drops, np.float64)
+        radius = ball * np.cbrt(1.0 + liquid / drops)
+        volume = 4.0 / 3.0 * math.pi * ball**3 * (1.0 + 0.5 / radius) ** 2
+        room = self.side**3 - drops * 4.0 / 3.0 * math.pi * (radius + 0.5) ** 3
+        gas = self.molecules - liquid
+        share: NDArray[np.float64] = np.exp(gas / room * volume) * (liquid + 1.0) / (liquid + drops)
+        return share
+
+    def memory(self, faces: float) -> float:
+        r"""Return how long the number of molecules of vapour remembers a chance surplus [s].
+
+        A surplus must find liquid, :math:`4V/A\bar c`, but its latent heat must leave the droplets with the air that
+        hits them, and the air with the walls: until then the liquid is too warm to keep it. A hit takes 3 kT along.
+        With the share x of the vapour and :math:`\ell = L/kT`,
+
+        .. math:: \frac{4 V}{A \bar c_v} + \frac{x \ell^2}{3} \frac{4 V}{\bar c_a} \left[\frac1A + \frac1{A_w}\right].
+
+        Parameters
+        ----------
+        faces
+            Area of the liquid, in faces of the box.
+        """
+        latent = law.BINDING_TEMPERATURE / self.temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
+        find, cool = (4.0 * self.side / float(law.mean_speed(1.0, mass)) for mass in (law.WATER_MASS_RATIO, 1.0))
+        held = self.saturated / self.pressure * latent**2 / 3.0 * cool * (1.0 / faces + 1.0 / 6.0)
+        return float((find / faces + held) * self.scale.time)

@@ -1,0 +1,145 @@
+"""Air over a pool at constant pressure, as theory knows it: how long it takes to come to rest, and where it ends."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.engine.core.lift import stiffness
+from atmosbox.scene.moisture import vapour_molecules
+from atmosbox.scene.piston import size_of_parcel
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+__all__ = ["AirOverPool"]
+
+FLATNESS = 0.3
+"""Height of the box over its width: the flatter, the oftener every molecule meets the pool."""
+CLOSING = 5.0
+"""Within how many mean free times the piston closes a gap of pressure, unless sound needs a third of that."""
+AIR_HEAT = 3.5
+"""Heat capacity of a molecule of air at constant pressure, in k."""
+
+
+@dataclass
+class AirOverPool:
+    """Air over a pool under a piston that keeps the pressure.
+
+    Parameters
+    ----------
+    molecules
+        How many there are in the gas at the start, of air and of vapour.
+    pool
+        How many there are in the liquid at the start.
+    diameter
+        Of a molecule [m].
+    temperature, pressure, vapour_pressure
+        At the start [K, Pa, Pa].
+    ideal
+        Whether molecules take no room.
+
+    Attributes
+    ----------
+    density, sides, excess
+        See `size_of_parcel`.
+    vapour, air
+        Numbers of molecules at the start.
+    free_time, exchange, closing, settling
+        Mean free time; how long a molecule of vapour takes to meet the pool; how long the piston takes to close a gap
+        of pressure; and within which time all comes to rest [reduced time].
+    """
+
+    molecules: int
+    pool: int
+    diameter: float
+    temperature: float
+    pressure: float
+    vapour_pressure: float
+    ideal: bool = False
+    density: float = field(init=False)
+    sides: NDArray[np.float64] = field(init=False)
+    excess: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.scale = Scale(self.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
+        self.density, self.sides, self.excess = size_of_parcel(
+            self.scale, self.molecules, self.pressure, ideal=self.ideal, flatness=FLATNESS
+        )
+        self.vapour = vapour_molecules(self.molecules, self.vapour_pressure, self.pressure)
+        self.air = self.molecules - self.vapour
+        self.free_time = float(law.mean_free_time(self.density, 1.0, 1.0, 1.0))
+        height = float(self.sides[2])
+        speed = float(law.mean_speed(1.0, law.WATER_MASS_RATIO))
+        self.exchange = 4.0 * height / speed
+        diffusing = 12.0 * height**2 / (math.pi**2 * self.free_time * speed**2)
+        self.closing = max(CLOSING * self.free_time, 3.0 * height / math.sqrt(1.4))
+        self.settling = 5.0 * max(self.exchange + diffusing, self.closing)
+
+    @property
+    def memory(self) -> float:
+        """How long the number of molecules of vapour remembers a chance surplus [s]."""
+        return 0.5 * (self.exchange + self.free_time) * self.scale.time
+
+    @property
+    def end(self) -> law.EvaporationEquilibrium:
+        """Where a large parcel ends: the balance of enthalpy."""
+        return law.evaporation_equilibrium(self.pressure, self.temperature, self.air, self.vapour, self.pool)
+
+    @functools.cached_property
+    def rest(self) -> law.IsobaricWater:
+        """What a parcel of so few molecules comes to on average."""
+        return law.isobaric_water(self.pressure, self.temperature, self.air, self.vapour, self.pool)
+
+    @property
+    def floor(self) -> float:
+        """Area of the pool [m^2]."""
+        return float(self.sides[0] * self.sides[1]) * self.scale.length**2
+
+    def rate(self, vapour_pressure: float, temperature: float) -> float:
+        """Return how many molecules of vapour meet the pool per time [1/s]."""
+        return (
+            float(law.hertz_knudsen_flux(temperature) * vapour_pressure / law.saturation_vapor_pressure(temperature))
+            * self.floor
+        )
+
+    @property
+    def latent(self) -> float:
+        """Latent heat of a molecule at the end, over kT: also by how many per cent e_s rises with one of T."""
+        return law.BINDING_TEMPERATURE / self.rest.temperature - law.LIQUID_HEAT_CAPACITY + law.VAPOR_HEAT_CAPACITY
+
+    @property
+    def heat_capacity(self) -> float:
+        """Heat capacity of gas and pool at the end, at constant pressure and without the latent heat, in k."""
+        rest = self.rest
+        gas = AIR_HEAT * self.air + law.VAPOR_HEAT_CAPACITY * rest.vapor
+        return gas + law.LIQUID_HEAT_CAPACITY * max(self.pool + self.vapour - rest.vapor, 0.0)
+
+    def loss(self, time: float) -> float:
+        r"""Return how much heat the piston may have taken by a time [reduced], in kelvins of all there is.
+
+        It moves when the pressure has changed, which is a little late: while it gives way the pressure is above that
+        outside, and more work is done than is needed; while it closes in, less. Of a change S of ln p, at once, that
+        costs :math:`S^2 / 2 \Gamma` of p V. The noise that the heat between pool and air makes in ln p costs its
+        variance over :math:`\Gamma`, again within each time that the piston needs.
+        """
+        rest = self.rest
+        later = self.air + rest.vapor
+        change = math.log(later * rest.temperature / (self.molecules * self.temperature))
+        all_of_it = self.heat_capacity - later
+        gas = (AIR_HEAT - 1.0) * self.air + (law.VAPOR_HEAT_CAPACITY - 1.0) * rest.vapor
+        noise = 1.0 / gas - 1.0 / all_of_it + rest.variance * (self.latent / all_of_it) ** 2
+        lost = (0.5 * change**2 + noise * time / self.closing) / stiffness(1.0, 2.0 * gas / later)
+        kelvin: float = self.temperature * later / self.heat_capacity * lost
+        return kelvin
+
+    def walk(self, time: float) -> float:
+        r"""Return by how much chance lets that heat scatter from run to run [K].
+
+        The variance of work is twice what is lost of it, in kT (Jarzynski 1997, doi:10.1103/PhysRevLett.78.2690).
+        """
+        return math.sqrt(2.0 * self.rest.temperature * self.loss(time) / self.heat_capacity)

@@ -1,0 +1,36 @@
+"""Instruments: what a scene measures, each one a class that looks at the molecules and remembers.
+
+A scene carries only the instruments that it needs. Each is shown the box at every sample (``look``) and
+at the end of every frame (``close``); asked at any time (``readings``), it gives what it has, in SI
+units, by the names that `diagnostics` declares.
+"""
+
+from atmosbox.scene.instruments.air import Air
+from atmosbox.scene.instruments.disc_motion import Discs
+from atmosbox.scene.instruments.drop_size import DropSizes
+from atmosbox.scene.instruments.emitted import Leaving
+from atmosbox.scene.instruments.instrument import Instrument, Readings
+from atmosbox.scene.instruments.layer import Layers
+from atmosbox.scene.instruments.lifted_air import Environment, Lift
+from atmosbox.scene.instruments.moist_lift import MoistLift
+from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
+from atmosbox.scene.instruments.speeds import Speeds
+from atmosbox.scene.instruments.water import Water
+
+__all__ = [
+    "LAWS",
+    "Air",
+    "Discs",
+    "DropSizes",
+    "Environment",
+    "Instrument",
+    "Layers",
+    "Leaving",
+    "Lift",
+    "MoistLift",
+    "Molecules",
+    "Readings",
+    "Speeds",
+    "Water",
+    "wall_laws",
+]

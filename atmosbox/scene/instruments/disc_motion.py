@@ -1,0 +1,72 @@
+"""Every disc of a plane gas, and the accounts of their energy and momentum."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Parcel, Snapshot
+from atmosbox.engine.core.measure import momentum
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["Discs"]
+
+Array = NDArray[np.float64]
+
+
+class Discs:
+    """Every disc of a plane gas, the energies of the light and the heavy half, and the momentum account."""
+
+    def __init__(self) -> None:
+        self._position: list[Array] = []
+        self._velocity: list[Array] = []
+        self._momentum: list[Array] = []
+        self._given: list[Array] = []
+        self._mass = np.zeros(0)
+        self._diameter = np.zeros(0)
+        self._length = np.zeros(3)
+
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Need no look between frames."""
+
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Remember all discs."""
+        outward = parcel.wall_impulse
+        self._given.append(np.array([outward[0] - outward[1], outward[2] - outward[3], outward[4] - outward[5]]))
+        self._position.append(snapshot.position)
+        self._velocity.append(snapshot.velocity)
+        self._momentum.append(momentum(parcel, snapshot))
+        self._mass, self._diameter, self._length = parcel.mass, parcel.diameter, parcel.length
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the discs and their accounts."""
+        if not self._position:
+            return Readings()
+        velocity = np.array(self._velocity)
+        energy = 0.5 * self._mass * np.sum(velocity**2, axis=2)
+        total = energy.sum(axis=1)
+        p = np.array(self._momentum)
+        missing = (p - np.array(self._given)) - (p[0] - self._given[0])
+        size = math.sqrt(2.0 * float(self._mass.sum()) * float(total[0])) or 1.0
+        order = np.argsort(self._mass, kind="stable")
+        half = len(order) // 2
+        light_energy = energy[:, order[:half]].mean(axis=1) * scale.energy
+        heavy_energy = energy[:, order[half:]].mean(axis=1) * scale.energy
+        frames = np.arange(len(energy)) + 1.0
+        return Readings(
+            kinetic_energy_light=light_energy,
+            kinetic_energy_heavy=heavy_energy,
+            running_energy_light=np.cumsum(light_energy) / frames,
+            running_energy_heavy=np.cumsum(heavy_energy) / frames,
+            momentum=p * scale.mass * scale.velocity,
+            momentum_residual=np.sqrt(np.sum(missing**2, axis=1)) / size,
+            energy_change=total / total[0] - 1.0,
+            disc_position=np.array(self._position) * scale.length,
+            disc_velocity=velocity * scale.velocity,
+            disc_mass=self._mass * scale.mass,
+            disc_diameter=self._diameter * scale.length,
+            box_length=self._length * scale.length,
+        )

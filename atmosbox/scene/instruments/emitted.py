@@ -1,0 +1,60 @@
+"""With which energy molecules leave the liquid."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from atmosbox.engine import Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["Leaving"]
+
+
+class Leaving:
+    """The share of the molecules that evaporate by energy, above that of a molecule at rest in the liquid.
+
+    That is the binding energy and what they fly and rotate with outside. Below the binding energy none leaves, and
+    the bins there stay empty. All that have left since the start are counted: each is independent of the others, so
+    that the standard error of a share q of n is sqrt(q (1 - q) / n).
+
+    Parameters
+    ----------
+    binding_energy
+        What it takes to pull a molecule out of the liquid [reduced energy].
+    merged
+        How many of the engine's bins make one.
+    """
+
+    def __init__(self, binding_energy: float, merged: int = 2) -> None:
+        self._binding = binding_energy
+        self._merged = merged
+        self._edges = np.array([0.0, 1.0])
+        self._counts = np.zeros(1)
+
+    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Need no look at single molecules."""
+
+    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Read how many have left with which energy."""
+        edges, counts = parcel.emitted_energy
+        self._edges, self._counts = edges[:: self._merged], counts.reshape(-1, self._merged).sum(axis=1)
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the histogram, from no energy at all on; see `Instrument`."""
+        width = float(self._edges[1])
+        below = np.linspace(0.0, self._binding, max(round(self._binding / width), 1), endpoint=False)
+        edges = np.concatenate([below, self._binding + self._edges]) * scale.energy
+        counts = np.concatenate([np.zeros(len(below)), self._counts])
+        out = Readings(energy=0.5 * (edges[1:] + edges[:-1]), energy_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
+        number = counts.sum()
+        if number:
+            share, widths = counts / number, np.diff(edges)
+            out["leaving_energy_probability_density"] = share / widths
+            out["leaving_energy_probability_density_se"] = np.sqrt(share * (1.0 - share) / number) / widths
+        else:
+            out["leaving_energy_probability_density"] = np.full(len(counts), np.nan)
+            out["leaving_energy_probability_density_se"] = np.full(len(counts), np.nan)
+        return out

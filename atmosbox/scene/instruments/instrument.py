@@ -1,0 +1,27 @@
+"""What every instrument does, and what it gives."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from atmosbox.engine import Parcel, Snapshot
+from atmosbox.scene.units import Scale
+
+__all__ = ["Instrument", "Readings"]
+
+
+class Readings(dict[str, Any]):
+    """Variables and coordinates by name, in SI units."""
+
+
+class Instrument(Protocol):
+    """What every instrument does."""
+
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """See the molecules at a sample."""
+
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Close a frame."""
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return what has been measured; averages leave out the first ``settle`` frames."""

@@ -1,0 +1,96 @@
+"""A parcel of moist air on its way, and the air around it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import FollowPressure, Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.lifted_air import REFERENCE_PRESSURE, Environment
+from atmosbox.scene.instruments.water import gas_kT
+from atmosbox.scene.statistics import successive_error
+from atmosbox.scene.units import Scale
+
+__all__ = ["MoistLift"]
+
+Array = NDArray[np.float64]
+
+
+class MoistLift:
+    r"""A parcel of moist air on its way: temperature and pressure of parcel and environment against height.
+
+    Both are means over the looks within a frame; of the pressure, its logarithm. The number of molecules of vapour is
+    never at rest, and with it the temperature: each molecule that condenses warms the others. That noise has a
+    memory of a frame or two. How large it is in the mean of a frame is told by how much the misfit from the adiabat
+    changes within three frames, by `atmosbox.scene.statistics.successive_error`. To it comes the noise of the piston's
+    work, which adds up on the way.
+
+    Parameters
+    ----------
+    driver
+        The driver of the piston, which knows the pressure of the parcel.
+    environment
+        The air around.
+    curve
+        Temperatures [K] that theory expects along a sequence of pressures [Pa], in the order in which they are met.
+    walk
+        Standard deviation that the piston's work has left behind at a pressure [Pa], as a share of the temperature.
+    """
+
+    def __init__(
+        self,
+        driver: FollowPressure,
+        environment: Environment,
+        curve: Callable[[Array], Array],
+        walk: Callable[[Array], Array],
+    ) -> None:
+        self._driver = driver
+        self._environment = environment
+        self._curve = curve
+        self._walk = walk
+        self._looks: list[tuple[float, float]] = []
+        self._seen: list[list[tuple[float, float]]] = []
+        self._rows: list[tuple[float, ...]] = []
+
+    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Read temperature and pressure."""
+        self._looks.append((gas_kT(parcel), self._driver.pressure(parcel)))
+
+    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Read the state of the box at the end of a frame."""
+        self._seen.append(self._looks)
+        self._looks = []
+        self._rows.append((parcel.time, parcel.volume, parcel.ceiling, parcel.piston_velocity))
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series of parcel and environment; see `Instrument`."""
+        if not self._rows:
+            return Readings()
+        time, volume, ceiling, velocity = np.array(self._rows).T
+        kT, p = np.moveaxis(np.array(self._seen), 2, 0)
+        temperature, pressure = kT * scale.temperature, p * scale.pressure
+        expected = self._curve(pressure.ravel()).reshape(pressure.shape)
+        misfit = (temperature - expected).mean(axis=1)
+        parcel_temperature = temperature.mean(axis=1)
+        parcel_pressure = np.exp(np.log(pressure).mean(axis=1))
+        error = np.hypot(successive_error(misfit, lag=3), self._walk(parcel_pressure) * parcel_temperature)
+        around = self._environment
+        middle = time - 0.5 * np.diff(time, prepend=0.0)
+        middle = np.array([self._driver.course.moment(t) for t in middle]) * scale.time
+        return Readings(
+            parcel_temperature=parcel_temperature,
+            parcel_temperature_se=error,
+            parcel_pressure=parcel_pressure,
+            parcel_potential_temperature=parcel_temperature * (REFERENCE_PRESSURE / parcel_pressure) ** (2.0 / 7.0),
+            parcel_volume=volume * scale.length**3 * scale.weight,
+            parcel_height=np.array([around.height(t) for t in middle]),
+            environment_temperature=np.array([around.temperature(t) for t in middle]),
+            environment_pressure=np.array([around.pressure(t) for t in middle]),
+            adiabat_temperature=expected.mean(axis=1),
+            piston_height=ceiling * scale.length,
+            piston_velocity=velocity * scale.velocity,
+        )

@@ -1,0 +1,113 @@
+"""Where every molecule is, and in what kind of box."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import DRY_AIR, WATER
+
+__all__ = ["LAWS", "Molecules", "wall_laws"]
+
+Array = NDArray[np.float64]
+Single = NDArray[np.float32]
+
+LAWS = ("specular", "periodic", "heat_bath", "piston", "pool")
+"""What a wall may be, in the order of the numbers that the engine and the file give these laws."""
+
+
+def wall_laws(parcel: Any) -> tuple[str, ...]:
+    """Return what each of the six walls is, in the order x low, x high, y low, y high, z low, z high.
+
+    Parameters
+    ----------
+    parcel : Parcel
+        A box of molecules, of any engine.
+
+    Returns
+    -------
+    tuple of str
+        Of `LAWS`.
+
+    Examples
+    --------
+    >>> from atmosbox.engine import ParcelSet
+    >>> from atmosbox.engine.core.walls import HeatBath, Piston, Specular
+    >>> walls = (Specular(),) * 4 + (HeatBath(1.0), Piston())
+    >>> wall_laws(ParcelSet([[1, 1, 1]], [[1, 0, 0]], length=(4, 4, 3), walls=walls))[4:]
+    ('heat_bath', 'piston')
+    """
+    return tuple(LAWS[int(law)] for law in parcel._walls.law)
+
+
+class Molecules:
+    """Places and speeds of all molecules and the box they are in, for who asked for them with ``--save-molecules``.
+
+    A molecule that is in the liquid has neither place nor speed, and reads NaN. Where there is water, it is told which
+    molecules are water, and of drops that can be seen where they are.
+    """
+
+    def __init__(self) -> None:
+        self._position: list[Single] = []
+        self._speed: list[Single] = []
+        self._sides: list[Array] = []
+        self._drops: list[tuple[Array, Array]] = []
+        self._mass = np.zeros(0)
+        self._diameter = np.zeros(0)
+        self._laws: tuple[str, ...] = ()
+        self._moist = False
+
+    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Need no look between frames."""
+
+    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Remember all molecules, in single precision, the drops and how large the box is."""
+        present = parcel.present
+        position = np.full((present.size, 3), np.nan, np.float32)
+        speed = np.full(present.size, np.nan, np.float32)
+        position[present] = snapshot.position
+        speed[present] = np.sqrt(np.sum(snapshot.velocity**2, axis=1))
+        self._position.append(position)
+        self._speed.append(speed)
+        self._sides.append(np.array(parcel.length))
+        if hasattr(parcel, "drops"):
+            self._drops.append(parcel.drops()[:2])
+        if not self._laws:
+            self._laws, self._moist = wall_laws(parcel), hasattr(parcel, "vapour")
+            self._mass, self._diameter = np.full(present.size, np.nan), np.full(present.size, np.nan)
+        if np.isnan(self._mass).any():  # only water may never have been in the gas
+            self._mass[present], self._diameter[present] = parcel.mass, parcel.diameter
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return places and speeds, what each molecule is, and the box."""
+        if not self._position:
+            return Readings()
+        mass, diameter = self._mass * scale.mass, self._diameter * scale.length
+        hidden = np.isnan(mass)
+        water = hidden | (mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass))
+        if hidden.any():
+            mass[hidden] = WATER.molecule_mass
+            diameter[hidden] = np.nanmean(diameter[water] if not hidden[water].all() else diameter)
+        found = Readings(
+            molecule_position=np.array(self._position) * np.float32(scale.length),
+            molecule_speed=np.array(self._speed) * np.float32(scale.velocity),
+            molecule_mass=mass,
+            molecule_diameter=diameter,
+            box_side=np.array(self._sides) * scale.length,
+            wall_law=np.array([LAWS.index(law) for law in self._laws], np.int8),
+        )
+        if self._moist:
+            found["species"] = water.astype(np.int8)
+        if self._drops:
+            most = max(len(radius) for _, radius in self._drops)
+            place = np.full((len(self._drops), most, 3), np.nan)
+            wide = np.full((len(self._drops), most), np.nan)
+            for frame, (centre, radius) in enumerate(self._drops):
+                place[frame, : len(radius)], wide[frame, : len(radius)] = centre, radius
+            found |= Readings(drop_position=place * scale.length, drop_radius=wide * scale.length)
+        return found

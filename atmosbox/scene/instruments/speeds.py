@@ -1,0 +1,55 @@
+"""How fast the molecules are."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Parcel, Snapshot
+from atmosbox.engine.core.measure import speed_counts
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.statistics import block_average
+from atmosbox.scene.units import Scale
+
+__all__ = ["Speeds"]
+
+Array = NDArray[np.float64]
+_BLOCKS = 20
+
+
+class Speeds:
+    """The share of molecules by speed.
+
+    Parameters
+    ----------
+    edges : (bin + 1,)
+        Bounds of the bins [reduced velocity].
+    """
+
+    def __init__(self, edges: Array) -> None:
+        self._edges = np.asarray(edges, np.float64)
+        self._counts = np.zeros(self._edges.size - 1)
+        self._seen = 0
+        self._frames: list[Array] = []
+
+    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Count by speed."""
+        self._counts += speed_counts(snapshot, self._edges)
+        self._seen += parcel.number
+
+    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Close the counts of a frame."""
+        self._frames.append(self._counts / max(self._seen, 1) / np.diff(self._edges))
+        self._counts = np.zeros_like(self._counts)
+        self._seen = 0
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the histogram with the standard errors of 20 blocks."""
+        edges = self._edges * scale.velocity
+        out = Readings(speed=0.5 * (edges[1:] + edges[:-1]), speed_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
+        frames = np.array(self._frames[settle:])
+        if len(frames) >= 2:
+            mean, error = block_average(frames, min(_BLOCKS, len(frames)))
+            out["speed_probability_density"] = mean / scale.velocity
+            out["speed_probability_density_se"] = error / scale.velocity
+        return out

@@ -1,0 +1,111 @@
+"""The hygrometer: vapour, liquid, and the two rates at which they turn into each other."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine import Parcel, Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["Water", "gas_kT", "vapour_pressure"]
+
+_CRITICAL = 647.0  # K; above it nothing saturates
+
+
+def gas_kT(parcel: Parcel) -> float:
+    """Return the temperature of all molecules of the gas by all their energy, rotation included [energy].
+
+    Examples
+    --------
+    >>> from atmosbox.engine import ParcelSet
+    >>> gas_kT(ParcelSet([[1, 1, 1], [3, 3, 1]], [[1, 0, 0], [0, 2, 0]], length=(4, 4, 3))) * 6.0
+    5.0
+    """
+    return 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
+
+
+def vapour_pressure(parcel: Any, kT: float) -> float:
+    """Return the share of the vapour in the pressure n k T Z [energy/length^3]."""
+    density = parcel.open_density
+    if not density > 0.0:
+        return 0.0
+    factor = 1.0
+    if not parcel.ideal:
+        filled = float(law.packing_fraction(parcel.number / parcel.volume, float(parcel.diameter[0])))
+        factor = float(law.compressibility_factor(filled))
+    pressure: float = parcel.vapour / parcel.number * density * kT * factor
+    return pressure
+
+
+class Water:
+    """Vapour pressure and relative humidity, the liquid and its temperature, and the two rates.
+
+    All are means over the looks within a frame; the numbers of molecules are those at its end.
+    """
+
+    def __init__(self) -> None:
+        self._looks: list[tuple[float, float, float]] = []
+        self._rows: list[tuple[float, ...]] = []
+        self._energy: list[float] = []
+        self._counts: list[tuple[int, int, int]] = []
+        self._last = (0.0, 0, 0)
+
+    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Read vapour pressure and temperatures."""
+        kT = gas_kT(parcel)
+        self._looks.append((kT, vapour_pressure(parcel, kT), parcel.liquid_kT))
+
+    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Read the counters."""
+        time, condensed, evaporated = self._last
+        lasted = parcel.time - time
+        means = np.mean(self._looks, axis=0)
+        air = parcel.number - parcel.vapour
+        self._rows.append(
+            (
+                *means,
+                (parcel.condensed - condensed) / lasted,
+                (parcel.evaporated - evaporated) / lasted,
+                parcel.vapour / air if air else math.nan,
+                parcel.liquid / air if air else math.nan,
+                parcel.rained / air if air else math.nan,
+            )
+        )
+        self._energy.append(parcel.condensed_energy)
+        self._counts.append((parcel.vapour, parcel.liquid, parcel.rained))
+        self._last = (parcel.time, parcel.condensed, parcel.evaporated)
+        self._looks = []
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series; see `Instrument`."""
+        if not self._rows:
+            return Readings()
+        kT, pressure, liquid_kT, condensing, evaporating, vapour, liquid, rain = np.array(self._rows).T
+        counts = np.array(self._counts)
+        saturation = law.saturation_vapor_pressure(np.minimum(kT * scale.temperature, _CRITICAL))
+        e = pressure * scale.pressure
+        with np.errstate(divide="ignore", invalid="ignore"):
+            humidity = np.where(saturation > 0.0, e / saturation, np.nan)
+        found = Readings(
+            water_vapor_partial_pressure=e,
+            saturation_vapor_pressure=saturation,
+            relative_humidity=humidity,
+            gas_temperature=kT * scale.temperature,
+            liquid_temperature=liquid_kT * scale.temperature,
+            condensation_rate=condensing * scale.weight / scale.time,
+            evaporation_rate=evaporating * scale.weight / scale.time,
+            humidity_mixing_ratio=vapour * law.WATER_MASS_RATIO,
+            cloud_liquid_water_mixing_ratio=liquid * law.WATER_MASS_RATIO,
+            vapor_molecule_count=counts[:, 0],
+            liquid_molecule_count=counts[:, 1],
+            rained_molecule_count=counts[:, 2],
+            condensed_energy=np.array(self._energy) * scale.total_energy,
+        )
+        if counts[-1, 2]:
+            found["rain_mixing_ratio"] = rain * law.WATER_MASS_RATIO
+        return found

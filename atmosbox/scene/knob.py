@@ -1,0 +1,190 @@
+"""What the class may turn while a box runs: a name, a range, and what the box then does.
+
+A scene lists its knobs in its `Setup`, beside its instruments; ``atmosbox live`` makes a slider of each. Every other
+setting of the scene has a slider too, but the box begins anew with it. A knob of one's own is a `Knob` with a
+function; those that most boxes need are made by the functions below.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox.scene.conversion import from_si, to_si
+
+if TYPE_CHECKING:
+    from atmosbox.engine import FollowPressure, Parcel
+    from atmosbox.scene.settings import SceneSettings
+    from atmosbox.scene.units import Scale
+
+__all__ = ["Knob", "altitude", "gravity", "wall_temperature", "way"]
+
+
+@dataclass(frozen=True)
+class Knob:
+    """Something of a box that may be changed while it runs.
+
+    Parameters
+    ----------
+    name
+        Its name; that of a setting if it stands for one, which then no longer makes the box begin anew.
+    help
+        What it is, in one line.
+    unit
+        The unit in which it is turned, as settings spell it.
+    low, high
+        The lowest and the highest value, in `unit`.
+    value
+        Where it stands when the box begins, in `unit`.
+    turn
+        Told the new value in SI units; may raise `atmosbox.engine.RefusedError`.
+
+    Raises
+    ------
+    ValueError
+        If the value does not lie between the lowest and the highest.
+
+    Examples
+    --------
+    >>> seen = []
+    >>> Knob("temperature", "of the walls", "degC", 0.0, 100.0, 25.0, seen.append).set(50.0)
+    >>> seen
+    [323.15]
+    """
+
+    name: str
+    help: str
+    unit: str
+    low: float
+    high: float
+    value: float
+    turn: Callable[[float], None]
+
+    def __post_init__(self) -> None:
+        if not self.low <= self.value <= self.high:
+            raise ValueError(f"the knob {self.name} stands at {self.value}, outside {self.low} to {self.high}")
+
+    def set(self, value: float) -> None:
+        """Turn it to a value in its unit."""
+        self.turn(value if self.unit in ("", "1") else to_si(value, self.unit))
+
+
+def wall_temperature(
+    parcel: Parcel,
+    scale: Scale,
+    settings: SceneSettings,
+    *,
+    low: float,
+    high: float,
+    name: str = "temperature",
+    wall: int | None = None,
+) -> Knob:
+    """Return the knob that keeps the heat baths of a box at another temperature.
+
+    Parameters
+    ----------
+    parcel, scale, settings
+        The box, its scale and the settings that it was made of.
+    low, high
+        The range, in the unit of the setting; made wide enough for where the knob stands.
+    name
+        The setting with which the box begins.
+    wall
+        Which wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if none is named.
+
+    Examples
+    --------
+    >>> from atmosbox.run.preparation import build, prepare
+    >>> setup = build(prepare("temperature", {"temperature": "20 degC"}))
+    >>> [(knob.name, knob.value, knob.unit) for knob in setup.knobs]
+    [('temperature', 20.0, 'degC')]
+    """
+
+    def turn(kelvin: float) -> None:
+        parcel.set_wall_kT(scale.reduced_temperature(kelvin), wall)
+
+    return _of_setting(settings, name, low, high, turn)
+
+
+def gravity(
+    parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float, name: str = "gravity"
+) -> Knob:
+    """Return the knob that makes gravity stronger or weaker; see `wall_temperature` for the parameters.
+
+    Examples
+    --------
+    >>> from atmosbox.run.preparation import build, prepare
+    >>> setup = build(prepare("atmosphere", {"molecules": 100}))
+    >>> setup.knobs[1].set(2.0 * 9.80665)
+    >>> round(setup.parcel.gravity, 6), setup.parcel.ledger() < 1e-12
+    (2.0, True)
+    """
+
+    def turn(acceleration: float) -> None:
+        parcel.set_gravity(acceleration / scale.acceleration)
+
+    return _of_setting(settings, name, low, high, turn)
+
+
+def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:
+    """Return the knob that leads a parcel up and down by hand, at the pace of its planned ascent.
+
+    Parameters
+    ----------
+    parcel, driver
+        The box, and what moves its piston.
+    height
+        Height [m] when a share of the way, 0 to 1, has been made; rising.
+
+    Examples
+    --------
+    Left alone it makes for the top:
+
+    >>> from atmosbox.run.preparation import build, prepare
+    >>> setup = build(prepare("lifting-dry", {"molecules": 100}))
+    >>> setup.knobs[0].name, setup.knobs[0].unit, setup.knobs[0].value == setup.knobs[0].high
+    ('altitude', 'km', True)
+    """
+    shares = np.linspace(0.0, 1.0, 401)
+    heights = np.array([height(float(share)) for share in shares])
+
+    def turn(metres: float) -> None:
+        _lead(parcel, driver, float(np.interp(metres, heights, shares)))
+
+    low, high = (from_si(float(h), "km") for h in (heights[0], heights[-1]))
+    return Knob("altitude", "height that the parcel makes for", "km", low, high, high, turn)
+
+
+def way(parcel: Parcel, driver: FollowPressure) -> Knob:
+    """Return the knob that leads a parcel back and forth by hand along a way that goes up and down.
+
+    Examples
+    --------
+    >>> from atmosbox.run.preparation import build, prepare
+    >>> [knob.name for knob in build(prepare("mountains", {"molecules": 200})).knobs]
+    ['way']
+    """
+
+    def turn(share: float) -> None:
+        _lead(parcel, driver, share)
+
+    return Knob("way", "place on its way that the parcel makes for", "percent", 0.0, 100.0, 100.0, turn)
+
+
+def _lead(parcel: Parcel, driver: FollowPressure, share: float) -> None:
+    """Let a parcel make for a place of its way."""
+    course = driver.course
+    course.lead(parcel.time, min(max(share, 0.0), 1.0) * course.end)
+
+
+def _of_setting(settings: SceneSettings, name: str, low: float, high: float, turn: Callable[[float], None]) -> Knob:
+    """Return the knob that stands for a setting, with a range that fits a slider."""
+    declared = {parameter.name: parameter for parameter in settings.describe()}[name]
+    value = float(getattr(settings, name))
+    least = max(min(low, value), -math.inf if declared.low is None else declared.low)
+    most = min(max(high, value), math.inf if declared.high is None else declared.high)
+    return Knob(name, declared.help, declared.unit, least, most, value, turn)

@@ -1,0 +1,116 @@
+"""Water for a scene: the substance in the scene's units, and moist air at its start."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.engine import Substance, maxwell_velocities, rotational_energies
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import DRY_AIR, WATER
+
+__all__ = ["MoistAir", "moist_air", "nuclei_heat_capacity", "vapour_molecules", "water"]
+
+Array = NDArray[np.float64]
+NUCLEI = 100.0
+"""Heat capacity of the nuclei that droplets form on, in k, where there is air enough."""
+
+
+def water(scale: Scale, diameter: float = 1.0) -> Substance:
+    """Return water in the units of a scene whose unit of mass is a molecule of air.
+
+    Its binding energy and its heat capacity are those of `atmosbox.theory.saturation_vapor_pressure`, which it then
+    obeys at every temperature.
+
+    Parameters
+    ----------
+    scale
+        The units of the scene.
+    diameter
+        Diameter of a molecule of vapour [length].
+
+    Examples
+    --------
+    >>> from atmosbox.theory.constants import BOLTZMANN
+    >>> scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 293.15)
+    >>> round(water(scale).saturation_pressure(273.15 / 293.15) * scale.pressure / 100.0, 3)
+    6.108
+    """
+    binding = law.BINDING_TEMPERATURE / scale.temperature
+    at_unit = float(law.saturation_vapor_pressure(scale.temperature)) / scale.pressure
+    return Substance(
+        mass=law.WATER_MASS_RATIO,
+        diameter=diameter,
+        binding_energy=binding,
+        heat_capacity=law.LIQUID_HEAT_CAPACITY,
+        volatility=at_unit * math.exp(binding),
+        rotation=float(WATER.rotational_dof),
+    )
+
+
+def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) -> int:
+    """Return how many of some molecules are vapour at a partial pressure.
+
+    Examples
+    --------
+    >>> vapour_molecules(1000, 23.0, 1000.0)
+    23
+    """
+    return round(molecules * vapour_pressure / pressure)
+
+
+def nuclei_heat_capacity(air: int) -> float:
+    """Return the heat capacity of the nuclei that droplets form on, in k.
+
+    It steadies the temperature of the first molecules that condense. It is at most half a percent of the heat
+    capacity at constant pressure of the air, 7/2 k per molecule, and so changes an adiabat little.
+
+    Parameters
+    ----------
+    air
+        Number of molecules of air.
+
+    Examples
+    --------
+    >>> nuclei_heat_capacity(1000), nuclei_heat_capacity(10_000)
+    (17.5, 100.0)
+    """
+    return min(NUCLEI, 0.005 * 3.5 * air)
+
+
+@dataclass(frozen=True)
+class MoistAir:
+    """Molecules of air and of vapour at the start, the vapour first.
+
+    ``velocity : (molecule, axis)``, ``mass``, ``rotation`` and ``rotational_energy : (molecule,)``.
+    """
+
+    velocity: Array
+    mass: Array
+    rotation: Array
+    rotational_energy: Array
+
+
+def moist_air(molecules: int, vapour: int, rng: np.random.Generator) -> MoistAir:
+    """Return so many molecules, so many of them vapour, at kT = 1 to rounding and without momentum.
+
+    Examples
+    --------
+    >>> air = moist_air(100, 2, np.random.default_rng(1))
+    >>> kinetic = 0.5 * float(np.sum(air.mass * np.sum(air.velocity**2, axis=1)))
+    >>> round(kinetic, 9), round(float(air.rotational_energy.sum()), 9)
+    (150.0, 101.0)
+    """
+    mass = np.ones(molecules)
+    mass[:vapour] = law.WATER_MASS_RATIO
+    rotation = np.full(molecules, float(DRY_AIR.rotational_dof))
+    rotation[:vapour] = float(WATER.rotational_dof)
+    velocity = maxwell_velocities(1.0, mass, rng, exact=True)
+    spin = rotational_energies(1.0, rotation, rng)
+    if molecules:
+        spin *= 0.5 * rotation.sum() / spin.sum()
+    return MoistAir(velocity, mass, rotation, spin)

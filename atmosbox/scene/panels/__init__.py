@@ -1,0 +1,12 @@
+"""What the figure of a scene shows, as plain data.
+
+A scene names the variables of its file that belong on a graph and says how to look at them; it draws nothing.
+The panels travel with the run as one JSON string (the attribute ``atmosbox_panels``), so that a file can be
+drawn long afterwards, on a machine that has neither the scene nor the engine.
+"""
+
+from atmosbox.scene.panels.line import ROLES, Line
+from atmosbox.scene.panels.panel import DISC_VARIABLES, KINDS, SCALES, SKEWT_AXES, Panel
+from atmosbox.scene.panels.record import from_json, to_json
+
+__all__ = ["DISC_VARIABLES", "KINDS", "ROLES", "SCALES", "SKEWT_AXES", "Line", "Panel", "from_json", "to_json"]

@@ -1,0 +1,138 @@
+"""One graph of a figure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from atmosbox.scene.panels.line import Line
+from atmosbox.scene.panels.text_check import check_choice, check_text
+
+__all__ = ["DISC_VARIABLES", "KINDS", "SCALES", "SKEWT_AXES", "Panel"]
+
+KINDS = ("line", "profile", "histogram", "discs", "skewt")
+SCALES = ("linear", "log")
+SKEWT_AXES = {
+    "x_unit": "degC",
+    "y_unit": "hPa",
+    "x_scale": "linear",
+    "y_scale": "log",
+    "x_invert": False,
+    "y_invert": True,
+}
+DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One graph of a scene's figure: its curves, its axes and the units in which they are read.
+
+    Parameters
+    ----------
+    kind : {"line", "profile", "histogram", "discs", "skewt"}
+        ``line``: the measured variable up the page, for instance against time. ``profile``: height or
+        pressure up the page, the measured variable along it. ``histogram``: the data as steps between the
+        bounds of their bins. ``discs``: the molecules of a flat box themselves, from the variables
+        `DISC_VARIABLES`; it has no lines. ``skewt``: temperatures over pressure in a skew-T log-p diagram, whose
+        axes are always in degC and hPa. CAPE and CIN are shaded between the first measured curve and the first
+        of the environment: areas between *temperatures*, as is the custom, although the numbers CAPE and CIN are
+        those of virtual temperatures.
+    title : str
+        What the graph shows, in a few words.
+    lines : tuple of Line
+        The curves, in the order of the legend.
+    x_label, y_label : str
+        The quantities on the axes, without units; empty for the ``long_name`` of the first curve's variable.
+    x_unit, y_unit : str
+        The units that the axes are read in ("hPa", "degC", "km", "nm", ...); empty for the units of the file.
+    x_scale, y_scale : {"linear", "log"}
+        The scales of the axes.
+    x_invert, y_invert : bool
+        Whether an axis decreases to the right or upward, as pressure does.
+    averages : int
+        Into how many equal parts of the x axis measured curves of a ``line`` panel are averaged, so that noise does
+        not crowd the far end of a logarithmic axis; 0 draws every value.
+    note : str
+        A sentence under the title.
+    headlines : tuple of str
+        Names of the headline numbers of the run whose misfit is written into this panel.
+    marks : tuple of str
+        Names of single numbers of the file, pressures that are marked in a ``skewt`` panel if the run has found
+        them. CAPE is shaded between those called "lfc" and "el", CIN below "lfc".
+
+    Raises
+    ------
+    ValueError
+        If a kind or a scale is unknown, the title is empty, or the lines do not suit the kind.
+
+    Examples
+    --------
+    >>> speeds = Line("speed", "speed_probability_density", "measured")
+    >>> Panel("histogram", "Speeds of the molecules", (speeds,), x_label="speed").variables
+    ('speed', 'speed_probability_density')
+    """
+
+    kind: str
+    title: str
+    lines: tuple[Line, ...] = ()
+    x_label: str = ""
+    y_label: str = ""
+    x_unit: str = ""
+    y_unit: str = ""
+    x_scale: str = "linear"
+    y_scale: str = "linear"
+    x_invert: bool = False
+    y_invert: bool = False
+    averages: int = 0
+    note: str = ""
+    headlines: tuple[str, ...] = ()
+    marks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_choice("panel", "kind", self.kind, KINDS)
+        check_text("panel", "title", self.title)
+        if self.kind == "skewt":
+            self._set_skewt_axes()
+        for name in ("x_label", "y_label", "x_unit", "y_unit", "note"):
+            if not isinstance(getattr(self, name), str):
+                raise ValueError(f"the {name} of the panel {self.title!r} is no text.")
+        for name in ("x_scale", "y_scale"):
+            check_choice("panel", name, getattr(self, name), SCALES)
+        for name in ("x_invert", "y_invert"):
+            if not isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} of the panel {self.title!r} is neither true nor false.")
+        if type(self.averages) is not int or self.averages < 0 or (self.averages and self.kind != "line"):
+            raise ValueError(f"averages of the panel {self.title!r} is {self.averages!r}: only a line panel has parts.")
+        for name, kind in (("lines", Line), ("headlines", str), ("marks", str)):
+            values = getattr(self, name)
+            if not isinstance(values, tuple) or not all(isinstance(value, kind) for value in values):
+                raise ValueError(f"{name} of the panel {self.title!r} is no tuple of {kind.__name__}.")
+        if (self.kind == "discs") == bool(self.lines):
+            wanted = "has no lines" if self.kind == "discs" else "needs at least one line"
+            raise ValueError(f"the panel {self.title!r} is of the kind {self.kind!r}, which {wanted}.")
+        if self.marks and self.kind != "skewt":
+            raise ValueError(f"the panel {self.title!r} has marks, and only a panel of the kind 'skewt' shows them.")
+        if self.kind == "skewt" and any(line.minus for line in self.lines):
+            raise ValueError(f"the panel {self.title!r} shows temperatures in a skew-T, and no differences of them.")
+
+    def _set_skewt_axes(self) -> None:
+        """Give the panel the axes of a skew-T, which has no others."""
+        defaults = {field.name: field.default for field in fields(self)}
+        for name, value in SKEWT_AXES.items():
+            if getattr(self, name) not in (value, defaults[name]):
+                raise ValueError(
+                    f"the {name} of the panel {self.title!r} is {getattr(self, name)!r}: "
+                    "a skew-T is in degC and hPa, whose logarithm decreases upward."
+                )
+            object.__setattr__(self, name, value)
+
+    @property
+    def measured_across(self) -> bool:
+        """Whether the measured variable of a line is ``x``, with height or pressure up the page."""
+        return self.kind in ("profile", "skewt")
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the variables that the panel draws, each once, in order."""
+        if self.kind == "discs":
+            return DISC_VARIABLES
+        return tuple(dict.fromkeys(name for line in self.lines for name in line.variables))

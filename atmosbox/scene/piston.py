@@ -1,0 +1,122 @@
+"""A parcel under a piston: how large its box is, how its piston follows, and moist air in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.engine import Piston, Specular, random_positions
+from atmosbox.scene.moisture import moist_air
+from atmosbox.scene.units import Scale
+
+if TYPE_CHECKING:
+    from atmosbox.engine import FollowPressure, Liquid, Parcel
+    from atmosbox.scene.engines import EngineChoice
+
+__all__ = ["CLOSING", "FLATNESS", "moist_parcel", "size_of_parcel"]
+
+FLATNESS = 0.4
+"""Height of the box over its width: it rises to be nearly as high as it is wide, and a slow piston works with less
+noise."""
+CLOSING = 20.0
+"""Within how many mean free times the piston of a parcel that rises closes a gap of pressure."""
+
+
+def size_of_parcel(
+    scale: Scale, molecules: int, pressure: float, *, ideal: bool, flatness: float = FLATNESS
+) -> tuple[float, NDArray[np.float64], float]:
+    """Return density, sides that centres can reach, and (Z - 1) / n, in diameters, at a pressure [Pa] and kT = 1.
+
+    Parameters
+    ----------
+    scale
+        The units of the box.
+    molecules
+        How many there are.
+    pressure
+        That of the gas [Pa].
+    ideal
+        Whether molecules take no room, and Z is 1.
+    flatness
+        Height of the box over its width [1].
+
+    Returns
+    -------
+    density
+        Number density n [1/diameter^3].
+    sides : (axis,)
+        Sides of the room that centres can reach [diameter].
+    excess
+        What contacts add to the pressure, (Z - 1) / n [diameter^3].
+
+    Examples
+    --------
+    Points at 1000 hPa and 0 degC are Loschmidt's number, 2.65e25 in a cubic metre; molecules push each other apart:
+
+    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+    >>> scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 273.15)
+    >>> points, _, excess = size_of_parcel(scale, 1000, 1e5, ideal=True)
+    >>> f"{points / scale.length**3:.3g}", excess
+    ('2.65e+25', 0.0)
+    >>> size_of_parcel(scale, 1000, 1e5, ideal=False)[0] < points
+    True
+    """
+    wanted = pressure / scale.pressure
+    density = wanted
+    sides, excess = np.ones(3), 0.0
+    for _ in range(60):
+        side = (molecules / density / flatness) ** (1.0 / 3.0)
+        sides = side * np.array([1.0, 1.0, flatness])
+        excess = float(law.gas_pressure(density, 1.0, 1.0)) - density
+        excess *= 0.0 if ideal else law.contact_share(sides, 1.0, molecules)
+        density *= wanted / (density + excess)
+    return density, sides, excess / density**2
+
+
+def moist_parcel(
+    engine: EngineChoice,
+    molecules: int,
+    vapour: int,
+    sides: NDArray[np.float64],
+    *,
+    driver: FollowPressure,
+    liquid: Liquid,
+    rng: np.random.Generator,
+    seed: int,
+) -> Parcel:
+    """Return moist air at kT = 1 under a piston, with its liquid; the other walls are smooth.
+
+    Parameters
+    ----------
+    engine
+        What lets its time pass.
+    molecules, vapour
+        How many there are, and how many of them are vapour.
+    sides : (axis,)
+        Sides of the room that centres can reach [diameter].
+    driver
+        What moves the piston.
+    liquid
+        The water that vapour meets.
+    rng
+        What places and velocities at the start are drawn from.
+    seed
+        Seed of what chance does later.
+    """
+    gas = moist_air(molecules, vapour, rng)
+    length = tuple(sides + 1.0)
+    return engine.make(
+        random_positions(length, np.ones(molecules), rng),
+        gas.velocity,
+        length=length,
+        walls=(Specular(),) * 5 + (Piston(),),
+        mass=gas.mass,
+        rotation=gas.rotation,
+        rotational_energy=gas.rotational_energy,
+        seed=seed,
+        driver=driver,
+        liquid=liquid,
+    )

@@ -1,0 +1,27 @@
+"""Soundings: what is measured of the air above a place, what that says of a parcel, and one made by a formula.
+
+============= ===========================================================================
+file          what is in it
+============= ===========================================================================
+profile       the sounding itself: pressure, temperature, dewpoint from the ground up
+column        the names and units under which its columns go
+check         what no ascent can be
+table         from the columns of a file to a sounding: units, missing values, order
+reading       the one door to files, which recognises their format
+wyoming       the University of Wyoming's tables, as text or page of the web
+sharppy       SHARPpy's text
+delimited     CSV and its kin
+netcdf        profiles as xarray and MetPy leave them
+analytic      Weisman and Klemp's formula for the air before a thunderstorm
+hydrostatics  the heights of levels
+parcel        LCL, LFC, EL, CAPE, CIN and precipitable water, by MetPy
+============= ===========================================================================
+"""
+
+from atmosbox.scene.sounding.analytic import weisman_klemp
+from atmosbox.scene.sounding.hydrostatics import hydrostatic_height
+from atmosbox.scene.sounding.lifted_parcel import Indices, Level, indices
+from atmosbox.scene.sounding.profile import Sounding
+from atmosbox.scene.sounding.reading import read
+
+__all__ = ["Indices", "Level", "Sounding", "hydrostatic_height", "indices", "read", "weisman_klemp"]

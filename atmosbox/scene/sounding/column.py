@@ -1,0 +1,233 @@
+"""What a sounding measures: the names its four columns go by, their units, and what is plausible for them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from atmosbox.errors import SoundingError, UnitError, shown
+from atmosbox.scene.conversion import SIGNS, Unit, known_unit
+
+__all__ = ["QUANTITIES", "REQUIRED", "Measure", "asked_units", "number", "stated_columns", "unit_of"]
+
+
+class Measure(NamedTuple):
+    """A measured quantity: its SI unit, the usual names best first, the units to guess from, and its limits [SI]."""
+
+    si: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    low: float
+    high: float
+
+
+QUANTITIES: dict[str, Measure] = {
+    "pressure": Measure(
+        "Pa",
+        ("air_pressure", "pressure", "pres", "press", "prs", "p", "P", "plev", "isobaric", "level", "lev"),
+        ("hPa", "Pa", "kPa", "inHg"),
+        0.1,
+        110e3,
+    ),
+    "temperature": Measure(
+        "K",
+        ("air_temperature", "temperature", "temp", "tmp", "tair", "tdry", "T", "t"),
+        ("degC", "K", "degF"),
+        160.0,
+        335.0,
+    ),
+    "dewpoint": Measure(
+        "K",
+        ("dew_point_temperature", "dewpoint_temperature", "dewpoint", "dew_point", "dwpt", "dewpt", "dewp", "td", "dp"),
+        ("degC", "K", "degF"),
+        130.0,
+        320.0,
+    ),
+    "height": Measure(
+        "m",
+        ("geopotential_height", "altitude", "height", "hght", "hgt", "gph", "geopot_height", "alt", "z", "Z"),
+        ("m", "km", "ft"),
+        -500.0,
+        120e3,
+    ),
+}
+"""The four columns of a sounding."""
+REQUIRED = ("pressure", "temperature", "dewpoint")
+"""The columns without which there is no sounding."""
+
+_HEIGHTS = {"gpm": "m", "m msl": "m", "m asl": "m", "geopotential meters": "m", "geopotential_meters": "m"}
+_BRACKETS = re.compile(r"(.+?)\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]")
+_SUFFIX = re.compile(r"(.+?)(?:\s*[/_,:]\s*|\s+)([^\s_/,:]+)")
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_MISSING = re.compile(r"(?i)|nan|na|n/a|none|null|missing|m|-+|/+|\*+|\.|#n/a")
+_INFINITE = re.compile(r"(?i)[+-]?inf(?:inity)?")
+
+
+def _plain(name: str) -> str:
+    """Return a column's name as it is compared; of single letters the case counts, for t may be the time."""
+    name = re.sub(r"[\s.\-]+", "_", name.strip().strip("\"'").strip())
+    return name if len(name) == 1 else name.casefold()
+
+
+def _unit(text: str) -> Unit | None:
+    """Return a unit however it is spelled, or None."""
+    text = text.strip()[:40]
+    return known_unit(_HEIGHTS.get(text.casefold(), text)) or known_unit(text.casefold()) if text else None
+
+
+def _split(cell: str) -> tuple[str, str | None]:
+    """Return the name and the unit in a cell of a header, such as "pressure [hPa]", "T_K" or "Td"."""
+    cell = cell.strip()[:200]
+    known = {name for measure in QUANTITIES.values() for name in measure.names}
+    if bracketed := _BRACKETS.fullmatch(cell):
+        return _plain(bracketed[1]), bracketed[2]
+    suffixed = _SUFFIX.fullmatch(cell)
+    if _plain(cell) not in known and suffixed and _plain(suffixed[1]) in known and _unit(suffixed[2]):
+        return _plain(suffixed[1]), suffixed[2]
+    return _plain(cell), None
+
+
+def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, str | None]]:
+    """Return where each quantity stands in a table, and in which unit.
+
+    Parameters
+    ----------
+    header
+        The names of the columns, with or without units.
+    where
+        The file and the line of the header, for the sentence of an error.
+
+    Returns
+    -------
+    dict
+        The number of its column and the unit written there, or None, for every quantity that was found.
+
+    Raises
+    ------
+    SoundingError
+        If two columns claim the same quantity by the same name.
+
+    Examples
+    --------
+    >>> stated_columns(["Td", "T_K", "pressure [hPa]"], "a.csv, line 1")
+    {'pressure': (2, 'hPa'), 'temperature': (1, 'K'), 'dewpoint': (0, None)}
+    """
+    cells = [_split(cell) for cell in header]
+    found: dict[str, tuple[int, str | None]] = {}
+    for quantity, measure in QUANTITIES.items():
+        claims = [(measure.names.index(name), i) for i, (name, _) in enumerate(cells) if name in measure.names]
+        fitting = [claim for claim in claims if _fits(cells[claim[1]][1], measure)]
+        claims = sorted(fitting or claims)
+        if len(claims) > 1 and claims[0][0] == claims[1][0]:
+            twice = shown(header[claims[1][1]].strip())
+            raise SoundingError(f"{where}: {twice} is a second column of {quantity}: delete one of the two.")
+        if claims:
+            found[quantity] = claims[0][1], cells[claims[0][1]][1]
+    return found
+
+
+def _fits(unit: str | None, measure: Measure) -> bool:
+    """Return whether a unit, if one is written, can be that of a quantity."""
+    known = _unit(unit) if unit else None
+    return known is None or known.si == measure.si
+
+
+def unit_of(quantity: str, text: str | None, where: str) -> Unit:
+    """Return the unit of a column.
+
+    Parameters
+    ----------
+    quantity
+        One of :data:`QUANTITIES`.
+    text
+        The unit as it is written; None or empty where none is.
+    where
+        The file and the line, for the sentence of an error.
+
+    Raises
+    ------
+    SoundingError
+        If there is no unit, none of that name, or one of something else.
+
+    Examples
+    --------
+    >>> unit_of("pressure", "millibars", "a.csv, line 1").up
+    100.0
+    """
+    measure = QUANTITIES[quantity]
+    usual = measure.units[0]
+    fix = f'write it as "{quantity} [{usual}]" or give units={{"{quantity}": "{usual}"}}'
+    if not text or not text.strip():
+        raise SoundingError(f"{where}: the {quantity} has no unit: {fix}.")
+    unit = _unit(text)
+    if unit is None:
+        raise SoundingError(f"{where}: the unit {shown(text)} of the {quantity} is not known: {fix}.")
+    if unit.si != measure.si:
+        raise SoundingError(f"{where}: {shown(text)} is not a unit of {quantity}: {fix}.")
+    return unit
+
+
+def asked_units(units: Mapping[str, str] | None) -> dict[str, str]:
+    """Return the units that a user gave, after a look at each.
+
+    Parameters
+    ----------
+    units
+        Units by the names in :data:`QUANTITIES`.
+
+    Raises
+    ------
+    UnitError
+        If a name is not one of them, or a unit not one of that quantity.
+
+    Examples
+    --------
+    >>> asked_units({"pressure": "hPa"})
+    {'pressure': 'hPa'}
+    """
+    given = dict(units or {})
+    for quantity, text in given.items():
+        if quantity not in QUANTITIES:
+            raise UnitError("units", quantity, "is not a column of a sounding", f"name one of {', '.join(QUANTITIES)}")
+        unit = _unit(text) if isinstance(text, str) else None
+        if unit is None or unit.si != QUANTITIES[quantity].si:
+            fix = f'give units={{"{quantity}": "{QUANTITIES[quantity].units[0]}"}}'
+            raise UnitError("units", text, f"is not a unit of {quantity}", fix)
+    return given
+
+
+def number(token: str, quantity: str, where: str) -> float:
+    """Return the number in a cell, NaN where it says that the value is missing.
+
+    Parameters
+    ----------
+    token
+        The text of the cell. Missing is an empty one, NaN, NA, null, M, dashes, slashes or asterisks.
+    quantity
+        What is measured, for the sentence of an error.
+    where
+        The file and the line, likewise.
+
+    Raises
+    ------
+    SoundingError
+        If the text is not a finite number.
+
+    Examples
+    --------
+    >>> number(" −12.5 ", "temperature", "a.csv, line 3"), number("////", "temperature", "a.csv, line 4")
+    (-12.5, nan)
+    """
+    text = token.strip().strip("\"'").strip().translate(SIGNS)
+    if _NUMBER.fullmatch(text[:60]) and len(text) <= 60:
+        value = float(text)
+        if abs(value) < 1e30:
+            return value
+    elif _MISSING.fullmatch(text):
+        return float("nan")
+    elif re.fullmatch(r"[+-]?[0-9]+,[0-9]+", text):
+        raise SoundingError(f"{where}: the {quantity} {shown(text)} is written with a comma: write a decimal point.")
+    problem = "is not finite" if _INFINITE.fullmatch(text) else "is not a number"
+    problem = "is too large" if _NUMBER.fullmatch(text[:60]) else problem
+    raise SoundingError(f"{where}: the {quantity} {shown(text)} {problem}: correct it, or write NaN.")

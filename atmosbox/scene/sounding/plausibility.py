@@ -1,0 +1,221 @@
+"""What no ascent can be: values in the wrong unit, levels out of order, holes in the air.
+
+Every refusal is one sentence that says where the value stands, what it is and what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import SoundingError
+from atmosbox.scene.conversion import Unit, from_si, known_unit
+from atmosbox.scene.sounding.column import QUANTITIES
+from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
+
+__all__ = [
+    "FEWEST_LEVELS",
+    "GAP_CEILING",
+    "LARGEST_GAP",
+    "ROUNDING",
+    "check_levels",
+    "check_plausible",
+    "in_si",
+    "widest_gap",
+]
+
+FEWEST_LEVELS = 5
+"""Levels without which a curve is not worth the name."""
+LARGEST_GAP = 250e2
+"""Pressure that may lie between two levels: the mandatory ones are up to 200 hPa apart [Pa]."""
+GAP_CEILING = 300e2
+"""Pressure above whose surface gaps do not matter [Pa]."""
+ROUNDING = 0.05
+"""How far the dewpoint may lie above the temperature by rounding [K]."""
+_HIGHEST_GROUND = 450e2  # Pa; the highest stations, in Tibet, report some 550 hPa
+_HEIGHT_ERROR = 0.1  # of the thickness between lowest and highest level; moisture and rounding make up 2 %
+
+Floats = NDArray[np.float64]
+Place = Callable[[int], str]
+
+
+def in_si(values: Floats, unit: Unit) -> Floats:
+    """Return values of a unit in the SI.
+
+    Parameters
+    ----------
+    values : (level,)
+        The values; NaN stays NaN.
+    unit
+        Their unit.
+
+    Examples
+    --------
+    >>> in_si(np.array([1000.0, 850.0]), known_unit("hPa"))
+    array([100000.,  85000.])
+    """
+    return np.asarray(values * (unit.up / unit.down) + unit.offset, dtype=np.float64)
+
+
+def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
+    """Return the first level whose value lies outside the limits, if its unit is this one; None if none does."""
+    measure, si = QUANTITIES[quantity], in_si(values, unit)
+    wrong = np.flatnonzero((si < measure.low) | (si > measure.high))
+    if wrong.size:
+        return int(wrong[0])
+    if quantity == "pressure" and si.size and not np.nanmax(si) >= _HIGHEST_GROUND:
+        return int(np.nanargmax(si))
+    return None
+
+
+def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> None:
+    """Refuse values that the atmosphere does not have, and say which unit they look like.
+
+    Parameters
+    ----------
+    quantity
+        One of :data:`~atmosbox.scene.sounding.column.QUANTITIES`.
+    values : (level,)
+        The values in `unit`, NaN where they are missing; at least one is not.
+    unit
+        The unit in which they are understood.
+    place
+        Says where a level stands.
+
+    Raises
+    ------
+    SoundingError
+        If a value lies outside the limits of the quantity, or the largest pressure is none of the ground.
+
+    Examples
+    --------
+    >>> check_plausible("temperature", np.array([298.0, 290.0]), "degC", lambda level: f"a.csv, line {level + 2}")
+    Traceback (most recent call last):
+    atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC is not one of the atmosphere and looks
+    like K: write "temperature [K]" or give units={"temperature": "K"}.
+    """
+    measure = QUANTITIES[quantity]
+    known = known_unit(unit) or Unit(measure.si)
+    wrong = _first_implausible(quantity, values, known)
+    if wrong is None:
+        return
+    high_up = quantity == "pressure" and measure.low <= in_si(values, known)[wrong] < _HIGHEST_GROUND
+    ground = " at the ground" if high_up else ""
+    what = f"{place(wrong)}: a {quantity} of {values[wrong]:.10g} {unit}{ground} is not one of the atmosphere"
+    for other in measure.units:
+        candidate = known_unit(other)
+        if candidate and candidate != known and _first_implausible(quantity, values, candidate) is None:
+            fix = f'write "{quantity} [{other}]" or give units={{"{quantity}": "{other}"}}'
+            raise SoundingError(f"{what} and looks like {other}: {fix}.")
+    low, high = (f"{(limit - known.offset) * known.down / known.up:.6g}" for limit in (measure.low, measure.high))
+    if ground:
+        low = f"{_HIGHEST_GROUND * known.down / known.up:.6g}"
+    raise SoundingError(f"{what} ({low} to {high} {unit}): correct it, or write -9999 where it is missing.")
+
+
+def widest_gap(pressure: Floats) -> tuple[float, int]:
+    """Return the widest gap between two levels of the lower and middle troposphere.
+
+    Parameters
+    ----------
+    pressure : (level,)
+        Pressure, decreasing [Pa].
+
+    Returns
+    -------
+    tuple of float and int
+        The difference in pressure [Pa], and the number of the level below the gap.
+
+    Examples
+    --------
+    >>> widest_gap(np.array([1000e2, 850e2, 700e2, 500e2, 250e2, 20e2]))
+    (25000.0, 3)
+    """
+    if pressure.size < 2:
+        return 0.0, 0
+    gap = np.where(pressure[:-1] > GAP_CEILING, pressure[:-1] - pressure[1:], 0.0)
+    below = int(np.argmax(gap))
+    return float(gap[below]), below
+
+
+def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, height: Floats | None, place: Place) -> None:
+    """Refuse levels that do not make an ascent.
+
+    Parameters
+    ----------
+    pressure, temperature, dewpoint : (level,)
+        The levels from the ground up, nothing missing [Pa, K, K].
+    height : (level,)
+        Height, or None [m].
+    place
+        Says where a level stands.
+
+    Raises
+    ------
+    SoundingError
+        If they are fewer than five, if the pressure does not decrease from each to the next, if a dewpoint is
+        above its temperature, if more than 250 hPa below the 300 hPa surface have no level, if heights do
+        not increase, or if they do not fit the pressures to 10 %.
+
+    Examples
+    --------
+    >>> p = np.array([1000e2, 900e2, 950e2, 700e2, 500e2])
+    >>> check_levels(p, np.full(5, 280.0), np.full(5, 270.0), None, lambda level: f"a.csv, line {level + 2}")
+    Traceback (most recent call last):
+    atmosbox.errors.SoundingError: a.csv, line 4: the pressure of 950 hPa is not below the 900 hPa of the level
+    before it: put the levels in their order from the ground up.
+    """
+    count = pressure.size
+    if count < FEWEST_LEVELS:
+        where = place(count - 1)
+        raise SoundingError(f"{where}: the sounding ends after {count} of at least {FEWEST_LEVELS} levels: add more.")
+    if (rising := np.flatnonzero(np.diff(pressure) >= 0.0)).size:
+        i = int(rising[0]) + 1
+        if pressure[i] == pressure[i - 1]:
+            raise SoundingError(
+                f"{place(i)}: the pressure of {pressure[i] / 100:.10g} hPa is that of the level before it, whose "
+                "temperature or dewpoint is another: delete one of the two."
+            )
+        raise SoundingError(
+            f"{place(i)}: the pressure of {pressure[i] / 100:.10g} hPa is not below the {pressure[i - 1] / 100:.10g} "
+            "hPa of the level before it: put the levels in their order from the ground up."
+        )
+    if (above := np.flatnonzero(dewpoint > temperature + ROUNDING + 1e-6)).size:
+        i = int(above[0])
+        t, td = (round(from_si(float(x[i]), "degC"), 2) for x in (temperature, dewpoint))
+        raise SoundingError(
+            f"{place(i)}: the dewpoint of {td:g} degC is above the temperature of {t:g} degC: correct one, or write "
+            "-9999 for it."
+        )
+    gap, i = widest_gap(pressure)
+    if gap > LARGEST_GAP:
+        raise SoundingError(
+            f"{place(i + 1)}: below the pressure of {pressure[i + 1] / 100:.6g} hPa there is a gap of {gap / 100:.6g} "
+            f"hPa, but at most {LARGEST_GAP / 100:.0f} hPa may lie between two levels: add levels."
+        )
+    if height is not None:
+        _check_height(pressure, temperature, height, place)
+
+
+def _check_height(pressure: Floats, temperature: Floats, height: Floats, place: Place) -> None:
+    """Refuse heights that do not increase, or that are not those of the pressures."""
+    fix = "correct it, or leave the heights out"
+    if (falling := np.flatnonzero(np.diff(height) <= 0.0)).size:
+        i = int(falling[0]) + 1
+        raise SoundingError(
+            f"{place(i)}: the height of {height[i]:.10g} m is not above the {height[i - 1]:.10g} m of the level before "
+            f"it: {fix}."
+        )
+    mean = (temperature[1:] + temperature[:-1]) / 2
+    scale = GAS_CONSTANT / DRY_AIR.molar_mass / STANDARD_GRAVITY
+    thickness = float(scale * np.sum(mean * np.log(pressure[:-1] / pressure[1:])))
+    ratio = float(height[-1] - height[0]) / thickness
+    if abs(ratio - 1.0) > _HEIGHT_ERROR:
+        likely = {"km": 1e-3, "ft": 1 / 0.3048, "m2 s-2 (a geopotential)": STANDARD_GRAVITY}
+        looks = next((f" and look like {unit}" for unit, r in likely.items() if abs(ratio / r - 1) < 0.1), "")
+        raise SoundingError(
+            f"{place(pressure.size - 1)}: the {height[-1] - height[0]:.6g} m from the lowest level to the highest "
+            f"are not the {thickness:.5g} m that lie between their pressures{looks}: {fix}."
+        )

@@ -1,0 +1,138 @@
+"""The one door to files: open, recognise by content, read, check."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from atmosbox.errors import FileError, SoundingError, shown
+from atmosbox.scene.sounding import delimited, profile_netcdf, sharppy, wyoming
+from atmosbox.scene.sounding.column import asked_units
+from atmosbox.scene.sounding.profile import Sounding
+from atmosbox.scene.sounding.tabulated import Table, sounding_of
+
+__all__ = ["LARGEST_FILE", "MOST_LINES", "read"]
+
+LARGEST_FILE = 16 * 2**20
+"""Size of a file above which it is not even opened; a sounding has some kilobytes [byte]."""
+
+MOST_LINES = 100_000
+"""Lines above which a text is not looked at; a report every second makes some 6000."""
+
+_FIX = "give a sounding as Wyoming or SHARPpy text, CSV or netCDF"
+_BINARY = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
+_MARKS = {
+    b"PK\x03\x04": "is a zip file or a workbook: save it as CSV",
+    b"%PDF": "is a PDF: save the numbers as CSV",
+    b"\x1f\x8b": "is packed: type gunzip first",
+}
+
+
+def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -> Sounding:
+    r"""Return the sounding in a file, from the ground up.
+
+    The format is recognised by the content: a table of the University of Wyoming, as text or as the page of the
+    web; SHARPpy's text; a table with named columns (CSV); netCDF with the variables that MetPy's users have.
+
+    Parameters
+    ----------
+    path
+        The file.
+    units
+        Units of ``pressure``, ``temperature``, ``dewpoint`` and ``height`` where the file states none, or wrong
+        ones; what is given here prevails.
+
+    Returns
+    -------
+    Sounding
+        The ascent. See :func:`atmosbox.scene.sounding.tabulated.sounding_of` for what is done about missing values.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, unreadable, a folder, or larger than 16 MiB.
+    SoundingError
+        If it is empty or has more than 100 000 lines, is in no known format, lacks a column or a unit, or if its
+        levels do not make an ascent.
+    UnitError
+        If `units` names another column, or a unit that is none of it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> lines = ["p [hPa],T [degC],Td [degC]", "1000,25,17", "850,15,9", "700,5,-3", "500,-10,-25", "300,-40,-60"]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "oslo.csv").write_text("\n".join(lines))
+    ...     read(Path(folder, "oslo.csv"))
+    <Sounding oslo: 5 levels from 1000 hPa, 25.00 degC to 300 hPa, -40.00 degC>
+    """
+    asked = asked_units(units)
+    source = Path(path)
+    file = shown(os.fspath(source), 200)
+    content = _content(source, file)
+    stem = source.stem
+    if profile_netcdf.recognised(content[:8]):
+        table = profile_netcdf.parse(source, file, stem)
+    else:
+        table = _parsed(re.split(r"\r\n|\r|\n", _text(content, file)), file, stem)
+    return sounding_of(replace(table, units={**table.units, **asked}))
+
+
+def _content(source: Path, file: str) -> bytes:
+    """Return the bytes of a file, or raise FileError."""
+    if os.path.isdir(source):
+        raise FileError(f"{file} is a folder: give a file in it.")
+    if not os.path.exists(source):
+        raise FileError(f"{file} does not exist: check the name and the folder.")
+    if not os.path.isfile(source) or not os.access(source, os.R_OK):
+        raise FileError(f"{file} may not be read: check what ls -l says of it.")
+    try:
+        size = os.path.getsize(source)
+        if size > LARGEST_FILE:
+            raise FileError(f"{file} has {size / 1e6:.0f} MB, far more than a sounding: {_FIX}.")
+        content = source.read_bytes()
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"{file} may not be read ({error.strerror or error}): check what ls -l says of it.") from error
+    if not content.strip():
+        raise SoundingError(f"{file} is empty: {_FIX}.")
+    return content
+
+
+def _text(content: bytes, file: str) -> str:
+    """Return the text of a file, in UTF-8 or else latin-1, or in UTF-16 if it says so."""
+    for mark, problem in _MARKS.items():
+        if content.startswith(mark):
+            raise SoundingError(f"{file} {problem}.")
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        try:
+            return content.decode("utf-16")
+        except UnicodeDecodeError:
+            raise SoundingError(f"{file} is not a text: {_FIX}.") from None
+    if _BINARY.search(content):
+        raise SoundingError(f"{file} is not a text: {_FIX}.")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def _parsed(lines: list[str], file: str, name: str) -> Table:
+    """Return the columns of a text in whichever format it is."""
+    if len(lines) > MOST_LINES:
+        raise SoundingError(f"{file} has {len(lines)} lines, far more than a sounding: {_FIX}.")
+    if sharppy.recognised(lines):
+        return sharppy.parse(lines, file, name)
+    if wyoming.recognised(lines):
+        return wyoming.parse(lines, file, name)
+    if delimited.recognised(lines):
+        return delimited.parse(lines, file, name)
+    first, line = next(((i, line) for i, line in enumerate(lines) if line.strip()), (0, ""))
+    raise SoundingError(
+        f"{file}, line {first + 1}: {shown(line.strip())} begins no sounding that is known: name the columns, as in "
+        "pressure [hPa],temperature [degC],dewpoint [degC]."
+    )

@@ -1,0 +1,120 @@
+r"""The units of the engine's reduced numbers, in the SI: the scale of a scene.
+
+The engine knows no kilogram and no kelvin: it moves molecules whose length, mass and energy are measured in a
+:class:`Scale` of the scene's choice. Between the units that people use and the SI it is
+:mod:`atmosbox.scene.conversion` that converts.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from atmosbox.theory.constants import BOLTZMANN
+
+__all__ = ["Scale"]
+
+
+@dataclass(frozen=True)
+class Scale:
+    r"""What one unit of the engine's numbers is in SI units.
+
+    Three are free, the others follow: time = length sqrt(mass / energy), temperature = energy / k_B. A
+    simulated molecule moves as a single real one does, but stands for `weight` of them in all that counts
+    molecules: density, pressure, and the energy and momentum of the body of air.
+
+    Parameters
+    ----------
+    length
+        Usually a diameter of a molecule [m].
+    mass
+        Usually the mass of a molecule [kg].
+    energy
+        Usually k_B times a temperature of the scene, of one molecule [J].
+    weight
+        Number of real molecules for which a simulated one stands.
+
+    Raises
+    ------
+    ValueError
+        If one of the four is not a positive, finite number.
+
+    Examples
+    --------
+    Molecules of dry air at 288.15 K, measured in their own diameter, mass and k_B T, have a unit of speed of
+    sqrt(k_B T / m), 288 m/s:
+
+    >>> scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 288.15)
+    >>> round(scale.velocity, 1), round(scale.reduced_temperature(288.15), 12)
+    (287.6, 1.0)
+    """
+
+    length: float
+    mass: float
+    energy: float
+    weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("length", "mass", "energy", "weight"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise ValueError(f"The {name} of a scale must be positive and finite, not {getattr(self, name)}.")
+
+    @property
+    def time(self) -> float:
+        """Unit of time, in which a molecule of unit speed crosses the unit of length [s]."""
+        return self.length * math.sqrt(self.mass / self.energy)
+
+    @property
+    def velocity(self) -> float:
+        """Unit of velocity [m s-1]."""
+        return math.sqrt(self.energy / self.mass)
+
+    @property
+    def acceleration(self) -> float:
+        """Unit of acceleration, in which gravity is given to the engine [m s-2]."""
+        return self.energy / (self.mass * self.length)
+
+    @property
+    def temperature(self) -> float:
+        """Temperature at which k_B T is the unit of energy [K]."""
+        return self.energy / BOLTZMANN
+
+    @property
+    def number_density(self) -> float:
+        """Real molecules per volume when one simulated molecule fills the unit of volume [m-3]."""
+        return self.weight / self.length**3
+
+    @property
+    def mass_density(self) -> float:
+        """Unit of density of the air [kg m-3]."""
+        return self.mass * self.number_density
+
+    @property
+    def pressure(self) -> float:
+        """Unit of pressure of the air [Pa]."""
+        return self.energy * self.number_density
+
+    @property
+    def total_energy(self) -> float:
+        """Unit of energy of the body of air: of its ledger, of heat and of work [J]."""
+        return self.weight * self.energy
+
+    @property
+    def total_impulse(self) -> float:
+        """Unit of momentum of the body of air, and of the impulse that a wall receives from it [kg m s-1]."""
+        return self.weight * self.mass * self.velocity
+
+    def reduced_temperature(self, temperature: float) -> float:
+        """Return k_B T in the unit of energy: the ``kT`` that the engine is given for a heat bath.
+
+        Parameters
+        ----------
+        temperature
+            Temperature [K].
+
+        Returns
+        -------
+        float
+            k_B T / energy, a pure number.
+        """
+        return BOLTZMANN * temperature / self.energy

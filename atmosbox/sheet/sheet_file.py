@@ -1,0 +1,96 @@
+"""A sheet as a file: the same sheet gives the same bytes, and a file appears only when it is whole."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from atmosbox.file.output_path import named, write_whole
+from atmosbox.sheet.markdown import markdown
+from atmosbox.sheet.pdf import check_paper, load_fonts, pdf
+from atmosbox.sheet.worksheet import Worksheet
+
+__all__ = ["FORMATS", "check", "save"]
+
+FORMATS = ("pdf", "md")
+
+
+def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str = "a4", force: bool = False) -> Path:
+    """Return the file that a sheet is to be written to, or refuse it before a run is spent on it.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file. Its suffix says the format; where ``format`` says it, a suffix that is missing is added.
+    format : {"pdf", "md"}, optional
+        The format.
+    paper : {"a4", "letter"}
+        The paper of a PDF.
+    force : bool
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the file exists, its folder does not, or reportlab is missing, which writes PDF.
+    SettingError
+        If the format or the paper is unknown.
+
+    Examples
+    --------
+    >>> check("sheet.docx")
+    Traceback (most recent call last):
+    atmosbox.errors.SettingError: format = docx is unknown: give a file name or --format of pdf or md.
+    """
+    path, kind = named(path, format, FORMATS, force=force, what="sheet")
+    check_paper(paper)
+    if kind == "pdf":
+        load_fonts()
+    return path
+
+
+def save(
+    sheet: Worksheet,
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    *,
+    paper: str = "a4",
+    force: bool = False,
+) -> Path:
+    """Write a sheet into a file.
+
+    Parameters
+    ----------
+    sheet : Worksheet
+        From `worksheet`.
+    path, format, paper, force
+        As `check` takes them.
+
+    Returns
+    -------
+    pathlib.Path
+        The file that was written.
+
+    Raises
+    ------
+    FileError
+        If the file is in the way or cannot be written.
+    SettingError
+        If the format or the paper is unknown.
+
+    Examples
+    --------
+    >>> from atmosbox.sheet import worksheet
+    >>> save(worksheet("lifting-dry"), "no/sheet.md")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The folder no for the sheet does not exist: make it first, or name another one.
+    """
+    path = check(path, format, paper=paper, force=force)
+    content = markdown(sheet).encode("utf-8") if path.suffix.lower() == ".md" else pdf(sheet, paper).content
+    write_whole(path, content)
+    return path

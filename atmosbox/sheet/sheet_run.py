@@ -1,0 +1,206 @@
+"""A run of a sheet: what is typed for it, what is known of it beforehand, and what it has found."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from atmosbox.errors import ConfigError, PhysicsError, shown
+from atmosbox.run import runner
+from atmosbox.scene.conversion import from_si
+from atmosbox.scene.headline import Headline
+from atmosbox.sheet.arithmetic import Measured, filled
+from atmosbox.sheet.text import Change
+
+__all__ = ["LETTERS", "Trial", "execute", "trials"]
+
+LETTERS = "ABCD"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run of a sheet, made or yet to be made.
+
+    Parameters
+    ----------
+    letter
+        What the sheet calls it.
+    title
+        What is special about it.
+    prepared
+        The scene with its settings.
+    outcome
+        What it has found; None before it was made.
+    """
+
+    letter: str
+    title: str
+    prepared: runner.Prepared
+    outcome: runner.Outcome | None = None
+
+    @property
+    def file(self) -> str:
+        """The file that it writes.
+
+        Examples
+        --------
+        >>> Trial("B", "", runner.prepare("lifting-dry", {})).file
+        'lifting-dry-B.nc'
+        """
+        stem = self.prepared.scene.replace("\\", "/").rpartition("/")[2].removesuffix(".py")
+        return f"{stem}-{self.letter}.nc"
+
+    @property
+    def command(self) -> str:
+        """What to type for it.
+
+        Examples
+        --------
+        >>> Trial("A", "", runner.prepare("lifting-dry", {"ascent": 50})).command
+        'atmosbox run lifting-dry --seed 1 --set ascent=50 --out lifting-dry-A.nc'
+        """
+        settings, engine = self.prepared.settings, str(self.prepared.engine)
+        known = {p.name: p for p in settings.describe()}
+        words = ["atmosbox run", shlex.quote(self.prepared.scene), f"--seed {settings.seed}"]
+        words += [f"--set {name}={known[name].typed(v)}" for name, v in settings.changed().items() if name != "seed"]
+        words += [] if engine == "exact" else [f"--engine {shlex.quote(engine)}"]
+        return " ".join([*words, f"--out {shlex.quote(self.file)}"])
+
+    @property
+    def plot_command(self) -> str:
+        """What to type for its figure.
+
+        Examples
+        --------
+        >>> Trial("A", "", runner.prepare("lifting-dry", {})).plot_command
+        'atmosbox plot lifting-dry-A.nc'
+        """
+        return f"atmosbox plot {shlex.quote(self.file)}"
+
+    @property
+    def headlines(self) -> Mapping[str, Headline]:
+        """The numbers that it has found, by name."""
+        return {} if self.outcome is None else {each.name: each for each in self.outcome.headlines}
+
+    def fact(self, name: str) -> Any:
+        """Return a number that it has found, a setting, or a variable of its file.
+
+        Parameters
+        ----------
+        name
+            Looked for among the headlines, then the settings, then the variables.
+
+        Raises
+        ------
+        ConfigError
+            If nothing has this name, or only a run that was not made.
+
+        Examples
+        --------
+        >>> Trial("A", "", runner.prepare("lifting-dry", {})).fact("top_pressure")
+        300.0
+        """
+        if name in self.headlines:
+            return shown_of(self.headlines[name])
+        if name in (settings := self.prepared.settings.as_dict()):
+            return settings[name]
+        if self.outcome is None:
+            raise ConfigError(
+                f"The sheet asks for {shown(name)} before run {self.letter} was made: use settings there."
+            )
+        if name in self.outcome.dataset.variables:
+            return self.outcome.dataset[name].values
+        raise ConfigError(f"The sheet asks for {shown(name)} of run {self.letter}, which does not report it.")
+
+
+def shown_of(headline: Headline) -> Measured:
+    """Return a headline in the unit in which it is shown.
+
+    Examples
+    --------
+    >>> warm = Headline("t", 291.0, 2.0, 288.15, 0.0, "none", "K", "degC", "temperature")
+    >>> str(shown_of(warm)), round(shown_of(warm).theory, 6)
+    ('17.9 ± 2.0', 15.0)
+    """
+    unit = headline.display_unit
+    error = from_si(headline.standard_error, unit, difference=True)
+    theory = None if headline.theory is None else from_si(headline.theory, unit)
+    return Measured(from_si(headline.value, unit), error, theory)
+
+
+def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ...]:
+    """Return the runs of a sheet: as it comes, and with one thing changed.
+
+    Parameters
+    ----------
+    first
+        The scene with the settings of all.
+    changes
+        What the others change.
+
+    Raises
+    ------
+    SettingError
+        If a changed value is not allowed.
+    ConfigError
+        If a change changes nothing.
+
+    Examples
+    --------
+    >>> fast = Change("ten times as fast", {"ascent": "{A.ascent / 10:g}"})
+    >>> found = trials(runner.prepare("lifting-dry", {}), [fast])
+    >>> [(each.letter, each.fact("ascent")) for each in found]
+    [('A', 1600.0), ('B', 160.0)]
+    """
+    found = [Trial(LETTERS[0], "as it comes" if not first.settings.changed().keys() - {"seed"} else "as set", first)]
+    for letter, change in zip(LETTERS[1:], changes, strict=False):
+        names = {LETTERS[0]: found[0]}
+        over = {n: filled(v, names) if isinstance(v, str) else v for n, v in change.settings.items()}
+        settings = type(first.settings).from_user({**first.settings.as_dict(), **over})
+        if settings == first.settings:
+            same = ", ".join(f"{name}={value}" for name, value in over.items())
+            raise ConfigError(f"Run {letter} of this sheet sets {same}, and so does run A: set run A otherwise.")
+        found.append(Trial(letter, filled(change.title, names), replace(first, settings=settings)))
+    return tuple(found)
+
+
+def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | None = None) -> tuple[Trial, ...]:
+    """Make the runs of a sheet.
+
+    Parameters
+    ----------
+    asked
+        The runs.
+    progress
+        Called with the share that is done and a word on what goes on.
+
+    Raises
+    ------
+    PhysicsError
+        If the energy of a run is not accounted for.
+    EngineError
+        If the engine cannot go on.
+
+    Examples
+    --------
+    >>> (made,) = execute(trials(runner.prepare("elastic-collisions", {"duration": "2 s"}), []))
+    >>> made.fact("largest_energy_change").theory
+    0.0
+    """
+    made = []
+    for number, trial in enumerate(asked):
+
+        def show(share: float, word: str, before: int = number) -> None:
+            if progress is not None:
+                progress((before + share) / len(asked), word)
+
+        outcome = runner.execute(trial.prepared, progress=show, command=trial.command)
+        if not outcome.ledger <= runner.LEDGER_LIMIT:
+            raise PhysicsError(
+                f"The energy ledger of run {trial.letter} is off by {outcome.ledger:.0e}, "
+                f"more than {runner.LEDGER_LIMIT:.0e}: no sheet is made of it."
+            )
+        made.append(replace(trial, outcome=outcome))
+    return tuple(made)

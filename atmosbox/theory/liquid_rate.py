@@ -1,0 +1,132 @@
+r"""How fast molecules leave a liquid, large or small.
+
+A liquid of n molecules with the heat capacity :math:`C = n c_l + C_n`, in k, and the thermal energy U has the
+density of states :math:`U^{C-1} / \Gamma(C)`. With the states of a gas this fixes the rate at which molecules leave
+it, for any n. A large liquid evaporates as Hertz and Knudsen say. Units are SI.
+
+References
+----------
+Weisskopf, V. (1937), Statistics and nuclear reactions, doi:10.1103/PhysRev.52.295: what evaporates from a hot drop,
+by detailed balance.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import special
+
+from atmosbox.theory import _water
+from atmosbox.theory._array import FloatArray, as_floats
+from atmosbox.theory._water import (
+    BINDING,
+    LIQUID_HEAT,
+    TRIPLE_TEMPERATURE,
+    VAPOR_HEAT,
+    checked_not_negative,
+    checked_temperature,
+)
+from atmosbox.theory.constants import BOLTZMANN, WATER
+
+_LEAVING = VAPOR_HEAT - 0.5  # exponents of the energy taken along: 2 across a surface, 3/2 of rotation
+
+
+def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:
+    r"""Return how many molecules leave a large liquid, per area and time.
+
+    As many as would come back at saturation, :math:`\alpha e_s / \sqrt{2 \pi m k T}`. For a liquid of a hundred
+    molecules whose temperature scatters, the mean of this is too high, for :math:`e_s` is convex.
+
+    Parameters
+    ----------
+    temperature
+        Temperature of the liquid [K].
+    accommodation
+        Share of the molecules that stick when they meet the liquid, :math:`\alpha` [1].
+
+    Returns
+    -------
+    ndarray
+        Molecules per area and time [m^-2 s^-1]; 0 at 0 K.
+
+    Raises
+    ------
+    ValueError
+        If a temperature lies outside 0 to 647.096 K or the accommodation is negative.
+
+    References
+    ----------
+    .. [1] Persad, A. H., Ward, C. A. (2016), doi:10.1021/acs.chemrev.5b00511.
+
+    Examples
+    --------
+    From a hundred square nanometres at 20 degC eight molecules in a nanosecond:
+
+    >>> round(float(hertz_knudsen_flux(293.15)) * 1e-25, 1)
+    8.5
+    """
+    t = checked_temperature(as_floats(temperature))
+    share = checked_not_negative(as_floats(accommodation), "accommodation")
+    speed = np.sqrt(2.0 * np.pi * WATER.molecule_mass * BOLTZMANN * np.maximum(t, _water.COLDEST))
+    flux: FloatArray = share * _water.saturation(t) / speed
+    return flux
+
+
+def microcanonical_flux(
+    thermal_energy: ArrayLike, molecules: ArrayLike, nuclei_heat: ArrayLike = 0.0, accommodation: ArrayLike = 1.0
+) -> FloatArray:
+    r"""Return how many molecules leave a liquid of a given energy, per area and time: exact for any number.
+
+    With :math:`U' = U - \varphi`, :math:`C' = C - c_l` and Q such that a large liquid follows
+    :func:`hertz_knudsen_flux`,
+
+    .. math:: Q\, \frac{U'^{\,C' + 5/2}}{\Gamma(C' + 7/2)}\, \frac{\Gamma(C)}{U^{C-1}} ,
+
+    and nothing if U' is not positive. Its mean over the energies of a liquid in a heat bath, distributed as
+    :math:`U^{C-1} e^{-U/kT}`, is that of Hertz and Knudsen at that temperature, whatever n.
+
+    Parameters
+    ----------
+    thermal_energy
+        Thermal energy of the liquid U, C k times its temperature [J].
+    molecules
+        Molecules of the liquid n [1]; none leaves if there is none.
+    nuclei_heat
+        Heat capacity of what is as warm as the liquid, :math:`C_n` [k].
+    accommodation
+        Share of the molecules that stick when they meet the liquid [1].
+
+    Returns
+    -------
+    ndarray
+        Molecules per area and time [m^-2 s^-1].
+
+    Raises
+    ------
+    ValueError
+        If an argument is negative.
+
+    References
+    ----------
+    .. [1] Weisskopf, V. (1937), doi:10.1103/PhysRev.52.295.
+
+    Examples
+    --------
+    Fifty molecules with the energy of 20 degC let go of fewer than a large liquid of that temperature:
+
+    >>> energy = 50 * LIQUID_HEAT * BOLTZMANN * 293.15
+    >>> round(float(microcanonical_flux(energy, 50) / hertz_knudsen_flux(293.15)), 2)
+    0.74
+    """
+    energy = checked_not_negative(as_floats(thermal_energy), "thermal_energy") / BOLTZMANN
+    number = checked_not_negative(as_floats(molecules), "molecules")
+    nuclei = checked_not_negative(as_floats(nuclei_heat), "nuclei_heat")
+    share = checked_not_negative(as_floats(accommodation), "accommodation")
+    leaves = (number >= 1.0) & (energy > BINDING)
+    u = np.where(leaves, energy, 2.0 * BINDING)
+    before = LIQUID_HEAT * np.maximum(number, 1.0) + nuclei
+    after = before - LIQUID_HEAT
+    weight = (after + _LEAVING - 1.0) * np.log(u - BINDING) - special.gammaln(after + _LEAVING)
+    weight = weight - (before - 1.0) * np.log(u) + special.gammaln(before)
+    t = TRIPLE_TEMPERATURE
+    prefactor = float(hertz_knudsen_flux(t)) * np.exp(BINDING / t)
+    flux: FloatArray = np.where(leaves, share * prefactor * np.exp(weight - (_LEAVING - LIQUID_HEAT) * np.log(t)), 0.0)
+    return flux

@@ -1,0 +1,11 @@
+"""Speed against accuracy, measured: the same scene through engines and settings, errors beside seconds.
+
+`rung`             one way of running a scene
+`timed_run`        what one run came to
+`measured_trade`   all the ways of a scene, within a budget of time
+"""
+
+from atmosbox.trade.tradeoff.measured_trade import measure
+from atmosbox.trade.tradeoff.rung import Rung, rungs
+
+__all__ = ["Rung", "measure", "rungs"]

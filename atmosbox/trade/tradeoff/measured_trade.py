@@ -1,0 +1,293 @@
+"""All the ways of running a scene, each as often as a budget of time allows."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from atmosbox import scenarios
+from atmosbox.errors import AtmosboxError, SettingError
+from atmosbox.file.provenance import global_attributes
+from atmosbox.scene import engines
+from atmosbox.trade.tradeoff import timed_run
+from atmosbox.trade.tradeoff.rung import Rung, rungs
+from atmosbox.trade.tradeoff.timed_run import Quantity, Trial
+
+__all__ = ["measure"]
+
+MOST_MEMBERS = 64
+_FIRST_SHARE = 0.25
+"""A run that would take more than this share of the budget is left out."""
+
+Progress = Callable[[float, str], None]
+
+
+class _TooLong(Exception):
+    """A run takes more of the budget than is its share."""
+
+
+def measure(
+    scene: str,
+    *,
+    settings: Mapping[str, Any] | None = None,
+    budget: float = 60.0,
+    seed: int = 1,
+    ladder: Sequence[Rung] | None = None,
+    progress: Progress | None = None,
+    command: str = "",
+) -> xr.Dataset:
+    """Run a scene through engines and settings, and return errors beside costs.
+
+    Every rung runs once, then again and again with other seeds while the budget lasts, those with the fewest
+    runs first. The bias is the mean misfit to theory; its standard error, and the noise of a single run, come
+    from the scatter of the seeds, or from the runs' own error bars where there are fewer than four.
+
+    Parameters
+    ----------
+    scene
+        The name of a scene that declares what is worth comparing.
+    settings
+        Settings for all runs.
+    budget
+        For how long to measure [s].
+    seed
+        The first seed.
+    ladder
+        The runs to compare; those that the scene declares if None.
+    progress
+        Called with the share that is done and a word on what goes on.
+    command
+        What the user typed, for the file's history.
+
+    Returns
+    -------
+    xarray.Dataset
+        By ``rung`` and ``quantity``: see the long names in it.
+
+    Raises
+    ------
+    SettingError
+        If the scene declares nothing to compare, or the budget is too small for any run.
+    """
+    module = scenarios.load(scene)
+    row = getattr(module, "ladder", ())
+    if ladder is None and not row:
+        raise SettingError("scene", scene, "declares nothing to compare", "give its module a ladder of Series")
+    if not (math.isfinite(budget) and 1.0 <= budget <= 1e6):
+        raise SettingError("budget", f"{budget:g} s", "is not between 1 s and 1000000 s", "give --budget 60s")
+    module.Settings.from_user(settings or {})
+    ways = tuple(ladder) if ladder is not None else rungs(row, settings or {})
+    tell = progress or (lambda share, word: None)
+    first = _first_alike(ways, module.Settings)
+    trials: list[list[Trial]] = []
+    for k in range(len(ways)):
+        trials.append([] if first[k] == k else trials[first[k]])
+    refused = [""] * len(ways)
+    warmed: set[str] = set()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # coarse steps are what is measured here
+        for k, way in enumerate(ways):
+            if (name := engines.choose(way.engine).name) not in warmed:
+                tell(0.0, f"compiling the engine {name}, once")
+                try:
+                    timed_run.warm_up(scene, way)
+                    warmed.add(name)
+                except AtmosboxError as error:
+                    refused[k] = str(error)
+        began = time.perf_counter()
+
+        def spent() -> float:
+            return time.perf_counter() - began
+
+        def attempt(k: int, allowed: float) -> None:
+            start = time.perf_counter()
+
+            def watch(share: float, word: str) -> None:
+                took = time.perf_counter() - start
+                if took > allowed or (share > 0.02 and took / share > 1.5 * allowed):
+                    raise _TooLong
+                tell(min(spent() / budget, 1.0), ways[k].label)
+
+            try:
+                trials[k].append(timed_run.run(scene, ways[k], seed + len(trials[k]), watch))
+            except _TooLong:
+                refused[k] = "left out: one run takes too much of the budget"
+            except AtmosboxError as error:
+                refused[k] = str(error)
+
+        def rounds() -> None:
+            own = [k for k in range(len(ways)) if first[k] == k]
+            for k in own:
+                if not refused[k]:
+                    attempt(k, min(_FIRST_SHARE * budget, max(budget - spent(), 0.0) + 0.5))
+            while True:
+                left = budget - spent()
+                fit = [k for k in own if trials[k] and not refused[k] and len(trials[k]) < MOST_MEMBERS]
+                fit = [k for k in fit if trials[k][0].wall_seconds < 0.8 * left]
+                if not fit:
+                    return
+                attempt(min(fit, key=lambda k: (len(trials[k]), trials[k][0].wall_seconds)), left + 0.5)
+
+        status = "complete"
+        try:
+            rounds()
+        except KeyboardInterrupt:
+            if not any(trials):
+                raise
+            status = "interrupted"
+    refused = [refused[k] for k in first]
+    if not any(trials):
+        why = next((reason for reason in refused if reason), "no run fits into it")
+        raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")
+    tell(1.0, "done")
+    title = f"Speed against accuracy: {getattr(module, 'title', scene)}"
+    return _dataset(scene, ways, trials, refused, budget, title, command or f"atmosbox tradeoff {scene}", row, status)
+
+
+def _first_alike(ways: Sequence[Rung], settings: Any) -> list[int]:
+    """Return, for each way of running, the first that is the same: two series may cross, and share a run."""
+    found: dict[str, int] = {}
+    first = []
+    for k, way in enumerate(ways):
+        try:
+            changed = settings.from_user(dict(way.settings)).changed()
+        except AtmosboxError:  # refused when its turn comes
+            changed = dict(way.settings)
+        first.append(found.setdefault(json.dumps([way.engine, changed], sort_keys=True, default=str), k))
+    return first
+
+
+def _dataset(
+    scene: str,
+    ways: Sequence[Rung],
+    trials: Sequence[Sequence[Trial]],
+    refused: Sequence[str],
+    budget: float,
+    title: str,
+    command: str,
+    row: Sequence[Any],
+    status: str,
+) -> xr.Dataset:
+    """Lay all trials side by side."""
+    quantities: dict[str, Quantity] = {}
+    for done in trials:
+        for one in done:
+            quantities |= {name: q for name, q in one.quantities.items() if name not in quantities}
+    names = list(quantities)
+    shape = (len(ways), len(names))
+    bias, bias_se, noise = (np.full(shape, np.nan) for _ in range(3))
+    for k, done in enumerate(trials):
+        for q, name in enumerate(names):
+            members = [one for one in done if name in one.error]
+            if members and len(members) == len(done):  # what some runs do not reach has no fair mean
+                bias[k, q], bias_se[k, q], noise[k, q] = _summary(
+                    np.array([one.error[name] for one in members]), np.array([one.noise[name] for one in members])
+                )
+
+    def median(pick: Callable[[Trial], float]) -> NDArray[np.float64]:
+        return np.array([np.median([pick(one) for one in done]) if done else np.nan for done in trials])
+
+    def worst(pick: Callable[[Trial], float]) -> NDArray[np.float64]:
+        return np.array([max(abs(pick(one)) for one in done) if done else np.nan for done in trials])
+
+    cpu = median(lambda one: one.engine_seconds)
+    reference = _reference(ways, trials)
+    rate = np.array([np.mean([one.collisions for one in done]) if done else np.nan for done in trials])
+    missed = np.full(len(ways), np.nan)
+    if reference is not None:
+        for k, way in enumerate(ways):
+            if trials[k] and way.settings.get("plane") == ways[reference].settings.get("plane"):
+                missed[k] = 1.0 - rate[k] / rate[reference]
+    data = {
+        "bias": (("rung", "quantity"), bias, {"long_name": "mean error of a run against theory"}),
+        "bias_se": (("rung", "quantity"), bias_se, {"long_name": "standard error of bias"}),
+        "noise": (("rung", "quantity"), noise, {"long_name": "standard deviation of a single run"}),
+        "wall_seconds": ("rung", median(lambda one: one.wall_seconds), _of("wall-clock time of a run", "s")),
+        "engine_seconds": ("rung", cpu, _of("processor time that the engine takes in a run", "s")),
+        "cost": (
+            "rung",
+            cpu / (cpu[reference] if reference is not None else np.nan),
+            _of("processor time of the engine as a multiple of that in the reference", "1"),
+        ),
+        "members": ("rung", np.array([len(done) for done in trials]), _of("number of runs", "1")),
+        "energy_drift": (
+            "rung",
+            worst(lambda one: one.made),
+            _of("largest energy that the scheme itself has made, as a share", "1"),
+        ),
+        "ledger": ("rung", worst(lambda one: one.ledger), _of("largest residual of the energy ledger", "1")),
+        "missed": ("rung", missed, _of("share of the collisions of the reference that are missing", "1")),
+        "escaped": ("rung", worst(lambda one: one.escaped), _of("most molecules outside the box", "1")),
+        "left_out": ("rung", list(refused), {"long_name": "why there is no run, or no more"}),
+        "series": ("rung", np.array([way.series for way in ways]), _of("number of the series", "1")),
+        "value": ("rung", np.array([way.value for way in ways]), _of("what varies within the series", "1")),
+        "engine": ("rung", [way.engine for way in ways], {"long_name": "engine and its options"}),
+        "settings": ("rung", [json.dumps(dict(way.settings)) for way in ways], {"long_name": "settings, as JSON"}),
+    }
+    parameters = {
+        "scene": scene,
+        "tradeoff": {"budget": budget, "reference": reference},
+        "series": [
+            {"engine": s.engine, "vary": s.vary, "order": dict(s.order), "settings": dict(s.settings)} for s in row
+        ],
+    }
+    return xr.Dataset(
+        data,
+        coords={
+            "rung": ("rung", [way.label for way in ways], {"long_name": "engine and settings"}),
+            "quantity": ("quantity", names, {"long_name": "what is measured"}),
+            "label": ("quantity", [q.label for q in quantities.values()], {"long_name": "what a table calls it"}),
+            "unit": (
+                "quantity",
+                [q.unit for q in quantities.values()],
+                {"long_name": "unit of bias and noise: K, or 1 for a share of the theory"},
+            ),
+            "theory": (
+                "quantity",
+                [q.theory for q in quantities.values()],
+                {"long_name": "what theory says, in SI units; of a curve the mean of its size"},
+            ),
+        },
+        attrs=global_attributes(parameters, title=title, command=command, status=status),
+    )
+
+
+def _of(long_name: str, units: str) -> dict[str, str]:
+    return {"long_name": long_name, "units": units}
+
+
+def _reference(ways: Sequence[Rung], trials: Sequence[Sequence[Trial]]) -> int | None:
+    """Return the dearest run of the exact engine's first series: what the others are held against."""
+    exact = [k for k, way in enumerate(ways) if trials[k] and way.engine == str(engines.EXACT)]
+    if not exact:
+        return None
+    first = ways[exact[0]].series
+    return [k for k in exact if ways[k].series == first][-1]
+
+
+def _summary(error: NDArray[np.float64], own: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Return bias, its standard error, and the noise of one run, of ``error : (member, value)``.
+
+    A curve counts by its root mean square, less what chance alone would add to it.
+    """
+    keep = np.isfinite(error).all(axis=0) & np.isfinite(own).all(axis=0)
+    if not keep.any():
+        return math.nan, math.nan, math.nan
+    error, own = error[:, keep], own[:, keep]
+    members = len(error)
+    variance = error.var(axis=0, ddof=1) if members >= 4 else np.mean(own**2, axis=0)
+    mean = error.mean(axis=0)
+    noise = math.sqrt(float(variance.mean()))
+    se = noise / math.sqrt(members)
+    if mean.size == 1:
+        return float(mean[0]), se, noise
+    square = float(np.mean(mean**2))
+    return math.sqrt(max(square - se**2, 0.0)), se / math.sqrt(mean.size), noise

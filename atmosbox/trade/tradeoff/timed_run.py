@@ -1,0 +1,112 @@
+"""What one run came to: its errors, and what it cost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.run import runner
+from atmosbox.trade.tradeoff.rung import Rung
+
+if TYPE_CHECKING:
+    from atmosbox.run.runner import Outcome
+
+__all__ = ["PROFILES", "Quantity", "Trial", "run", "warm_up"]
+
+PROFILES = {
+    "number_density": "number_density_theory",
+    "layer_temperature": "layer_temperature_theory",
+    "speed_probability_density": "speed_probability_density_theory",
+    "parcel_temperature": "adiabat_temperature",
+}
+"""Curves with a closed form beside them; their error is the root mean square of the misfit along the curve."""
+
+_TEMPERATURES = ("K", "degC")
+
+
+class Quantity(NamedTuple):
+    """A number, or a curve, whose error is measured.
+
+    ``unit`` is K for temperatures; for everything else it is 1, the error being a share of the theory. ``theory``
+    is what theory said in the first run [SI], for a curve the mean of its size.
+    """
+
+    name: str
+    label: str
+    unit: str
+    theory: float
+
+
+class Trial(NamedTuple):
+    """What one run came to.
+
+    ``error`` and ``noise : (value,)`` by quantity: misfits to theory and their standard errors, one value
+    for a number and one for each point of a curve. ``collisions`` are per molecule and simulated second.
+    """
+
+    quantities: Mapping[str, Quantity]
+    error: Mapping[str, NDArray[np.float64]]
+    noise: Mapping[str, NDArray[np.float64]]
+    wall_seconds: float
+    engine_seconds: float
+    ledger: float
+    made: float
+    escaped: int
+    collisions: float
+
+
+def warm_up(scene: str, rung: Rung) -> None:
+    """Compile what a rung needs, so that no trial is charged for it."""
+    prepared = runner.prepare(scene, rung.settings, engine=rung.engine)
+    runner.build(prepared).parcel.advance(0.0)
+
+
+def run(scene: str, rung: Rung, seed: int, progress: Callable[[float, str], None]) -> Trial:
+    """Run a rung with a seed and return its errors and its cost.
+
+    Raises
+    ------
+    AtmosboxError
+        If the engine refuses the scene, or cannot go on.
+    """
+    prepared = runner.prepare(scene, {**rung.settings, "seed": seed}, engine=rung.engine)
+    return _trial(runner.execute(prepared, progress=progress), prepared.settings)
+
+
+def _trial(outcome: Outcome, settings: Any) -> Trial:
+    quantities: dict[str, Quantity] = {}
+    error: dict[str, NDArray[np.float64]] = {}
+    noise: dict[str, NDArray[np.float64]] = {}
+    for headline in outcome.headlines:
+        if headline.theory is None or headline.misfit is None:
+            continue
+        absolute = headline.unit in _TEMPERATURES
+        if not absolute and headline.theory == 0.0:
+            continue
+        size = 1.0 if absolute else abs(headline.theory)
+        quantities[headline.name] = Quantity(headline.name, headline.label, "K" if absolute else "1", headline.theory)
+        error[headline.name] = np.array([headline.misfit / size])
+        noise[headline.name] = np.array([headline.standard_error / size])
+    dataset = outcome.dataset
+    for name, beside in PROFILES.items():
+        if name not in dataset or beside not in dataset or f"{name}_se" not in dataset:
+            continue
+        theory = dataset[beside].values
+        absolute = dataset[name].attrs.get("units") in _TEMPERATURES
+        # a curve that falls to nothing is compared with its mean: far out there is nothing to be wrong about
+        mean = float(np.mean(np.abs(theory)))
+        size = 1.0 if absolute else mean
+        label = f"profile of {name.replace('_', ' ')}"
+        quantities[name] = Quantity(name, label, "K" if absolute else "1", mean)
+        error[name] = (dataset[name].values - theory) / size
+        noise[name] = dataset[f"{name}_se"].values / size
+    lasted = float(dataset.elapsed_time_bnds.values[-1, 1] - dataset.elapsed_time_bnds.values[0, 0])
+    per_molecule = outcome.collisions / max(getattr(settings, "molecules", 1), 1)
+    return Trial(
+        quantities, error, noise, outcome.seconds, outcome.engine_seconds, outcome.ledger, outcome.made,
+        outcome.escaped, per_molecule / lasted if lasted > 0.0 else math.nan,
+    )  # fmt: skip

@@ -1,0 +1,5 @@
+"""The version of atmosbox, written once: the build, the files of runs and the command line read it here."""
+
+__all__ = ["__version__"]
+
+__version__ = "0.1.0"
