@@ -84,7 +84,7 @@ def run(
     >>> bool(dataset.air_temperature[-1] < dataset.air_temperature[0])
     True
     """
-    from atmosbox.run.runner import run as start
+    from atmosbox.simulation.runner import run as start
 
     return start(
         scene,

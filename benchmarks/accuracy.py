@@ -26,14 +26,14 @@ from atmosbox import scenarios  # noqa: E402
 from atmosbox.errors import AtmosboxError  # noqa: E402
 from atmosbox.file.netcdf import read  # noqa: E402
 from atmosbox.file.provenance import parameters  # noqa: E402
-from atmosbox.run.accuracy import said  # noqa: E402
-from atmosbox.run.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.scene import engines  # noqa: E402
 from atmosbox.scene.quantity import parse_quantity  # noqa: E402
+from atmosbox.simulation.accuracy import said  # noqa: E402
+from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.trade import tradeoff  # noqa: E402
 from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
 
-TABLE = ROOT / "atmosbox" / "run" / "accuracy" / "accuracy.json"
+TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
 FEWEST = 4
 """Runs below which the noise is taken from the runs' own error bars and not from their scatter."""
 

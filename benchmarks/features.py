@@ -91,8 +91,11 @@ def engine(root: Path) -> Any:
     sys.path.insert(0, str(root))
     try:
         module = importlib.import_module("atmosbox.engine")
-        for name in ("exact", "start", "state"):
-            setattr(module, name, importlib.import_module(f"atmosbox.engine.{name}"))
+        # all of it now: later, the names of its files would lead to another tree
+        for name in module.__all__:
+            getattr(module, name)
+        module.loop = importlib.import_module("atmosbox.engine.exact.exact")
+        module.types = importlib.import_module("atmosbox.engine.core.state")
     finally:
         sys.path.pop(0)
     module.modules = {name: each for name, each in sys.modules.items() if name.split(".")[0] == "atmosbox"}
@@ -104,7 +107,7 @@ def without(feature: str, folder: Path) -> Path:
     root = folder / feature
     shutil.copytree(ENGINE, root / "atmosbox" / "engine", ignore=shutil.ignore_patterns("__pycache__"))
     (root / "atmosbox" / "__init__.py").write_text("", encoding="utf-8")
-    for file in (root / "atmosbox" / "engine").glob("*.py"):
+    for file in (root / "atmosbox" / "engine").rglob("*.py"):
         text = file.read_text(encoding="utf-8")
         file.write_text(re.sub(rf"\bmodes\.{feature}\b", "False", text), encoding="utf-8")
     return root
@@ -137,8 +140,8 @@ def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
         options["layers"] = 50
     elif feature == "points":
         sizes = np.zeros(n)
-    x = module.start.random_positions((side,) * 3, sizes, rng, periodic=periodic)
-    v = module.start.maxwell_velocities(1.0, np.ones(n), rng, exact=True)
+    x = module.random_positions((side,) * 3, sizes, rng, periodic=periodic)
+    v = module.maxwell_velocities(1.0, np.ones(n), rng, exact=True)
     return module.ParcelSet(x, v, length=(side,) * 3, walls=tuple(walls), diameter=sizes, **options)
 
 
@@ -160,11 +163,11 @@ class Bench:
         """Return a function that does the work with another engine's kernel, and tells the CPU seconds it took."""
         # numba finds machine code on disk only if the classes of its arguments are those that a name leads to
         sys.modules.update(module.modules)
-        state = module.state
+        state = module.types
         arguments = [
             getattr(state, type(each).__name__)(*each) if isinstance(each, tuple) else each for each in self._arguments
         ]
-        advance = module.exact.specialise(state.Modes(*self._modes))[1]
+        advance = module.loop.specialise(state.Modes(*self._modes))[1]
 
         def work() -> float:
             for array, before in zip(self._arrays, self._before, strict=True):
@@ -172,7 +175,7 @@ class Bench:
             start = time.process_time()
             status, _ = advance(*arguments, self._until, 1 << 60)
             lasted = time.process_time() - start
-            if status != module.exact.DONE:
+            if status != module.loop.DONE:
                 raise RuntimeError("a row of the cells is full: choose another seed")
             return lasted
 
@@ -241,8 +244,8 @@ def time_on(asked: argparse.Namespace) -> dict[str, dict[str, Any]]:
 
 def scene(name: str, instrument: str, small: bool) -> tuple[Any, Callable[[bool], None]]:
     """Return the set-up of a scene, and a function that makes one frame, with an instrument or without it."""
-    from atmosbox.run import runner
     from atmosbox.scene import instruments
+    from atmosbox.simulation import runner
 
     prepared = runner.prepare(name, {"molecules": 60} if small else {})
     setup = prepared.module.build(prepared.settings)

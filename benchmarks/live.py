@@ -25,7 +25,7 @@ sys.path.insert(0, str(ROOT))
 from websockets.sync.client import connect  # noqa: E402
 
 from atmosbox.live.session import Session  # noqa: E402
-from atmosbox.run.preparation import prepare  # noqa: E402
+from atmosbox.simulation.preparation import prepare  # noqa: E402
 
 _WARM_UP = 3.0
 

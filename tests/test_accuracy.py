@@ -25,11 +25,11 @@ from atmosbox.cli.report import headline_lines
 from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
-from atmosbox.run import accuracy, runner
-from atmosbox.run.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
-from atmosbox.run.accuracy import cheapest as cheapest_of
 from atmosbox.scene import engines
 from atmosbox.scene.headline import Headline
+from atmosbox.simulation import accuracy, runner
+from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
+from atmosbox.simulation.accuracy import cheapest as cheapest_of
 from atmosbox.trade.tradeoff import Rung, timed_run
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -49,8 +49,8 @@ def test_every_mode_of_the_engine_has_a_gas_that_shows_its_price(features):
 @pytest.mark.parametrize("feature", ["nothing", *Modes._fields])
 def test_a_feature_is_struck_out_of_every_source_of_the_engine_and_no_other_is(features, feature, tmp_path):
     copy = features.without(feature, tmp_path) / "atmosbox" / "engine"
-    before = {file.name: file.read_text(encoding="utf-8") for file in features.ENGINE.glob("*.py")}
-    after = {file.name: file.read_text(encoding="utf-8") for file in copy.glob("*.py")}
+    before = {str(file.relative_to(features.ENGINE)): file.read_text() for file in features.ENGINE.rglob("*.py")}
+    after = {str(file.relative_to(copy)): file.read_text() for file in copy.rglob("*.py")}
     assert after.keys() == before.keys()
     used, left = (
         {mode: len(re.findall(rf"\bmodes\.{mode}\b", "\n".join(sources.values()))) for mode in Modes._fields}

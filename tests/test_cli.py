@@ -18,7 +18,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import atmosbox
-from atmosbox import scenarios
+from atmosbox import scenarios, version
 from atmosbox.cli import app, check, progress, report, table, terminal
 from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.request import Request
@@ -26,8 +26,8 @@ from atmosbox.cli.run import FIGURES
 from atmosbox.errors import EngineError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
-from atmosbox.run import runner
 from atmosbox.scene.headline import Headline
+from atmosbox.simulation import runner
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ("list", "info", "run", "plot", "check")
@@ -330,7 +330,7 @@ def test_an_earlier_run_that_saved_its_molecules_does_so_again(folder):
 
 
 def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):
-    monkeypatch.setattr(atmosbox, "__version__", "99.0")
+    monkeypatch.setattr(version, "__version__", "99.0")
     result = atmosbox_in_process("run", "--from", str(finished), "--dry-run")
     assert result.exit_code == 0
     assert "note: " in result.stderr

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from atmosbox import scenarios
 from atmosbox.cli import app
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 NAMES = sorted({p.name for name in scenarios.names() for p in scenarios.load(name).Settings.describe()})
 

@@ -14,7 +14,7 @@ import pytest
 
 from atmosbox import scenarios
 from atmosbox.file.netcdf import read
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"

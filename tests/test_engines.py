@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 from atmosbox.cli import app
 from atmosbox.engine import CoarseStepWarning, Parcel
 from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.run import runner
 from atmosbox.scene.engines import ENGINES, EXACT, choose, used
+from atmosbox.simulation import runner
 
 
 @pytest.mark.parametrize("name", ENGINES)

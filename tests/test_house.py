@@ -65,7 +65,7 @@ def test_python_m_atmosbox_is_the_command_line():
 
 def test_run_in_python_passes_everything_on_to_the_runner():
     ours = inspect.signature(atmosbox.run).parameters
-    runner = inspect.signature(importlib.import_module("atmosbox.run.runner").run).parameters
+    runner = inspect.signature(importlib.import_module("atmosbox.simulation.runner").run).parameters
     assert list(ours) == list(runner)
     assert [(p.kind, p.default) for p in ours.values()] == [(p.kind, p.default) for p in runner.values()]
 

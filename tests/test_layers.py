@@ -32,17 +32,17 @@ LAYERS = {
     "scenarios": Layer("errors"),
     "scene": Layer("engine errors theory", "numpy scipy pydantic", lazily="metpy pint xarray"),
     "a scenario": Layer("engine errors theory scene", "numpy", lazily="xarray"),
-    "run": Layer("version engine errors scenarios scene", "numpy", lazily="xarray file"),
+    "simulation": Layer("version engine errors scenarios scene", "numpy", lazily="xarray file"),
     "plot": Layer("errors theory file scene scenarios", "numpy xarray matplotlib metpy"),
     "page": Layer("errors theory file scene", "numpy", lazily="plot scenarios xarray"),
     "film": Layer("errors theory file scene plot", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
-    "sheet": Layer("version errors file scenarios scene run", "numpy", lazily="reportlab matplotlib"),
-    "sweep": Layer("version errors file scenarios scene run", "numpy xarray", lazily="distributed"),
-    "trade": Layer("engine errors theory file scenarios scene run", "numpy xarray"),
-    "live": Layer("version engine errors theory file scene run page", "numpy websockets", lazily="xarray"),
+    "sheet": Layer("version errors file scenarios scene simulation", "numpy", lazily="reportlab matplotlib"),
+    "sweep": Layer("version errors file scenarios scene simulation", "numpy xarray", lazily="distributed"),
+    "trade": Layer("engine errors theory file scenarios scene simulation", "numpy xarray"),
+    "live": Layer("version engine errors theory file scene simulation page", "numpy websockets", lazily="xarray"),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
     "__main__": Layer("cli"),
-    "version": Layer("", lazily="run xarray"),
+    "version": Layer("", lazily="simulation xarray"),
 }
 """One row a room; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
@@ -186,14 +186,14 @@ def test_every_layer_of_the_table_has_a_file():
         ("atmosbox/theory/noise.py", "import metpy.calc"),
         ("atmosbox/theory/noise.py", "from .. import engine"),
         ("atmosbox/scene/conversion.py", "import pint"),
-        ("atmosbox/scene/settings.py", "from atmosbox.run.runner import run"),
+        ("atmosbox/scene/settings.py", "from atmosbox.simulation.runner import run"),
         ("atmosbox/file/variables.py", "from atmosbox.scene.panels import Line"),
         ("atmosbox/plot/skewt.py", "from atmosbox.engine.core import state"),
-        ("atmosbox/run/preparation.py", "from atmosbox.scenarios import lifting_dry"),
-        ("atmosbox/run/runner.py", "def f():\n    from atmosbox import cli"),
+        ("atmosbox/simulation/preparation.py", "from atmosbox.scenarios import lifting_dry"),
+        ("atmosbox/simulation/runner.py", "def f():\n    from atmosbox import cli"),
         ("atmosbox/scenarios/__init__.py", "from . import lifting_dry"),
         ("atmosbox/cli/run.py", "import xarray"),
-        ("atmosbox/__init__.py", "from atmosbox.run import runner"),
+        ("atmosbox/__init__.py", "from atmosbox.simulation import runner"),
         ("atmosbox/__init__.py", "import numpy"),
         ("atmosbox/utils.py", "import math"),
         ("scenarios/moist.py", "from atmosbox.scenarios.lifting_dry import build"),
@@ -201,7 +201,7 @@ def test_every_layer_of_the_table_has_a_file():
         ("scenarios/moist.py", "import scenarios.lifting_dry"),
         ("scenarios/moist.py", "import lifting_dry"),
         ("scenarios/moist.py", "from atmosbox.scenarios import load"),
-        ("scenarios/moist.py", "from atmosbox.run import runner"),
+        ("scenarios/moist.py", "from atmosbox.simulation import runner"),
         ("scenarios/moist.py", "import xarray"),
     ],
 )
@@ -226,12 +226,12 @@ def test_a_planted_violation_is_found(tmp_path, place, source):
             "atmosbox/plot/skewt.py",
             "from .line import draw\nfrom atmosbox.plot import theme\nimport metpy.plots",
         ),
-        ("atmosbox/run/preparation.py", "from atmosbox import scenarios\nfrom atmosbox.scenarios import load"),
-        ("atmosbox/cli/run.py", "import typer\nfrom atmosbox.run import runner\ndef f():\n    import xarray"),
+        ("atmosbox/simulation/preparation.py", "from atmosbox import scenarios\nfrom atmosbox.scenarios import load"),
+        ("atmosbox/cli/run.py", "import typer\nfrom atmosbox.simulation import runner\ndef f():\n    import xarray"),
         ("atmosbox/__main__.py", "from atmosbox.cli import main"),
         (
             "atmosbox/__init__.py",
-            "if TYPE_CHECKING:\n    import xarray\ndef run():\n    from .run import runner",
+            "if TYPE_CHECKING:\n    import xarray\ndef run():\n    from .simulation import runner",
         ),
         (
             "scenarios/moist.py",
@@ -255,7 +255,7 @@ def test_no_name_of_a_file_means_two_things():
 def test_rooms_stand_on_floors():
     """A room imports only from rooms below it: without a circle there is an order."""
     standing = {name: set(f"{row.parts} {row.lazily}".split()) & set(LAYERS) for name, row in LAYERS.items()}
-    standing["version"] -= {"run"}  # `atmosbox.run` is a function that opens the runner when it is called
+    standing["version"] -= {"simulation"}  # `atmosbox.run` imports it when it is called
     standing.pop("cli")
     standing.pop("__main__")
     while standing:

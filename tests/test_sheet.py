@@ -15,7 +15,6 @@ import pytest
 from atmosbox import scenarios
 from atmosbox import sheet as sheets
 from atmosbox.errors import ConfigError, FileError, PhysicsError, SettingError
-from atmosbox.run import runner
 from atmosbox.sheet.arithmetic import Measured, filled
 from atmosbox.sheet.block import Answer, Blank, Commands, Kept, Measurements, Text
 from atmosbox.sheet.markdown import markdown
@@ -23,6 +22,7 @@ from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
 from atmosbox.sheet.pdf import PAPERS, load_fonts, pdf
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.text import SECTIONS, read, text_of
+from atmosbox.simulation import runner
 
 ROOT = Path(__file__).resolve().parents[1]
 NAMES = scenarios.names()

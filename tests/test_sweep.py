@@ -24,7 +24,7 @@ from atmosbox.cli import app
 from atmosbox.cli.check import conventions
 from atmosbox.errors import DiskFullError, FileError, SettingError, UnitError, UnknownSettingError
 from atmosbox.file.netcdf import part_path, read, write
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.sweep import SweepInterrupted, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.result import assemble, mean_and_error

@@ -102,7 +102,7 @@ def check(file: str | None, *, as_json: bool, misplaced: Sequence[tuple[str, obj
         raise SettingError("check", None, "does not know what to verify", fix)
 
     from atmosbox.file.netcdf import read
-    from atmosbox.run import runner
+    from atmosbox.simulation import runner
 
     checks = runner.verify(read(file))
     cf = conventions(Path(file))

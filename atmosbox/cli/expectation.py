@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.cli.table import table, wrapped
-from atmosbox.run.accuracy import TARGETS, cost, said
+from atmosbox.simulation.accuracy import TARGETS, cost, said
 
 if TYPE_CHECKING:
-    from atmosbox.run.accuracy import Expectation, ExpectedError, Wish
     from atmosbox.scene.headline import Headline
+    from atmosbox.simulation.accuracy import Expectation, ExpectedError, Wish
 
 
 def expectation_lines(

@@ -60,7 +60,7 @@ def live(
     """
     number = _port(port)
 
-    from atmosbox.run import runner
+    from atmosbox.simulation import runner
 
     scene, settings, engine, molecules, accuracy = request.gather()
     with contextlib.redirect_stdout(sys.stderr):

@@ -13,9 +13,9 @@ from atmosbox.scene.conversion import from_si
 from atmosbox.scene.quantity import phrase
 
 if TYPE_CHECKING:
-    from atmosbox.run.runner import Card, Outcome
     from atmosbox.scene.headline import Headline
     from atmosbox.scene.parameter import Parameter
+    from atmosbox.simulation.runner import Card, Outcome
 
 _VERDICT = {True: "yes", False: "no", None: "-"}
 _ALIKE = {1: "", 2: "both "}

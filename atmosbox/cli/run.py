@@ -23,7 +23,7 @@ from atmosbox.errors import AtmosboxError, FileError, PhysicsError
 
 if TYPE_CHECKING:
     from atmosbox.file.checkpoint import Checkpoint
-    from atmosbox.run.runner import Interrupted, Prepared
+    from atmosbox.simulation.runner import Interrupted, Prepared
 
 TERMINATED = 143  # what a shell reports of a program that was asked to end
 FIGURES = (".png", ".svg", ".pdf")
@@ -85,7 +85,7 @@ def run(
         With the status of an interruption, if the run was stopped.
     """
     from atmosbox.file.checkpoint import Checkpoint
-    from atmosbox.run import runner
+    from atmosbox.simulation import runner
 
     scene, settings, engine, molecules, accuracy = request.gather()
     with _own_prints_to_stderr():
@@ -130,7 +130,7 @@ def run(
 
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:
     """Say what is about to be run, as the result of a dry run, else on stderr."""
-    from atmosbox.run import runner
+    from atmosbox.simulation import runner
 
     with _own_prints_to_stderr():
         card = runner.card(prepared)
@@ -162,7 +162,7 @@ def _say_interrupted(
     stop: Interrupted, prepared: Prepared, checkpoint: Checkpoint, *, quiet: bool, as_json: bool
 ) -> None:
     """Say what is left of a run that was stopped, and how to look at it."""
-    from atmosbox.run import runner
+    from atmosbox.simulation import runner
 
     if stop.outcome is None:
         tell("stopped before the first frame was complete: nothing is kept")

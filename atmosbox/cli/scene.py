@@ -50,7 +50,7 @@ def describe(scene: str, *, as_json: bool) -> None:
     AtmosboxError
         If there is no such scene, or its file cannot be run.
     """
-    from atmosbox.run import runner
+    from atmosbox.simulation import runner
 
     with contextlib.redirect_stdout(sys.stderr):  # what a scene of one's own prints is no result
         card = runner.card(runner.prepare(scene, {}))

@@ -144,7 +144,7 @@ def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
 
 def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
     """Say what came out."""
-    from atmosbox.run.runner import LEDGER_LIMIT
+    from atmosbox.simulation.runner import LEDGER_LIMIT
 
     if as_json:
         made = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "computed": swept.computed}
@@ -226,7 +226,7 @@ def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
 
 def _judge(grid: Plan, swept: Swept, path: Path) -> None:
     """Raise the error that the sweep ends with, if any run has failed."""
-    from atmosbox.run.runner import LEDGER_LIMIT
+    from atmosbox.simulation.runner import LEDGER_LIMIT
 
     failed: AtmosboxError | None = None
     if swept.failures:

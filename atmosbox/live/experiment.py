@@ -13,9 +13,9 @@ import numpy as np
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError
-from atmosbox.run.preparation import Prepared, build
-from atmosbox.run.recording import Recording
 from atmosbox.scene.instruments import Instrument
+from atmosbox.simulation.preparation import Prepared, build
+from atmosbox.simulation.recording import Recording
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +66,7 @@ class Experiment:
     Examples
     --------
     >>> import time
-    >>> from atmosbox.run.preparation import prepare
+    >>> from atmosbox.simulation.preparation import prepare
     >>> discs = Experiment(prepare("elastic-collisions", {"molecules": 10}), time.perf_counter)
     >>> discs.pass_time(2.5 * discs.setup.frame, math.inf, tuple, lambda: True)
     >>> discs.frame, discs.between_frames

@@ -12,10 +12,10 @@ from atmosbox.errors import SettingError
 from atmosbox.live.control import COLLISIONS, Control, controls
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change
-from atmosbox.run.preparation import Prepared
 from atmosbox.scene.engines import EngineChoice, choose
 from atmosbox.scene.parameter import Value
 from atmosbox.scene.setup import Setup
+from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["MOST_CHANGES", "Hand", "begun_anew", "meeting", "with_collisions"]
 
@@ -40,7 +40,7 @@ class Hand:
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import prepare
+    >>> from atmosbox.simulation.preparation import prepare
     >>> prepared = prepare("elastic-collisions", {"molecules": 10})
     >>> Hand(prepared.module.build(prepared.settings)).names
     ()
@@ -99,7 +99,7 @@ def meeting(prepared: Prepared, setup: Setup) -> bool | None:
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import prepare
+    >>> from atmosbox.simulation.preparation import prepare
     >>> prepared = prepare("temperature", {"molecules": 10})
     >>> meeting(prepared, prepared.module.build(prepared.settings))
     True
@@ -135,7 +135,7 @@ def begun_anew(prepared: Prepared, values: Mapping[str, Any], engine: str) -> Pr
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import prepare
+    >>> from atmosbox.simulation.preparation import prepare
     >>> begun_anew(prepare("temperature", {}), {"molecules": 10}, "stepped").settings.molecules
     10
     """

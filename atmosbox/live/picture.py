@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.page import Box, Stage, stage
-from atmosbox.run.preparation import Prepared
 from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.quantity import phrase
 from atmosbox.scene.setup import Setup
+from atmosbox.simulation.preparation import Prepared
 from atmosbox.theory.constants import DRY_AIR, WATER
 from atmosbox.version import __version__
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from atmosbox.errors import AtmosboxError, SettingError
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.tape import Change, Tape, file_for
-from atmosbox.run.recording import Recording
 from atmosbox.scene.panels import to_json
+from atmosbox.simulation.recording import Recording
 
 __all__ = ["Recorder"]
 
@@ -161,7 +161,7 @@ def longest(box: Experiment) -> int:
     Examples
     --------
     >>> import time
-    >>> from atmosbox.run.preparation import prepare
+    >>> from atmosbox.simulation.preparation import prepare
     >>> longest(Experiment(prepare("elastic-collisions", {"molecules": 10}), time.perf_counter))
     30000
     """

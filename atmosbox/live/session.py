@@ -18,9 +18,9 @@ from atmosbox.live.picture import Picture
 from atmosbox.live.recorder import Recorder, longest
 from atmosbox.live.summary import Report, while_it_runs
 from atmosbox.live.tape import Change
-from atmosbox.run.preparation import Prepared
 from atmosbox.scene.parameter import Value
 from atmosbox.scene.setup import Setup
+from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["Session"]
 
@@ -64,7 +64,7 @@ class Session:
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import prepare
+    >>> from atmosbox.simulation.preparation import prepare
     >>> session = Session(prepare("elastic-collisions", {"molecules": 10}))
     >>> session.obey({"type": "play"})
     >>> session.run(0.1)

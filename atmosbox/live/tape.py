@@ -14,12 +14,12 @@ from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import check_writable
 from atmosbox.file.provenance import history_line
 from atmosbox.live.summary import without_headlines
-from atmosbox.run.preparation import Prepared
-from atmosbox.run.recording import Recording
 from atmosbox.scene.panels import Panel, to_json
 from atmosbox.scene.parameter import Value
 from atmosbox.scene.quantity import phrase
 from atmosbox.scene.setup import Setup
+from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.recording import Recording
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -98,7 +98,7 @@ def wall_temperature(
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import build, prepare
+    >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("temperature", {"temperature": "20 degC"}))
     >>> [(knob.name, knob.value, knob.unit) for knob in setup.knobs]
     [('temperature', 20.0, 'degC')]
@@ -117,7 +117,7 @@ def gravity(
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import build, prepare
+    >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("atmosphere", {"molecules": 100}))
     >>> setup.knobs[1].set(2.0 * 9.80665)
     >>> round(setup.parcel.gravity, 6), setup.parcel.ledger() < 1e-12
@@ -144,7 +144,7 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
     --------
     Left alone it makes for the top:
 
-    >>> from atmosbox.run.preparation import build, prepare
+    >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("lifting-dry", {"molecules": 100}))
     >>> setup.knobs[0].name, setup.knobs[0].unit, setup.knobs[0].value == setup.knobs[0].high
     ('altitude', 'km', True)
@@ -164,7 +164,7 @@ def way(parcel: Parcel, driver: FollowPressure) -> Knob:
 
     Examples
     --------
-    >>> from atmosbox.run.preparation import build, prepare
+    >>> from atmosbox.simulation.preparation import build, prepare
     >>> [knob.name for knob in build(prepare("mountains", {"molecules": 200})).knobs]
     ['way']
     """

@@ -44,6 +44,7 @@ class Scale:
     Molecules of dry air at 288.15 K, measured in their own diameter, mass and k_B T, have a unit of speed of
     sqrt(k_B T / m), 288 m/s:
 
+    >>> from atmosbox.theory.constants import DRY_AIR
     >>> scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 288.15)
     >>> round(scale.velocity, 1), round(scale.reduced_temperature(288.15), 12)
     (287.6, 1.0)

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from atmosbox.errors import ConfigError, PhysicsError, shown
-from atmosbox.run import runner
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
 from atmosbox.sheet.arithmetic import Measured, filled
 from atmosbox.sheet.text import Change
+from atmosbox.simulation import runner
 
 __all__ = ["LETTERS", "Trial", "execute", "trials"]
 

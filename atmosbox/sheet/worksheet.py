@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from atmosbox.errors import ConfigError
-from atmosbox.run import runner
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
 from atmosbox.sheet.arithmetic import filled
@@ -29,6 +28,7 @@ from atmosbox.sheet.generic import generic, left_out
 from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
 from atmosbox.sheet.sheet_run import LETTERS, Trial, execute, shown_of, trials
 from atmosbox.sheet.text import SECTIONS, Prediction, Question, SheetText, read, text_of
+from atmosbox.simulation import runner
 from atmosbox.version import __version__
 
 __all__ = ["Worksheet", "worksheet"]

@@ -100,7 +100,7 @@ def sweep(
 
     Examples
     --------
-    >>> from atmosbox.run.runner import LEDGER_LIMIT
+    >>> from atmosbox.simulation.runner import LEDGER_LIMIT
     >>> from atmosbox.sweep.plan import plan
     >>> discs = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}, members=2)
     >>> swept = sweep(discs, jobs=1)

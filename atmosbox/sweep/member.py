@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from atmosbox.errors import AtmosboxError
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.sweep.plan import Task
 
 __all__ = ["COMPLETE", "FAILED", "Progress", "Record", "failure", "run"]

@@ -15,8 +15,8 @@ import numpy as np
 
 from atmosbox import scenarios
 from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.run.preparation import Prepared, prepare
 from atmosbox.scene.parameter import Value
+from atmosbox.simulation.preparation import Prepared, prepare
 from atmosbox.sweep.axis import Axis, parse_vary
 from atmosbox.version import __version__
 
@@ -211,7 +211,7 @@ def plan(
     seed
         The seed of the sweep; that of the settings if None.
     engine, accuracy
-        As for `atmosbox.run.preparation.prepare`.
+        As for `atmosbox.simulation.preparation.prepare`.
 
     Returns
     -------

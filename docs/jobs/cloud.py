@@ -10,9 +10,9 @@ from jobs.registry import Findings, job
 
 from atmosbox import theory
 from atmosbox.plot.theme import DARK, ENVIRONMENT_COLOURS, FAINT, REFERENCE_COLOURS
-from atmosbox.run import runner
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.statistics import running_mean
+from atmosbox.simulation import runner
 
 LEVELS = (850, 700, 500, 300)
 SEEDS = range(1, 5)

@@ -6,7 +6,7 @@ import numpy as np
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN
 
 SEEDS = range(1, 9)

@@ -14,7 +14,7 @@ from atmosbox import scenarios
 from atmosbox.cli.scene import summaries
 from atmosbox.file import dataset as diagnostics
 from atmosbox.file.provenance import global_attributes
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 
 @job("scenes", quick=True)

@@ -12,7 +12,7 @@ DOORS = {
     "run": (
         "atmosbox",
         "atmosbox.scenarios",
-        "atmosbox.run.runner",
+        "atmosbox.simulation.runner",
         "atmosbox.file.netcdf",
         "atmosbox.plot",
         "atmosbox.errors",
@@ -35,7 +35,12 @@ DOORS = {
         "atmosbox.live",
         "atmosbox.sheet",
     ),
-    "trust": ("atmosbox.scene.engines", "atmosbox.run.accuracy", "atmosbox.trade.tradeoff", "atmosbox.trade.extremes"),
+    "trust": (
+        "atmosbox.scene.engines",
+        "atmosbox.simulation.accuracy",
+        "atmosbox.trade.tradeoff",
+        "atmosbox.trade.extremes",
+    ),
 }
 """The modules by the table in which they stand."""
 

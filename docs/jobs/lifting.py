@@ -9,7 +9,7 @@ from jobs.registry import Findings, job
 from scipy import optimize
 
 from atmosbox import scenarios, theory
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN
 
 LEVELS = (700, 300)

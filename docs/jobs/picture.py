@@ -9,7 +9,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.patches import Circle, Rectangle
 
 from atmosbox.plot.theme import DARK, FAINT
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 SLICE = 12e-9
 """Thickness of the slice of the box that is drawn [m]."""

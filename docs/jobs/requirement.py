@@ -9,8 +9,8 @@ from jobs.registry import Findings, job, rounded
 from scipy import constants, integrate
 
 from atmosbox import theory
-from atmosbox.run import runner
 from atmosbox.scene.units import Scale
+from atmosbox.simulation import runner
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
 EARTH = 6.356766e6

@@ -7,7 +7,7 @@ from jobs.registry import Findings, job
 from atmosbox import scenarios
 from atmosbox.cli.report import headline_lines
 from atmosbox.plot import figure
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 WIDTH = 100
 DOTS_PER_INCH = 100

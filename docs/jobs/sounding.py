@@ -6,8 +6,8 @@ import numpy as np
 from jobs.registry import Findings, job, rounded
 
 from atmosbox import theory
-from atmosbox.run import runner
 from atmosbox.scene import sounding
+from atmosbox.simulation import runner
 
 
 def own(moisture: float, most_liquid: float, warmer: float = 0.0) -> theory.Convection:

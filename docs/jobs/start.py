@@ -8,7 +8,7 @@ from jobs.registry import Findings, job, rounded
 
 from atmosbox.file.netcdf import read
 from atmosbox.plot import figure
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 RUN = "run lifting-dry --set molecules=2000 --out lift.nc"
 

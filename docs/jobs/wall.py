@@ -9,8 +9,8 @@ from jobs.registry import Findings, job, rounded
 from atmosbox import theory
 from atmosbox.engine import HeatBath, ParcelSet, Piston, Specular, maxwell_velocities, random_positions
 from atmosbox.engine.core.measure import layer_sample
-from atmosbox.run.runner import LEDGER_LIMIT
 from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.simulation.runner import LEDGER_LIMIT
 
 
 @job("energy")

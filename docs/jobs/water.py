@@ -10,10 +10,10 @@ from atmosbox import theory
 from atmosbox.engine import Mist
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.plot.theme import DARK, REFERENCE_COLOURS
-from atmosbox.run import runner
 from atmosbox.scene.moisture import moist_air, water
 from atmosbox.scene.statistics import block_average
 from atmosbox.scene.units import Scale
+from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 RUNS: dict[float, dict[str, float]] = {

@@ -12,7 +12,7 @@ from websockets.sync.client import connect
 
 from atmosbox.live import Session
 from atmosbox.live.server import serve_session
-from atmosbox.run.preparation import prepare
+from atmosbox.simulation.preparation import prepare
 
 PATIENCE = 20.0
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from atmosbox.live import Session
 from atmosbox.page import live_page
-from atmosbox.run.preparation import prepare
+from atmosbox.simulation.preparation import prepare
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from atmosbox.cli import app
 from atmosbox.errors import EngineError, SettingError
 from atmosbox.live import Session
 from atmosbox.live.server import PORT
-from atmosbox.run.preparation import prepare
+from atmosbox.simulation.preparation import prepare
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals of Windows are others")
 

@@ -11,11 +11,11 @@ from atmosbox import theory as law
 from atmosbox.errors import AtmosboxError, FileError, SettingError
 from atmosbox.file.netcdf import read
 from atmosbox.live import Session
-from atmosbox.run import runner
-from atmosbox.run.preparation import prepare
-from atmosbox.run.verification import LEDGER_LIMIT, verify
 from atmosbox.scene.exchange import MoistBox
 from atmosbox.scene.instruments import Molecules
+from atmosbox.simulation import runner
+from atmosbox.simulation.preparation import prepare
+from atmosbox.simulation.verification import LEDGER_LIMIT, verify
 
 SMALL = {
     "atmosphere": {"molecules": 200, "duration": 20},

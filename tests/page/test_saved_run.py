@@ -6,7 +6,7 @@ import pytest
 from atmosbox.file.netcdf import read, write
 from atmosbox.page.moment import moments
 from atmosbox.page.saved_run import pages
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.theory.constants import DRY_AIR, WATER
 
 RUNS = {

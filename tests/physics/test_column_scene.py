@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from atmosbox.engine import ParcelSet
-from atmosbox.run import runner
 from atmosbox.scene import engines
 from atmosbox.scene.engines import engine_choice
 from atmosbox.scene.statistics import block_average
+from atmosbox.simulation import runner
 
 
 def run(**settings):

@@ -11,7 +11,7 @@ import pytest
 
 from atmosbox import theory
 from atmosbox.errors import SettingError
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.theory import LEAVING_FREEDOM, isobaric_water
 from atmosbox.theory.constants import BOLTZMANN
 

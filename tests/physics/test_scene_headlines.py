@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from atmosbox import scenarios
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 
 def run(scene, **settings):

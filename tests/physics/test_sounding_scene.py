@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 
 from atmosbox import scenarios, theory
 from atmosbox.cli import app
-from atmosbox.run import runner
-from atmosbox.run.verification import verify
 from atmosbox.scene import sounding
+from atmosbox.simulation import runner
+from atmosbox.simulation.verification import verify
 
 SCENE = "lifting-sounding"
 SMALL = {"molecules": 1000, "ascent": 60}

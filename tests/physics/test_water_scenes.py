@@ -18,7 +18,7 @@ from atmosbox.engine.core.jit import COMPILED
 from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
 

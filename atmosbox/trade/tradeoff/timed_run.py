@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.trade.tradeoff.rung import Rung
 
 if TYPE_CHECKING:
-    from atmosbox.run.runner import Outcome
+    from atmosbox.simulation.runner import Outcome
 
 __all__ = ["PROFILES", "Quantity", "Trial", "run", "warm_up"]
 

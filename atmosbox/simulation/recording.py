@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.run.preparation import Prepared
-from atmosbox.run.verification import with_bias
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Instrument, Molecules, Readings
 from atmosbox.scene.setup import Setup
+from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.verification import with_bias
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from atmosbox.errors import FileError
-from atmosbox.run.accuracy import ExpectedError
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import Headline
+from atmosbox.simulation.accuracy import ExpectedError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,7 +58,7 @@ def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
 
     Examples
     --------
-    >>> from atmosbox.run.runner import run
+    >>> from atmosbox.simulation.runner import run
     >>> box = run("elastic-collisions", duration="2 s")
     >>> headlines_of(box)[0].name
     'energy_of_light_discs'
@@ -93,7 +93,7 @@ def verify(dataset: xr.Dataset) -> list[Check]:
 
     Examples
     --------
-    >>> from atmosbox.run.runner import run
+    >>> from atmosbox.simulation.runner import run
     >>> all(check.passed for check in verify(run("elastic-collisions", seed=2)))
     True
     """

@@ -1,4 +1,4 @@
-"""A run: prepared, advanced, recorded and verified.
+"""A simulation: a scene prepared, advanced, recorded and verified.
 
 `accuracy`      how accurate a run will be: the measured table, and the cheapest way that meets a wish
 `preparation`   a scene made ready to run: its settings, its engine, its box

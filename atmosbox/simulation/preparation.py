@@ -14,12 +14,12 @@ from atmosbox.engine import PackingError as EnginePackingError
 from atmosbox.engine import RefusedError
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.errors import EngineError, PackingError, SettingError
-from atmosbox.run import accuracy as accuracies
-from atmosbox.run.accuracy import Expectation
 from atmosbox.scene.engines import EXACT, EngineChoice, choose
 from atmosbox.scene.parameter import Parameter
 from atmosbox.scene.settings import SceneSettings
 from atmosbox.scene.setup import Setup
+from atmosbox.simulation import accuracy as accuracies
+from atmosbox.simulation.accuracy import Expectation
 from atmosbox.version import __version__
 
 __all__ = ["Card", "Prepared", "build", "card", "prepare"]
@@ -81,8 +81,8 @@ def prepare(
     engine
         What lets time pass, with its options: ``stepped:delta=0.02``; ``exact`` if nothing is said.
     accuracy
-        A wish that picks the engine and the settings that trade accuracy for time, as `atmosbox.run.accuracy.parse`
-        reads it; what is in `settings` stays as it is.
+        A wish that picks the engine and the settings that trade accuracy for time, as
+        `atmosbox.simulation.accuracy.parse` reads it; what is in `settings` stays as it is.
     save_molecules
         Whether places and speeds of all molecules are kept in every frame.
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError
-from atmosbox.run.preparation import Card, Prepared, build, card, prepare
-from atmosbox.run.recording import Recording
-from atmosbox.run.verification import LEDGER_LIMIT, Check, headlines_of, verify
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
+from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
+from atmosbox.simulation.recording import Recording
+from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
 if TYPE_CHECKING:
     import xarray as xr
