@@ -336,7 +336,7 @@ def count_lines(molecules: int) -> dict[str, int]:
     for feature in (*GASES, "points"):
         box = gas(module, molecules, feature)
         counted[feature] = len(lines_of(functools.partial(box.advance, 10.0 * FREE_TIME), (str(ENGINE),)))
-    watching = (str(ROOT / "atmosbox" / "instruments"), str(ENGINE / "measure.py"))
+    watching = (str(ROOT / "atmosbox" / "scene" / "instruments"), str(ENGINE / "core" / "measure.py"))
     for feature, (name, instrument) in SCENES.items():
         _, frame = scene(name, instrument, True)
         bare = lines_of(functools.partial(frame, False), watching)
