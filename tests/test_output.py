@@ -14,8 +14,9 @@ import xarray as xr
 
 from atmosbox.errors import DiskFullError, FileError
 from atmosbox.file import netcdf as output
-from atmosbox.file import provenance
+from atmosbox.file import output_path, provenance
 from atmosbox.file.dataset import VARIABLES, dataset
+from atmosbox.file.output_path import check_writable, part_path, whole_file
 
 CHECKER = """
 import sys
@@ -285,9 +286,10 @@ def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, forc
         (tmp_path / ("x" * 2000), "too long"),
         (tmp_path / ("x" * 2000) / "run.nc", "does not exist"),
         ("/dev/null", "is a device"),
+        ("", "name of the file is empty"),
     ]:
         for attempt in (
-            output.check_writable,
+            check_writable,
             lambda path, force: output.write(lifting(), path, force=force),
         ):
             with pytest.raises(FileError, match=words) as refusal:
@@ -300,17 +302,17 @@ def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, forc
 def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "access", lambda *_: False)
     with pytest.raises(FileError, match="Nothing may be written"):
-        output.check_writable(tmp_path / "run.nc")
+        check_writable(tmp_path / "run.nc")
 
 
 def test_a_disk_without_room_is_noticed_before_the_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(output.shutil, "disk_usage", lambda _: SimpleNamespace(free=4096))
+    monkeypatch.setattr(output_path.shutil, "disk_usage", lambda _: SimpleNamespace(free=4096))
     with pytest.raises(DiskFullError, match="no room"):
-        output.check_writable(tmp_path / "run.nc")
+        check_writable(tmp_path / "run.nc")
 
 
 def test_the_check_before_a_run_writes_nothing(tmp_path):
-    assert output.check_writable(tmp_path / "run.nc") == tmp_path / "run.nc"
+    assert check_writable(tmp_path / "run.nc") == tmp_path / "run.nc"
     assert not list(tmp_path.iterdir())
 
 
@@ -329,7 +331,7 @@ def test_a_symbolic_link_keeps_pointing_to_the_file(tmp_path):
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
-@pytest.mark.parametrize("place", [(os, "fsync"), (xr.Dataset, "to_netcdf"), (os, "replace")])
+@pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (Path, "write_bytes")])
 def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch, place, number):
     path = output.write(lifting(), tmp_path / "run.nc")
     before = path.read_bytes()
@@ -375,9 +377,36 @@ def test_an_interrupt_leaves_no_half_of_a_file(tmp_path, monkeypatch, place):
     assert not list(tmp_path.iterdir())
 
 
+def test_whatever_a_file_is_made_of_it_is_there_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "film.mp4"
+    path.write_bytes(b"old")
+
+    def stopped(error):
+        with whole_file(path) as temporary:
+            temporary.write_bytes(b"half")
+            raise error
+
+    for error in (KeyboardInterrupt, RuntimeError, FileError):
+        with pytest.raises(error):
+            stopped(error)
+    assert path.read_bytes() == b"old"
+    with whole_file(path) as temporary:
+        temporary.write_bytes(b"new")
+        assert path.read_bytes() == b"old"
+    assert path.read_bytes() == b"new"
+    assert [each.name for each in tmp_path.iterdir()] == ["film.mp4"]
+
+
+def test_nothing_in_the_package_puts_a_file_in_its_place_on_its_own():
+    """A second way to write a file whole would be one that forgets something."""
+    package = Path(output_path.__file__).parents[1]
+    ways = {path.relative_to(package).as_posix() for path in package.rglob("*.py") if "os.replace(" in path.read_text()}
+    assert ways == {"file/output_path.py", "file/checkpoint.py"}
+
+
 @pytest.mark.parametrize(("name", "part"), [("a.b.nc", "a.b.part.nc"), ("run", "run.part"), ("d/x.nc", "d/x.part.nc")])
 def test_the_part_has_the_name_of_the_file(name, part):
-    assert str(output.part_path(name)) == part.replace("/", os.sep)
+    assert str(part_path(name)) == part.replace("/", os.sep)
 
 
 # What may be read

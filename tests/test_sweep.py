@@ -23,7 +23,8 @@ from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli.check import conventions
 from atmosbox.errors import DiskFullError, FileError, SettingError, UnitError, UnknownSettingError
-from atmosbox.file.netcdf import part_path, read, write
+from atmosbox.file.netcdf import read, write
+from atmosbox.file.output_path import part_path
 from atmosbox.simulation import runner
 from atmosbox.sweep import SweepInterrupted, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.journal import Journal

@@ -44,7 +44,8 @@ def compare(
     """
     if len(files) < 2:
         raise SettingError("FILE", None, "is given once", f"give a second run to compare {files[0]} with")
-    from atmosbox.file.netcdf import check_writable, read
+    from atmosbox.file.netcdf import read
+    from atmosbox.file.output_path import check_writable
 
     kind = (Path(out).suffix[1:].lower() if out else "") if format is None else format
     path = beside(files, kind or "png") if out is None else Path(out)

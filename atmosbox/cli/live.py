@@ -110,7 +110,7 @@ def _place(out: str | None, scene: str, *, force: bool) -> tuple[Path, str | Non
     """Return the folder of the recordings, and the name of the first."""
     if out is None:
         return Path(), None
-    from atmosbox.file.netcdf import check_writable
+    from atmosbox.file.output_path import check_writable
 
     path = check_writable(checked_path(out, scene), force)
     return path.parent, path.name

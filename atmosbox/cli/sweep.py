@@ -212,7 +212,7 @@ def _headlines(dataset: xr.Dataset) -> list[str]:
 
 def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
     """Say what is kept of a sweep that was stopped, and how to go on."""
-    from atmosbox.file.netcdf import part_path
+    from atmosbox.file.output_path import part_path
 
     if stop.swept is None:
         tell("stopped before the first run was complete: nothing is kept")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import math
-import os
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
@@ -64,7 +63,8 @@ def tradeoff(
         With the status of an interruption, if the measurement was stopped.
     """
     from atmosbox.cli.config import parse_set
-    from atmosbox.file.netcdf import check_writable, write
+    from atmosbox.file.netcdf import write
+    from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
     from atmosbox.scene.quantity import parse_quantity, parse_whole
     from atmosbox.trade.tradeoff import measure
@@ -89,7 +89,7 @@ def tradeoff(
             command=shlex.join(words),
         )
     write(found, path, force=force)
-    _write_text(files[1], as_csv(found))
+    write_whole(files[1], as_csv(found).encode())
     save(found, files[2], force=force)
     interrupted = found.attrs["atmosbox_status"] == "interrupted"
     if as_json:
@@ -174,16 +174,3 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
 def _unit(found: xr.Dataset, name: str) -> str:
     """Return the unit in which the error of a quantity is shown."""
     return "K" if str(found.unit.sel(quantity=name).item()) == "K" else "%"
-
-
-def _write_text(path: Path, text: str) -> None:
-    """Write a text whole or not at all."""
-    from atmosbox.file.output_path import write_failure
-
-    hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        hidden.write_text(text, encoding="utf-8")
-        os.replace(hidden, path)
-    except OSError as error:
-        hidden.unlink(missing_ok=True)
-        raise write_failure(error, path) from error

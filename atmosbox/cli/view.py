@@ -45,7 +45,8 @@ def view(files: Sequence[str], out: str | None, *, theme: str, force: bool) -> N
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")
     with progress("view", quiet=False) as show:
         show(0.0, "reading the molecules")
-        from atmosbox.file.netcdf import check_writable, read
+        from atmosbox.file.netcdf import read
+        from atmosbox.file.output_path import check_writable
 
         path = Path(out) if out is not None else _beside(files)
         check_writable(path, force)

@@ -14,8 +14,8 @@ from pathlib import Path
 import xarray as xr
 
 from atmosbox.errors import FileError
-from atmosbox.file.netcdf import AnyPath, check_writable, part_path, replace_file
-from atmosbox.file.output_path import write_failure
+from atmosbox.file.netcdf import image
+from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_failure, write_whole
 
 __all__ = ["Checkpoint"]
 
@@ -49,7 +49,7 @@ class Checkpoint:
     Raises
     ------
     FileError
-        If the file could not be written there, for one of the reasons of `atmosbox.file.netcdf.check_writable`.
+        If the file could not be written there, for one of the reasons of `atmosbox.file.output_path.check_writable`.
 
     Examples
     --------
@@ -108,7 +108,7 @@ class Checkpoint:
 
     def save(self, dataset: xr.Dataset) -> Path:
         """Write the run so far at once, for instance when it is interrupted, and return where it is."""
-        replace_file(self.part, dataset)
+        write_whole(self.part, image(dataset))
         self._saved = True
         return self.part
 

@@ -1,28 +1,41 @@
-"""The file that something is written to: it is there whole or not at all, and a failure is said in a sentence."""
+"""The one way to write a file: a path that cannot be written is refused early, and no file is half written."""
 
 from __future__ import annotations
 
+import contextlib
 import errno
+import glob
 import os
+import shlex
+import shutil
+import time
 import uuid
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TypeAlias
 
-from atmosbox.errors import DiskFullError, FileError, SettingError
+from atmosbox.errors import DiskFullError, FileError, SettingError, shown
+from atmosbox.file.provenance import moment
 
-__all__ = ["named", "write_failure", "write_whole"]
+__all__ = ["AnyPath", "check_writable", "named", "part_path", "whole_file", "write_failure", "write_whole"]
 
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+AnyPath: TypeAlias = str | os.PathLike[str]
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+LONGEST_NAME = 200  # bytes; file systems allow 255, and the temporary name is longer than the file's own
+SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
+LEFT_OVER = 3600.0  # seconds after which a temporary file can only be that of a program that was killed
 
 
 def named(
-    path: str | os.PathLike[str], format: str | None, formats: tuple[str, ...], *, force: bool, what: str = "figure"
+    path: AnyPath, format: str | None, formats: tuple[str, ...], *, force: bool, what: str = "figure"
 ) -> tuple[Path, str]:
-    """Return the file and the format, from what is said of either; refuse a file that cannot be written.
+    """Return the output path and the format, where either may be given; refuse a path that cannot be written.
 
     Parameters
     ----------
     path : str or path-like
-        The file.
+        The file; its suffix says the format, and is added if only `format` does.
     format : str or None
         The format, where the suffix does not say it.
     formats : tuple of str
@@ -30,7 +43,7 @@ def named(
     force : bool
         Whether a file of that name may be replaced.
     what : str
-        What is in the file.
+        What is in the file: its name in an example.
 
     Returns
     -------
@@ -42,7 +55,7 @@ def named(
     Raises
     ------
     FileError
-        If the file exists, or its folder does not.
+        If the file cannot be written, for one of the reasons of `check_writable`.
     SettingError
         If the format is unknown.
 
@@ -60,25 +73,92 @@ def named(
         raise SettingError("format", kind or None, problem, f"give a file name or --format of {known}")
     if suffix in formats and suffix != kind:
         raise SettingError("format", kind, f"does not go with the file name {path.name}", "leave one of the two out")
-    path = path if suffix == kind else path.with_name(f"{path.name}.{kind}")
-    if path.is_dir():
-        raise FileError(f"{path} is a folder: name the file of the {what}, {path / f'{what}.{kind}'} for instance.")
-    if not path.parent.is_dir():
-        raise FileError(f"The folder {path.parent} for the {what} does not exist: make it first, or name another one.")
-    if path.exists() and not force:
-        raise FileError(f"{path} exists already: add --force to replace it, or name another file.")
-    return path, kind
+    if suffix != kind and path.name:
+        path = path.with_name(f"{path.name}.{kind}")
+    return check_writable(path, force, example=f"{what}.{kind}"), kind
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file beside its place and put it there when it is whole.
+def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc") -> Path:
+    """Refuse an output path that cannot be written, before a run is spent on it; write nothing.
 
     Parameters
     ----------
-    path : pathlib.Path
-        The file, which `named` has let through.
-    content : bytes
-        What is in it.
+    path
+        The file that is to be written.
+    force
+        Whether it may replace a file.
+    example
+        A name for such a file, where none was given.
+
+    Returns
+    -------
+    pathlib.Path
+        The file to write: `path`, or what it points to if it is a symbolic link.
+
+    Raises
+    ------
+    FileError
+        If the folder is missing or may not be written to, if the name is empty, too long or a folder's, or if there
+        is a file already and `force` is not given.
+    DiskFullError
+        If there is no space even for a small file.
+    SettingError
+        If the variable SOURCE_DATE_EPOCH of the environment is set, but is not a number of seconds.
+
+    Examples
+    --------
+    >>> check_writable("no/such/folder/run.nc")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The folder no/such/folder does not exist: type mkdir -p no/such/folder first.
+    """
+    if not os.fspath(path).strip():
+        raise FileError(f"The name of the file is empty: give one, such as --out {example}.")
+    found = Path(os.path.realpath(path) if os.path.islink(path) else path)
+    folder = found.parent
+    if os.path.isdir(found):
+        raise FileError(f"{found} is a folder: give a file in it, such as --out {found / example}.")
+    if len(os.fsencode(found.name)) > LONGEST_NAME:
+        raise FileError(f"The name {shown(found.name)} is too long: give a shorter one with --out.")
+    if not os.path.lexists(folder):
+        words = shlex.quote(str(folder))
+        raise FileError(f"The folder {words} does not exist: type mkdir -p {words} first.")
+    if not os.path.isdir(folder):
+        raise FileError(f"{folder} is a file, not a folder: give another place with --out.")
+    if os.path.exists(found) and not os.path.isfile(found):
+        raise FileError(f"{found} is a device, not a file: give another name with --out.")
+    if os.path.exists(found) and not force:
+        raise FileError(f"{found} exists already: add --force to replace it, or name another file with --out.")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise FileError(f"Nothing may be written to the folder {folder}: give another place with --out.")
+    if shutil.disk_usage(folder).free < SMALLEST_FILE:
+        raise write_failure(OSError(errno.ENOSPC, ""), found)
+    moment()
+    return found
+
+
+def part_path(path: AnyPath) -> Path:
+    """Return where a run that is to be written to a file keeps what it has so far.
+
+    Examples
+    --------
+    >>> str(part_path("run.nc"))
+    'run.part.nc'
+    """
+    whole = Path(path)
+    return whole.with_name(f"{whole.stem}.part{whole.suffix}")
+
+
+@contextlib.contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary path beside a file; what is written there replaces the file when the block ends well.
+
+    If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
+    is killed leaves the temporary file, which the next writing of the same file removes an hour later or after.
+
+    Parameters
+    ----------
+    path
+        The file, which `check_writable` has let through.
 
     Raises
     ------
@@ -91,18 +171,57 @@ def write_whole(path: Path, content: bytes) -> None:
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with whole_file(Path(folder, "a.txt")) as temporary:
+    ...         written = temporary.write_text("air")
+    ...     [file.name for file in Path(folder).iterdir()]
+    ['a.txt']
+    """
+    with contextlib.suppress(OSError):
+        for old in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
+            if time.time() - old.stat().st_mtime > LEFT_OVER:
+                old.unlink()
+    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
+    try:
+        yield temporary
+        # without this, a file can be under its name and yet empty after a power failure
+        with temporary.open("r+b") as stream:
+            os.fsync(stream.fileno())
+        os.replace(temporary, path)
+    except FileError:
+        raise
+    except OSError as error:
+        raise write_failure(error, path) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_whole(path: Path, content: bytes | memoryview) -> None:
+    """Write a file whole or not at all.
+
+    Parameters
+    ----------
+    path
+        The file, which `check_writable` or `named` has let through.
+    content
+        What is in it.
+
+    Raises
+    ------
+    DiskFullError
+        If the disk is full; a file that was there before is kept.
+    FileError
+        If the file cannot be written for another reason.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_whole(Path(folder, "a.txt"), b"air")
     ...     Path(folder, "a.txt").read_text()
     'air'
     """
-    part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
-    try:
-        with part.open("xb") as stream:
-            stream.write(content)
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise write_failure(error, path) from error
+    with whole_file(path) as temporary:
+        temporary.write_bytes(content)
 
 
 def write_failure(error: OSError, path: Path) -> FileError:
@@ -120,7 +239,7 @@ def write_failure(error: OSError, path: Path) -> FileError:
     >>> str(write_failure(OSError(errno.ENOSPC, ""), Path("no/run.nc")))
     'The disk has no room for no/run.nc: delete something, or give another --out.'
     """
-    if error.errno in NO_ROOM:
+    if error.errno in FULL:
         kept = ", which stays as it was" if path.exists() else ""
         return DiskFullError(f"The disk has no room for {path}{kept}: delete something, or give another --out.")
     return FileError(f"{path} could not be written ({error.strerror or error}): give another place with --out.")

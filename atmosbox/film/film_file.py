@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox.errors import FileError
-from atmosbox.file.output_path import named, write_whole
+from atmosbox.file.output_path import named, whole_file, write_whole
 from atmosbox.film.encoder import Picture, encode_gif, encode_mp4, movie_program
 from atmosbox.film.film_box import box, has_discs, has_molecules
 from atmosbox.film.film_sheet import Sheet
@@ -112,12 +111,8 @@ def save(
             samples = [sheet.picture(int(chosen.frames[each])) for each in some]
             write_whole(path, encode_gif(pictures(), samples, chosen.fps))
         else:
-            part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
-            try:
+            with whole_file(path) as part:
                 encode_mp4(pictures(), part, chosen.fps)
-                os.replace(part, path)
-            finally:
-                part.unlink(missing_ok=True)
     return path, chosen
 
 

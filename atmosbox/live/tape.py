@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError
 from atmosbox.file.checkpoint import Checkpoint
-from atmosbox.file.netcdf import check_writable
+from atmosbox.file.output_path import check_writable
 from atmosbox.file.provenance import history_line
 from atmosbox.live.summary import without_headlines
 from atmosbox.scene.panels import Panel, to_json

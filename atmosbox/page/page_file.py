@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from atmosbox.errors import SettingError
-from atmosbox.file.output_path import write_whole
+from atmosbox.file.output_path import check_writable, write_whole
 from atmosbox.page.document import THEMES, view_page
 from atmosbox.page.frame import pack
 
@@ -55,12 +55,11 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
     Traceback (most recent call last):
     atmosbox.errors.SettingError: theme = pink is unknown: give --theme auto, light or dark.
     """
-    from atmosbox.file.netcdf import check_writable
     from atmosbox.page.saved_run import pages
 
     if theme not in THEMES:
         raise SettingError("theme", theme, "is unknown", f"give --theme {', '.join(THEMES[:-1])} or {THEMES[-1]}")
-    target = check_writable(path, force)
+    target = check_writable(path, force, example="page.html")
     told = pages(runs)
     text = view_page([page.record for page in told], [pack(page.frames) for page in told], theme=theme)
     write_whole(target, text.encode("utf-8"))

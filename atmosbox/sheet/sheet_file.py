@@ -88,7 +88,7 @@ def save(
     >>> from atmosbox.sheet import worksheet
     >>> save(worksheet("lifting-dry"), "no/sheet.md")
     Traceback (most recent call last):
-    atmosbox.errors.FileError: The folder no for the sheet does not exist: make it first, or name another one.
+    atmosbox.errors.FileError: The folder no does not exist: type mkdir -p no first.
     """
     path = check(path, format, paper=paper, force=force)
     content = markdown(sheet).encode("utf-8") if path.suffix.lower() == ".md" else pdf(sheet, paper).content

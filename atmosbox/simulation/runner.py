@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import StalledError
@@ -206,13 +205,11 @@ def run(
     True
     """
     from atmosbox.file.checkpoint import Checkpoint
-    from atmosbox.file.netcdf import check_writable
 
     prepared = prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=save_molecules)
     checkpoint = None
     if out is not None:
-        check_writable(Path(out))
-        checkpoint = Checkpoint(Path(out))
+        checkpoint = Checkpoint(out)
     given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
     words = ", ".join([repr(str(scene)), *(f"{name}={value!r}" for name, value in given.items())])
     return execute(prepared, checkpoint=checkpoint, progress=progress, command=f"atmosbox.run({words})").dataset

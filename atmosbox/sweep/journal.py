@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.errors import FileError, shown
-from atmosbox.file.netcdf import check_writable
-from atmosbox.file.output_path import write_failure
+from atmosbox.file.output_path import check_writable, part_path, write_failure
 from atmosbox.sweep.member import Record
 
 __all__ = ["Journal"]
@@ -66,10 +65,9 @@ class Journal:
     """
 
     def __init__(self, path: Path, request: Mapping[str, Any], history: str, *, force: bool = False) -> None:
-        self.path = check_writable(path.with_name(f"{path.stem}.part.jsonl"), force=True)
+        self.path = check_writable(part_path(path.with_suffix(".jsonl")), force=True)
         self.records: dict[tuple[int, int], Record] = {}
         self.history = [history]
-        self._target = path
         try:
             mode = "r+b" if self.path.exists() else "x+b"
             self._file = open(self.path, mode, buffering=0)  # noqa: SIM115
