@@ -21,8 +21,8 @@ import atmosbox
 from atmosbox import scenarios, version
 from atmosbox.cli import app, check, progress, report, table, terminal
 from atmosbox.cli.option import Format, Theme, _completed
+from atmosbox.cli.output_name import FIGURES
 from atmosbox.cli.request import Request
-from atmosbox.cli.run import FIGURES
 from atmosbox.errors import EngineError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance

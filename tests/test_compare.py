@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import atmosbox
 from atmosbox.cli import app
-from atmosbox.cli.compare import beside
+from atmosbox.cli.output_name import beside
 from atmosbox.errors import FileError
 from atmosbox.file import netcdf as output
 from atmosbox.plot import comparison

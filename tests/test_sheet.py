@@ -11,9 +11,11 @@ from pathlib import Path
 
 import pypdf
 import pytest
+from typer.testing import CliRunner
 
 from atmosbox import scenarios
 from atmosbox import sheet as sheets
+from atmosbox.cli import app
 from atmosbox.errors import ConfigError, FileError, PhysicsError, SettingError
 from atmosbox.sheet.arithmetic import Measured, filled
 from atmosbox.sheet.block import Answer, Blank, Commands, Kept, Measurements, Text
@@ -420,17 +422,12 @@ def test_without_reportlab_a_pdf_is_refused_before_a_run_is_spent_and_markdown_i
 
 
 def test_ctrl_c_writes_nothing(tmp_path, monkeypatch):
-    from atmosbox.cli.sheet import sheet
-
     def stopped(*_, **__):
         raise runner.Interrupted(None)
 
     monkeypatch.setattr(runner, "execute", stopped)
-    with pytest.raises(KeyboardInterrupt):
-        sheet(
-            "elastic-collisions", values=(), seed=None, engine=None, answers=True, paper="a4", format=None,
-            out=str(tmp_path / "a.pdf"), force=False, quiet=True,
-        )  # fmt: skip
+    words = ["sheet", "elastic-collisions", "--answers", "--out", str(tmp_path / "a.pdf")]
+    assert CliRunner().invoke(app, words).exit_code == 130
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,15 +1,57 @@
 """The command line: it parses and calls, and decides nothing.
 
-Read in this order: `command` (the commands and their options), `request` (where the settings of a run come
-from), `run`, `check` and `scene` (what the commands do), `report` (what comes out, as text and as JSON),
-`table` (columns and numbers), `progress` (the bar), `terminal` (streams, and how an error ends a command).
+Each command is one file: its options on top, below what it does. They share
+
+`application`  what all commands belong to
+`option`       the options that several commands have
+`request`      where the settings of a run come from: the command line, a `config` file, an earlier run
+`output_name`  the file that is written where no name is given
+`report`       what comes out, as text and as JSON; `expectation` the errors that were to be expected
+`table`        columns and numbers
+`progress`     the bar
+`terminal`     streams, and how an error ends a command
 
 The result goes to stdout and everything else to stderr. The exit status is 0 if all went well, 1 if something
 failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-C and 143 after a request to
 terminate.
 """
 
-from atmosbox.cli.application import app
-from atmosbox.cli.command import main
+import sys
+import warnings
 
-__all__ = ["app", "main"]
+from atmosbox.cli.application import app
+
+# In the order in which ``--help`` lists them.
+from atmosbox.cli import list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare, sheet, check  # isort: skip
+
+__all__ = [
+    "animate",
+    "app",
+    "check",
+    "compare",
+    "info",
+    "list_scenes",
+    "live",
+    "main",
+    "plot",
+    "run",
+    "sheet",
+    "sweep",
+    "tradeoff",
+    "view",
+]
+
+
+def main() -> None:
+    """Run the command line; this is what the program atmosbox calls.
+
+    Raises
+    ------
+    SystemExit
+        With the status of the command.
+    """
+    warnings.formatwarning = lambda message, *rest, **named: f"warning: {message}\n"
+    try:
+        app(prog_name="atmosbox")
+    except KeyboardInterrupt:
+        sys.exit(130)

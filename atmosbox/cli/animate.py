@@ -1,43 +1,65 @@
-"""What ``atmosbox animate`` does: film a run, and say how far it is."""
+"""The command ``animate``: film a run."""
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Force, RunFile, Theme, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import beside
 from atmosbox.cli.progress import progress
-from atmosbox.cli.terminal import say
+from atmosbox.cli.terminal import guarded, say
 
 
+class Film(StrEnum):
+    """The formats of a film."""
+
+    gif = "gif"
+    mp4 = "mp4"
+
+
+@app.command(
+    epilog=examples(
+        "atmosbox animate temperature.nc",
+        "atmosbox animate lifting-dry.nc --format mp4 --theme slides --seconds 8",
+        "atmosbox animate lifting-dry.nc --graphs --out lift.gif --force",
+    )
+)
+@guarded
 def animate(
-    file: str,
-    *,
-    out: str | None,
-    format: str | None,
-    seconds: float | None,
-    fps: float | None,
-    graphs: bool,
-    theme: str,
-    force: bool,
-    quiet: bool,
+    file: RunFile,
+    out: Annotated[str | None, out_option("The film.  [default: beside FILE, by its name]")] = None,
+    format: Annotated[
+        Film | None,
+        typer.Option(help="The format, where the name of the film does not say it; mp4 needs atmosbox[movie]."),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(metavar="S", help="How long it lasts at most.  [default: 12]", show_default=False)
+    ] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(
+            metavar="N", help="Pictures a second.  [default: 10, or 20 where motion is smooth]", show_default=False
+        ),
+    ] = None,
+    graphs: Annotated[bool, typer.Option("--graphs", help="Film the graphs alone, without the molecules.")] = False,
+    theme: Annotated[Theme, typer.Option(help="For a page or for a screen.")] = Theme.notes,
+    force: Force = False,
+    quiet: Annotated[bool, quiet_option("Show no progress.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Film the run in a file.
+    """Film a run: the molecules in their box, and the graphs that they draw.
 
-    Parameters
-    ----------
-    file
-        The file of the run.
-    out, format, seconds, fps, graphs, theme, force, quiet
-        The options of these names.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused or fails.
+    The molecules are in the file if it was run with --save-molecules.
     """
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
-    path = Path(file).with_suffix(f".{format or 'gif'}") if out is None else Path(out)
+    path = beside([file], "gif" if format is None else format.value) if out is None else Path(out)
 
     from atmosbox.film import save
 
@@ -45,8 +67,8 @@ def animate(
         path, _ = save(
             dataset,
             path,
-            format,
-            theme=theme,
+            format and format.value,
+            theme=theme.value,
             seconds=seconds,
             fps=fps,
             graphs=graphs,

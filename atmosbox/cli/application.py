@@ -1,7 +1,9 @@
-"""The application that all commands belong to."""
+"""The application that all commands belong to, and how its help looks."""
 
 from __future__ import annotations
 
+import shlex
+import sys
 from typing import Annotated, Any
 
 import typer
@@ -9,18 +11,29 @@ from typer.core import TyperGroup
 
 from atmosbox.cli.terminal import say
 
-__all__ = ["WORDS", "app", "examples"]
+__all__ = ["app", "examples", "typed"]
 
-WORDS = "atmosbox.words"
-"""Where the words are remembered that were typed."""
+_WORDS = "atmosbox.words"
+_WIDEST_HELP = 120  # columns: longer lines are hard to read
 
 
 class _Group(TyperGroup):
-    """A group that remembers what was typed, for the history of a file."""
+    """A group that remembers what was typed, and whose help shows the summary of each command in full."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        ctx.meta[WORDS] = list(args)
+        ctx.meta[_WORDS] = list(args)
         return super().parse_args(ctx, args)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        with formatter.section("Commands"):
+            named = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+            formatter.write_dl([(name, each.get_short_help_str(1000)) for name, each in named if each is not None])
+
+
+def typed(ctx: typer.Context) -> str:
+    """Return what was typed, for the history of a file; bytes that are no text are spelled out."""
+    words = ["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])]
+    return shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def examples(*lines: str) -> str:
@@ -50,7 +63,7 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,  # plain help is there at once, fits every terminal and can be searched
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": _WIDEST_HELP},
 )
 
 

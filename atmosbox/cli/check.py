@@ -1,4 +1,4 @@
-"""What ``atmosbox check`` does: verify the physics in a file and its conventions, or the engines in extremes."""
+"""The command ``check``: verify the physics in a file and its conventions, or the engines in extreme cases."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Json, Verbose
 from atmosbox.cli.progress import progress
 from atmosbox.cli.table import table
-from atmosbox.cli.terminal import say, say_json, width
+from atmosbox.cli.terminal import guarded, say, say_json, width
 from atmosbox.errors import PhysicsError, SettingError
 
 if TYPE_CHECKING:
@@ -23,6 +25,71 @@ if TYPE_CHECKING:
 
 CONVENTION = "cf:1.11"
 CHECKER = "compliance-checker"
+
+
+@app.command(
+    epilog=examples(
+        "atmosbox check lifting-dry.nc",
+        "atmosbox check lifting-dry.nc --json",
+        "atmosbox check --extremes",
+        "atmosbox check --extremes --engine exact --only cradle",
+    )
+)
+@guarded
+def check(
+    file: Annotated[
+        str | None, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.", show_default=False)
+    ] = None,
+    extremes: Annotated[
+        bool, typer.Option("--extremes", help="Put the engines through boxes that break simulations.")
+    ] = False,
+    engine: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="With --extremes: an engine, with its options; any number of them."),
+    ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="With --extremes: one of them; any number.")
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="With --extremes: also those that take minutes.")] = False,
+    as_json: Json = False,
+    verbose: Verbose = False,
+) -> None:
+    """Verify the physics in a file, or the engines in extreme cases.
+
+    Of a file: does the energy ledger close, does the run agree with theory, does the file keep to the CF
+    conventions? With --extremes: what becomes of each engine where others hang, leak or lie? The exit status
+    is 3 if anything fails.
+    """
+    if extremes:
+        _check_extremes(file, engine, only, every=every, as_json=as_json)
+        return
+    for option, given in (("--engine", engine), ("--only", only), ("--all", every)):
+        if given:
+            raise SettingError(option, None, "belongs to --extremes", f"give --extremes, or leave {option} out")
+    if file is None:
+        fix = "give the file of a run, or --extremes for the engines"
+        raise SettingError("check", None, "does not know what to verify", fix)
+    _check_file(file, as_json=as_json)
+
+
+def _check_file(file: str, *, as_json: bool) -> None:
+    """Verify a file and say what was found."""
+    from atmosbox.file.netcdf import read
+    from atmosbox.simulation import runner
+
+    checks = runner.verify(read(file))
+    cf = conventions(Path(file))
+    passed = all(one.passed for one in checks) and cf.passed is not False
+    if as_json:
+        listed = [{"name": c.name, "passed": bool(c.passed), "sentence": c.sentence} for c in checks]
+        say_json({"file": file, "passed": passed, "checks": listed, "conventions": cf._asdict()})
+    else:
+        verdict = {True: "ok", False: "FAILED", None: "not tried"}
+        rows = [[verdict[bool(one.passed)], one.name, one.sentence] for one in checks]
+        rows.append([verdict[cf.passed], "conventions", cf.sentence])
+        say("\n".join(table(["", "", ""], rows, width())))
+    if not passed:
+        raise typer.Exit(PhysicsError.exit_code)
 
 
 class Conventions(NamedTuple):
@@ -73,77 +140,10 @@ def _messages(report: dict[str, Any]) -> list[str]:
     ]
 
 
-def check(file: str | None, *, as_json: bool, misplaced: Sequence[tuple[str, object]] = ()) -> None:
-    """Verify a file and say what was found.
-
-    Parameters
-    ----------
-    file
-        The file of a run.
-    as_json
-        Whether to say it as JSON.
-    misplaced
-        Options that only ``--extremes`` has, with what was given.
-
-    Raises
-    ------
-    SettingError
-        If there is no file, or an option that belongs to ``--extremes``.
-    FileError
-        If the file cannot be read.
-    typer.Exit
-        With the status of a physics check that failed, if anything did.
-    """
-    for option, given in misplaced:
-        if given:
-            raise SettingError(option, None, "belongs to --extremes", f"give --extremes, or leave {option} out")
-    if file is None:
-        fix = "give the file of a run, or --extremes for the engines"
-        raise SettingError("check", None, "does not know what to verify", fix)
-
-    from atmosbox.file.netcdf import read
-    from atmosbox.simulation import runner
-
-    checks = runner.verify(read(file))
-    cf = conventions(Path(file))
-    passed = all(one.passed for one in checks) and cf.passed is not False
-    if as_json:
-        listed = [{"name": c.name, "passed": bool(c.passed), "sentence": c.sentence} for c in checks]
-        say_json({"file": file, "passed": passed, "checks": listed, "conventions": cf._asdict()})
-    else:
-        verdict = {True: "ok", False: "FAILED", None: "not tried"}
-        rows = [[verdict[bool(one.passed)], one.name, one.sentence] for one in checks]
-        rows.append([verdict[cf.passed], "conventions", cf.sentence])
-        say("\n".join(table(["", "", ""], rows, width())))
-    if not passed:
-        raise typer.Exit(PhysicsError.exit_code)
-
-
-def check_extremes(
+def _check_extremes(
     file: str | None, engines: Sequence[str] | None, only: Sequence[str] | None, *, every: bool, as_json: bool
 ) -> None:
-    """Put engines through the extremes and say what became of them.
-
-    Parameters
-    ----------
-    file
-        None: extremes have no file.
-    engines
-        The engines as they are typed; all by default.
-    only
-        The names of the extremes; all by default.
-    every
-        Whether those that take minutes are among all.
-    as_json
-        Whether to say it as JSON.
-
-    Raises
-    ------
-    SettingError
-        If a file is given too, or there is no engine or extreme of a name.
-    typer.Exit
-        With the status of a physics check that failed, if an engine is wrong.
-    """
+    """Put engines through the extreme cases and say what became of them."""
     if file is not None:
         fix = f"give atmosbox check {file}, or atmosbox check --extremes"
         raise SettingError("--extremes", None, "is about the engines and not about a file", fix)

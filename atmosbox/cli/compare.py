@@ -1,53 +1,69 @@
-"""What ``atmosbox compare`` does: several runs in one figure, and a table of their numbers."""
+"""The command ``compare``: several runs in one figure, and a table of their numbers."""
 
 from __future__ import annotations
 
 import math
 import shlex
 from collections.abc import Sequence
+from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Force, Json, Theme, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import beside
 from atmosbox.cli.table import digits, measurement, number, table, wrapped
-from atmosbox.cli.terminal import say, say_json, tell, width
+from atmosbox.cli.terminal import guarded, say, say_json, tell, width
 from atmosbox.errors import SettingError
 
 if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming
 
-_LONGEST = 100  # characters of a name that is made of those of all files
+
+class Comparison(StrEnum):
+    """The formats of a comparison."""
+
+    png = "png"
+    svg = "svg"
+    pdf = "pdf"
+    html = "html"
 
 
+@app.command(
+    epilog=examples(
+        "atmosbox compare cold.nc warm.nc",
+        "atmosbox compare cold.nc mild.nc warm.nc --format pdf --theme slides",
+        "atmosbox compare dry.nc moist.nc --out both.html",
+    )
+)
+@guarded
 def compare(
-    files: Sequence[str],
-    *,
-    out: str | None,
-    format: str | None,
-    theme: str,
-    force: bool,
-    as_json: bool,
-    quiet: bool,
+    files: Annotated[list[str], typer.Argument(metavar="FILE FILE...", help="Two to six runs.")],
+    out: Annotated[str | None, out_option("The figure.  [default: beside FILE, named after all files]")] = None,
+    format: Annotated[
+        Comparison | None,
+        typer.Option(
+            help="The format, where the name of the figure does not say it; html is a page of two boxes with one clock."
+        ),
+    ] = None,
+    theme: Annotated[Theme, typer.Option(help="For a page or for a screen.")] = Theme.notes,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Draw several runs into one figure, and say by how much their numbers differ.
+    """Lay runs over each other: one figure, and by how much their numbers differ.
 
-    Parameters
-    ----------
-    files
-        The files of the runs.
-    out, format, theme, force, as_json, quiet
-        The options of these names.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused or fails.
+    What is not the same in all of them is named, and nothing else.
     """
     if len(files) < 2:
         raise SettingError("FILE", None, "is given once", f"give a second run to compare {files[0]} with")
     from atmosbox.file.netcdf import read
     from atmosbox.file.output_path import check_writable
 
-    kind = (Path(out).suffix[1:].lower() if out else "") if format is None else format
+    kind = Path(out or "").suffix[1:].lower() if format is None else format.value
     path = beside(files, kind or "png") if out is None else Path(out)
     datasets = [read(file) for file in files]
 
@@ -64,7 +80,7 @@ def compare(
         check_writable(path, force)
         path = save_page(datasets, path, force=force)
     else:
-        path = save(datasets, names, path, format, theme=theme, force=force)
+        path = save(datasets, names, path, format and format.value, theme=theme.value, force=force)
     if names.same:
         tell(f"note: {' and '.join(files)} hold the same run")
     if as_json:
@@ -73,21 +89,6 @@ def compare(
         say(str(path))
     else:
         say("\n".join([*lines(files, names, numbers, width()), "", f"file: {path}"]))
-
-
-def beside(files: Sequence[str], kind: str) -> Path:
-    """Return the figure beside the first file, named after all of them.
-
-    Examples
-    --------
-    >>> str(beside(["runs/cold.nc", "warm.nc"], "png"))
-    'runs/cold-and-warm.png'
-    """
-    first = Path(files[0])
-    stem = "-and-".join(Path(file).stem for file in files)
-    if len(stem) > _LONGEST:
-        stem = f"{first.stem[:_LONGEST]}-and-{len(files) - 1}-more"
-    return first.with_name(f"{stem}.{kind}")
 
 
 def lines(files: Sequence[str], names: Naming, numbers: Sequence[Compared], columns: int) -> list[str]:

@@ -1,70 +1,89 @@
-"""What ``atmosbox live`` does: let a box run, and serve the page on which a class plays with it."""
+"""The command ``live``: let a box run, and serve the page on which a class plays with it."""
 
 from __future__ import annotations
 
-import contextlib
 import os
-import shlex
 import signal
 import socket
 import sys
 import threading
 import webbrowser
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
+from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.option import (
+    Accuracy,
+    Config,
+    Engine,
+    SceneName,
+    Seed,
+    Source,
+    Values,
+    Verbose,
+    out_option,
+    quiet_option,
+)
+from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.request import Request
-from atmosbox.cli.run import TERMINATED, checked_path
-from atmosbox.cli.terminal import INTERRUPTED, say, tell
+from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, tell
 from atmosbox.errors import SettingError
 
-HOST = "127.0.0.1"
 
-
+@app.command(
+    epilog=examples(
+        "atmosbox live temperature",
+        "atmosbox live lifting-dry --set molecules=2000 --no-browser",
+        "atmosbox live atmosphere --port 9000 --out column.nc",
+    )
+)
+@guarded
 def live(
-    request: Request,
-    *,
-    words: Sequence[str],
-    out: str | None = None,
-    force: bool = False,
-    host: str = HOST,
-    port: str | None = None,
-    browser: bool = True,
-    quiet: bool = False,
+    ctx: typer.Context,
+    scene: Annotated[str | None, SceneName] = None,
+    values: Values = None,
+    config: Config = None,
+    source: Source = None,
+    seed: Seed = None,
+    engine: Engine = None,
+    accuracy: Accuracy = None,
+    out: Annotated[
+        str | None, out_option("Where the record button writes.  [default: SCENE-live.nc in this folder]")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Recordings may replace files.")] = False,
+    save_molecules: Annotated[
+        bool, typer.Option("--save-molecules", help="Recordings say where every molecule is, for atmosbox view.")
+    ] = False,
+    host: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="Who can reach the page; by default this computer alone.")
+    ] = "127.0.0.1",
+    port: Annotated[
+        str | None, typer.Option(metavar="N", help="Port of the page.  [default: the first free one from 8642 on]")
+    ] = None,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
+    quiet: Annotated[bool, quiet_option("Print the address, no more.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Serve the page of a scene until Ctrl-C.
+    """Play with a scene on a local page: change one thing at a time, and see what follows.
 
-    Parameters
-    ----------
-    request
-        The scene and its settings.
-    words
-        What was typed, for the history of recordings.
-    out, force
-        The file of the first recording, and whether recordings may replace files.
-    host, port
-        Where the page is.
-    browser
-        Whether a browser is opened.
-    quiet
-        Whether no more than the address is said.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused or fails.
-    typer.Exit
-        With the status of an interruption.
+    The page shows molecules and graphs while the engine runs. Its record button writes the same netCDF file as
+    run. While no browser looks, the box rests, unless it is being recorded.
     """
     number = _port(port)
 
     from atmosbox.simulation import runner
 
-    scene, settings, engine, molecules, accuracy = request.gather()
-    with contextlib.redirect_stdout(sys.stderr):
-        prepared = runner.prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=molecules)
+    asked = Request(scene, values or (), config, source, seed, save_molecules, engine, accuracy).gather()
+    with prints_to_stderr():
+        prepared = runner.prepare(
+            asked.scene,
+            asked.settings,
+            engine=asked.engine,
+            accuracy=asked.accuracy,
+            save_molecules=asked.molecules,
+        )
     folder, name = _place(out, prepared.scene, force=force)
 
     from atmosbox.live import Session
@@ -73,9 +92,8 @@ def live(
 
     if not quiet:
         tell("compiling the engine, once")
-    command = shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8")
-    with contextlib.redirect_stdout(sys.stderr):
-        session = Session(prepared, folder=folder, out=name, force=force, command=command)
+    with prints_to_stderr():
+        session = Session(prepared, folder=folder, out=name, force=force, command=typed(ctx))
 
     def opened(address: str, used: int) -> None:
         say(address)
@@ -84,7 +102,7 @@ def live(
             tell(f"note: port {PORT} is in use, so the page is at port {used}")
         if not loopback(host):
             tell(f"warning: who can reach this computer can use this page, at http://{socket.gethostname()}:{used}/")
-        if browser and _display():
+        if not no_browser and _display():
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
         elif not quiet:
             tell(f"open {address} in a browser")
@@ -112,7 +130,7 @@ def _place(out: str | None, scene: str, *, force: bool) -> tuple[Path, str | Non
         return Path(), None
     from atmosbox.file.output_path import check_writable
 
-    path = check_writable(checked_path(out, scene), force)
+    path = check_writable(netcdf_name(out, for_scene(scene)), force)
     return path.parent, path.name
 
 

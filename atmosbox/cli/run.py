@@ -1,96 +1,92 @@
-"""What ``atmosbox run`` does: run a scene, save it, and say what came out."""
+"""The command ``run``: run a scene, save it, and say what came out."""
 
 from __future__ import annotations
 
 import contextlib
-import shlex
 import signal
-import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Never
+from typing import TYPE_CHECKING, Annotated, Never
 
 import typer
 
-from atmosbox.cli.expectation import expectation_json, expectation_lines
+from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.option import (
+    Accuracy,
+    Config,
+    Engine,
+    Force,
+    Json,
+    SceneName,
+    Seed,
+    Source,
+    Values,
+    Verbose,
+    out_option,
+    quiet_option,
+)
+from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.progress import progress
-from atmosbox.cli.report import next_command, outcome_json, outcome_lines, setting_lines
-from atmosbox.cli.request import Request, is_path
+from atmosbox.cli.request import Request
 from atmosbox.cli.table import table
-from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, FileError, PhysicsError
+from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, say_json, tell, width
+from atmosbox.errors import AtmosboxError, PhysicsError
 
 if TYPE_CHECKING:
     from atmosbox.file.checkpoint import Checkpoint
-    from atmosbox.simulation.runner import Interrupted, Prepared
-
-TERMINATED = 143  # what a shell reports of a program that was asked to end
-FIGURES = (".png", ".svg", ".pdf")
+    from atmosbox.simulation.runner import Interrupted, Outcome, Prepared
 
 
-def default_path(scene: str) -> Path:
-    """Return the file of a run that was given no name.
-
-    Examples
-    --------
-    >>> str(default_path("lifting_dry")), str(default_path("./my_scene.py"))
-    ('lifting-dry.nc', 'my_scene.nc')
-    """
-    return Path(f"{Path(scene).stem}.nc" if is_path(scene) else f"{scene.replace('_', '-')}.nc")
-
-
-def checked_path(out: str | None, scene: str) -> Path:
-    """Return the file of a run, or refuse a name that is that of a figure."""
-    path = default_path(scene) if out is None else Path(out)
-    if path.suffix.lower() in FIGURES:
-        data = shlex.quote(str(path.with_suffix(".nc")))
-        figure = shlex.quote(str(path))
-        raise FileError(
-            f"{path} is the name of a figure, and run writes netCDF: "
-            f"give --out {data}, then type atmosbox plot {data} --out {figure}."
-        )
-    return path
-
-
+@app.command(
+    epilog=examples(
+        "atmosbox run lifting-dry",
+        "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
+        "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
+        "atmosbox run --config lift.toml --dry-run",
+        "atmosbox run temperature --accuracy sketch",
+    )
+)
+@guarded
 def run(
-    request: Request,
-    *,
-    words: Sequence[str],
-    out: str | None = None,
-    force: bool = False,
-    quiet: bool = False,
-    verbose: bool = False,
-    as_json: bool = False,
-    dry_run: bool = False,
+    ctx: typer.Context,
+    scene: Annotated[str | None, SceneName] = None,
+    values: Values = None,
+    config: Config = None,
+    source: Source = None,
+    seed: Seed = None,
+    engine: Engine = None,
+    accuracy: Accuracy = None,
+    out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder]")] = None,
+    force: Force = False,
+    save_molecules: Annotated[
+        bool, typer.Option("--save-molecules", help="Save where every molecule is, in every frame.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show what would run, compute nothing and write nothing.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Run a scene as it was asked for, and say what came out.
+    """Run a scene, and compare what comes out with theory.
 
-    Parameters
-    ----------
-    request
-        The scene and its settings.
-    words
-        What was typed, for the history of the file.
-    out, force
-        The file, and whether it may replace another.
-    quiet, verbose, as_json, dry_run
-        The options of these names.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused or fails.
-    typer.Exit
-        With the status of an interruption, if the run was stopped.
+    If a setting is given more than once, --seed counts before --set, --set before --config, and --config
+    before --from. Ctrl-C stops a run and keeps what is complete in NAME.part.nc.
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.simulation import runner
 
-    scene, settings, engine, molecules, accuracy = request.gather()
-    with _own_prints_to_stderr():
-        prepared = runner.prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=molecules)
-    path = checked_path(out, prepared.scene)
+    asked = Request(scene, values or (), config, source, seed, save_molecules, engine, accuracy).gather()
+    with prints_to_stderr():
+        prepared = runner.prepare(
+            asked.scene,
+            asked.settings,
+            engine=asked.engine,
+            accuracy=asked.accuracy,
+            save_molecules=asked.molecules,
+        )
+    path = netcdf_name(out, for_scene(prepared.scene))
     checkpoint = Checkpoint(path, force=force)
     if dry_run or verbose:
         _describe(prepared, path, quiet=quiet, as_json=as_json, dry_run=dry_run)
@@ -98,12 +94,11 @@ def run(
         return
     if checkpoint.stale and not quiet:
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
-    command = shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8")
     before = _stamp(checkpoint.part)
     with _terminable() as asked_to_end:
         try:
-            with _own_prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show:
-                outcome = runner.execute(prepared, checkpoint=checkpoint, progress=show, command=command)
+            with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show:
+                outcome = runner.execute(prepared, checkpoint=checkpoint, progress=show, command=typed(ctx))
         except runner.Interrupted as stop:
             _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
             raise typer.Exit(TERMINATED if asked_to_end() else INTERRUPTED) from stop
@@ -111,28 +106,41 @@ def run(
             if _stamp(checkpoint.part) not in (None, before):
                 tell(f"note: the frames that were complete are kept in {checkpoint.part}")
             raise
-    limit = runner.LEDGER_LIMIT
-    if as_json:
-        made = outcome_json(outcome, scene=prepared.scene, path=path, limit=limit)
-        expected = expectation_json(prepared.expectation, outcome.headlines)
-        about = {"settings": prepared.settings.as_dict(), "engine": str(prepared.engine), "accuracy": expected}
-        say_json({**made, **about})
-    else:
-        about_errors = expectation_lines(prepared.expectation, outcome.headlines, str(prepared.engine), width())
-        lines = outcome_lines(outcome, path=path, limit=limit, width=width(), expected=about_errors)
-        say(str(path) if quiet else "\n".join(lines))
-    if not outcome.ledger <= limit:
+    _say_outcome(outcome, prepared, path, quiet=quiet, as_json=as_json)
+    if not outcome.ledger <= runner.LEDGER_LIMIT:
+        from atmosbox.cli.report import next_command
+
         raise PhysicsError(
-            f"The energy ledger of this run is off by {outcome.ledger:.0e}, more than {limit:.0e}: "
+            f"The energy ledger of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
             f"type {next_command('check', path)} to see what else is."
         )
 
 
+def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: bool, as_json: bool) -> None:
+    """Say what came out of a run that is complete."""
+    from atmosbox.cli.expectation import expectation_json, expectation_lines
+    from atmosbox.cli.report import outcome_json, outcome_lines
+    from atmosbox.simulation.runner import LEDGER_LIMIT
+
+    if as_json:
+        made = outcome_json(outcome, scene=prepared.scene, path=path, limit=LEDGER_LIMIT)
+        expected = expectation_json(prepared.expectation, outcome.headlines)
+        about = {"settings": prepared.settings.as_dict(), "engine": str(prepared.engine), "accuracy": expected}
+        say_json({**made, **about})
+    elif quiet:
+        say(str(path))
+    else:
+        expected_lines = expectation_lines(prepared.expectation, outcome.headlines, str(prepared.engine), width())
+        say("\n".join(outcome_lines(outcome, path=path, limit=LEDGER_LIMIT, width=width(), expected=expected_lines)))
+
+
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:
     """Say what is about to be run, as the result of a dry run, else on stderr."""
+    from atmosbox.cli.expectation import expectation_json, expectation_lines
+    from atmosbox.cli.report import setting_lines
     from atmosbox.simulation import runner
 
-    with _own_prints_to_stderr():
+    with prints_to_stderr():
         card = runner.card(prepared)
     settings = prepared.settings.as_dict()
     engine = f"{prepared.engine}: {prepared.engine.engine.summary}"
@@ -162,7 +170,8 @@ def _say_interrupted(
     stop: Interrupted, prepared: Prepared, checkpoint: Checkpoint, *, quiet: bool, as_json: bool
 ) -> None:
     """Say what is left of a run that was stopped, and how to look at it."""
-    from atmosbox.simulation import runner
+    from atmosbox.cli.report import next_command, outcome_json
+    from atmosbox.simulation.runner import LEDGER_LIMIT
 
     if stop.outcome is None:
         tell("stopped before the first frame was complete: nothing is kept")
@@ -171,15 +180,10 @@ def _say_interrupted(
     frames = int(stop.outcome.dataset.sizes.get("elapsed_time", 0))
     tell(f"stopped: {frames} complete frames are kept in {part}; to see them: {next_command('plot', part)}")
     if as_json:
-        made = outcome_json(stop.outcome, scene=prepared.scene, path=part, limit=runner.LEDGER_LIMIT)
+        made = outcome_json(stop.outcome, scene=prepared.scene, path=part, limit=LEDGER_LIMIT)
         say_json({**made, "settings": prepared.settings.as_dict()})
     elif quiet:
         say(str(part))
-
-
-def _own_prints_to_stderr() -> contextlib.AbstractContextManager[object]:
-    """Keep what a scene of one's own prints out of the result."""
-    return contextlib.redirect_stdout(sys.stderr)
 
 
 def _stamp(path: Path) -> int | None:

@@ -1,71 +1,77 @@
-"""What ``atmosbox sheet`` does: make a worksheet of a scene, for students or with the answers."""
+"""The command ``sheet``: a worksheet of a scene, for students or with the answers."""
 
 from __future__ import annotations
 
-import contextlib
-import sys
-from collections.abc import Sequence
+from enum import StrEnum
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Engine, Force, SceneName, Seed, ValuesOfAll, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import for_scene
 from atmosbox.cli.progress import progress
 from atmosbox.cli.request import Request
-from atmosbox.cli.run import default_path
-from atmosbox.cli.terminal import say, tell
+from atmosbox.cli.terminal import guarded, prints_to_stderr, say, tell
 
 
-def default_sheet(scene: str, *, answers: bool, format: str | None) -> Path:
-    """Return the file of a sheet that was given no name.
+class SheetFormat(StrEnum):
+    """The formats of a sheet."""
 
-    Examples
-    --------
-    >>> str(default_sheet("lifting_dry", answers=False, format=None))
-    'lifting-dry-sheet.pdf'
-    >>> str(default_sheet("./my_scene.py", answers=True, format="md"))
-    'my_scene-answers.md'
-    """
-    return Path(f"{default_path(scene).stem}-{'answers' if answers else 'sheet'}.{format or 'pdf'}")
+    pdf = "pdf"
+    md = "md"
 
 
+class Paper(StrEnum):
+    """The papers of a sheet."""
+
+    a4 = "a4"
+    letter = "letter"
+
+
+@app.command(
+    epilog=examples(
+        "atmosbox sheet lifting-dry",
+        "atmosbox sheet lifting-dry --seed 7 --answers",
+        "atmosbox sheet temperature --set temperature=20degC --paper letter --out class.pdf",
+        "atmosbox sheet ./my_scene.py --format md",
+    )
+)
+@guarded
 def sheet(
-    scene: str,
-    *,
-    values: Sequence[str],
-    seed: str | None,
-    engine: str | None,
-    answers: bool,
-    paper: str,
-    format: str | None,
-    out: str | None,
-    force: bool,
-    quiet: bool,
+    scene: Annotated[str, SceneName],
+    answers: Annotated[
+        bool, typer.Option("--answers", help="Make its runs, fill in the table and answer the questions.")
+    ] = False,
+    values: ValuesOfAll = None,
+    seed: Seed = None,
+    engine: Engine = None,
+    paper: Annotated[Paper, typer.Option(help="The size of the pages.")] = Paper.a4,
+    format: Annotated[
+        SheetFormat | None, typer.Option(help="The format, where the name of the file does not say it.")
+    ] = None,
+    out: Annotated[
+        str | None, out_option("The sheet.  [default: SCENE-sheet.pdf, or SCENE-answers.pdf, in this folder]")
+    ] = None,
+    force: Force = False,
+    quiet: Annotated[bool, quiet_option("Show no progress and no remarks.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Make a worksheet and say where it is.
+    """Make a worksheet to hand out: predict, run, measure, ask why.
 
-    Parameters
-    ----------
-    scene
-        The name of the scene, or the path of its file.
-    values, seed, engine
-        What stood behind each ``--set``, behind ``--seed`` and behind ``--engine``.
-    answers, paper, format, out, force, quiet
-        The options of these names.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused or fails.
-    KeyboardInterrupt
-        If a run was stopped; then no sheet is written.
+    The words of a sheet stand beside its scene, in SCENE.sheet.toml; a scene of your own without such a file gets a
+    sheet from what a run of it reports.
     """
     from atmosbox import sheet as sheets
 
-    asked = Request(scene, values, seed=seed, engine=engine).gather()
-    path = default_sheet(scene, answers=answers, format=format) if out is None else Path(out)
-    path = sheets.check(path, format, paper=paper, force=force)
-    # what a scene of one's own prints is no result
-    with contextlib.redirect_stdout(sys.stderr), progress(scene, quiet=quiet) as show:
+    asked = Request(scene, values or (), seed=seed, engine=engine).gather()
+    kind = "pdf" if format is None else format.value
+    path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{kind}") if out is None else Path(out)
+    path = sheets.check(path, format and format.value, paper=paper.value, force=force)
+    with prints_to_stderr(), progress(scene, quiet=quiet) as show:
         made = sheets.worksheet(asked.scene, asked.settings, engine=asked.engine, answers=answers, progress=show)
     if not quiet:
         for sentence in made.disagreements:
             tell(f"warning: {sentence}")
-    say(str(sheets.save(made, path, paper=paper, force=force)))
+    say(str(sheets.save(made, path, paper=paper.value, force=force)))

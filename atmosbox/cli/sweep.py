@@ -1,22 +1,29 @@
-"""What ``atmosbox sweep`` does: run a scene with many settings, save it, and say what came out."""
+"""The command ``sweep``: run a scene with many settings, save it, and say what came out."""
 
 from __future__ import annotations
 
-import contextlib
 import math
-import shlex
-import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.option import (
+    Accuracy,
+    Engine,
+    Force,
+    Json,
+    SceneName,
+    ValuesOfAll,
+    Verbose,
+    out_option,
+    quiet_option,
+)
+from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.progress import progress
-from atmosbox.cli.report import ledger_line, next_command
-from atmosbox.cli.run import checked_path, default_path
 from atmosbox.cli.table import measurement, number, table, wrapped
-from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
+from atmosbox.cli.terminal import INTERRUPTED, guarded, prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
 
 if TYPE_CHECKING:
@@ -28,69 +35,74 @@ _MOST_NAMED = 5
 """So many failures are told one by one."""
 
 
+@app.command(
+    epilog=examples(
+        "atmosbox sweep condensation --vary temperature=-10degC:40degC:6 --members 8",
+        "atmosbox sweep temperature --vary molecules=50:5000:5log --vary start=equal,maxwell",
+        "atmosbox sweep lifting-dry --vary ascent=50,100,200,400 --scheduler tcp://10.0.0.1:8786",
+    )
+)
+@guarded
 def sweep(
-    scene: str,
-    *,
-    vary: Sequence[str],
-    members: str,
-    values: Sequence[str],
-    seed: str | None,
-    engine: str | None,
-    accuracy: str | None,
-    jobs: str | None,
-    scheduler: str | None,
-    out: str | None,
-    force: bool,
-    dry_run: bool,
-    as_json: bool,
-    quiet: bool,
-    words: Sequence[str],
+    ctx: typer.Context,
+    scene: Annotated[str, SceneName],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=A:B:N",
+            help="A setting that varies: N values from A to B, with Nlog at even ratios, or the values X,Y,Z; any "
+            "number of them make a grid.",
+        ),
+    ] = None,
+    members: Annotated[str, typer.Option(metavar="N", help="Number of runs at each point.")] = "1",
+    values: ValuesOfAll = None,
+    seed: Annotated[
+        str | None, typer.Option(metavar="N", help="Seed, from which that of each run is made.  [default: 1]")
+    ] = None,
+    engine: Engine = None,
+    accuracy: Accuracy = None,
+    jobs: Annotated[
+        str | None, typer.Option(metavar="N", help="Number of processes.  [default: one for each core]")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler: tcp://host:8786."),
+    ] = None,
+    out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE-sweep.nc in this folder]")] = None,
+    force: Force = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show the points, compute nothing and write nothing.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Run a sweep as it was asked for, and say what came out.
+    """Run a scene with many settings: how its numbers depend on them.
 
-    Parameters
-    ----------
-    scene
-        The name of the scene.
-    vary, values
-        What stood behind each ``--vary`` and each ``--set``.
-    members, seed, engine, accuracy, jobs, scheduler
-        What stood behind the options of these names.
-    out, force
-        The file, and whether it may replace another.
-    dry_run, as_json, quiet
-        The options of these names.
-    words
-        What was typed, for the history of the file.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused, or a run has failed.
-    typer.Exit
-        With the status of an interruption, if the sweep was stopped.
+    Every run is saved as it ends. What was stopped, by Ctrl-C or by anything else, goes on where it was when the
+    same is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws it.
     """
     from atmosbox.cli.config import parse_set
     from atmosbox.sweep import SweepInterrupted, plan
     from atmosbox.sweep import sweep as run
 
-    with contextlib.redirect_stdout(sys.stderr):  # what a scene of one's own prints is no result
+    with prints_to_stderr():
         grid = plan(
             scene,
-            vary,
-            settings=parse_set(values),
+            vary or (),
+            settings=parse_set(values or ()),
             members=_whole("members", members, 1),
             seed=None if seed is None else _whole("seed", seed, 0, 2**63 - 1),
             engine=engine,
             accuracy=accuracy,
         )
-    path = checked_path(out, scene) if out is not None else Path(f"{default_path(scene).stem}-sweep.nc")
+    path = netcdf_name(out, for_scene(scene, "-sweep.nc"))
     processes = None if jobs is None else _whole("jobs", jobs, 1, 4096)
     if dry_run:
         _describe(grid, path, as_json=as_json, quiet=quiet)
         return
     try:
-        with contextlib.redirect_stdout(sys.stderr), progress(grid.scene, quiet=quiet) as show:
+        with prints_to_stderr(), progress(grid.scene, quiet=quiet) as show:
             swept = run(
                 grid,
                 path,
@@ -99,7 +111,7 @@ def sweep(
                 force=force,
                 progress=show,
                 note=None if quiet else lambda text: tell(text if text.startswith("warning") else f"note: {text}"),
-                command=shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8"),
+                command=typed(ctx),
             )
     except SweepInterrupted as stop:
         _say_interrupted(stop, grid, path)
@@ -144,6 +156,7 @@ def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
 
 def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
     """Say what came out."""
+    from atmosbox.cli.report import ledger_line, next_command
     from atmosbox.simulation.runner import LEDGER_LIMIT
 
     if as_json:
@@ -212,6 +225,7 @@ def _headlines(dataset: xr.Dataset) -> list[str]:
 
 def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
     """Say what is kept of a sweep that was stopped, and how to go on."""
+    from atmosbox.cli.report import next_command
     from atmosbox.file.output_path import part_path
 
     if stop.swept is None:

@@ -18,6 +18,7 @@ import typer
 from atmosbox.errors import AtmosboxError, shown
 
 INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
+TERMINATED = 143  # what a shell reports of a program that was asked to end
 ENDLESS = 1_000_000  # columns of what is no terminal
 LONGEST_SENTENCE = 20_000  # characters; paths may have 4096
 
@@ -97,6 +98,11 @@ def _finite(content: Any) -> Any:
     if isinstance(content, list | tuple):
         return [_finite(value) for value in content]
     return None if isinstance(content, float) and not math.isfinite(content) else content
+
+
+def prints_to_stderr() -> contextlib.AbstractContextManager[object]:
+    """Keep what a scene of a user's own prints out of the result."""
+    return contextlib.redirect_stdout(sys.stderr)
 
 
 def width() -> int:

@@ -1,21 +1,20 @@
-"""What ``atmosbox tradeoff`` does: measure speed against accuracy, and say, save and draw it."""
+"""The command ``tradeoff``: measure speed against accuracy, and say, save and draw it."""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
-import shlex
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.option import Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.progress import progress
-from atmosbox.cli.run import default_path
 from atmosbox.cli.table import measurement, number, table, wrapped
-from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
+from atmosbox.cli.terminal import INTERRUPTED, guarded, say, say_json, tell, width
 from atmosbox.errors import SettingError
 
 if TYPE_CHECKING:
@@ -24,43 +23,31 @@ if TYPE_CHECKING:
 _COLUMNS = ("wall_seconds", "engine_seconds", "cost", "members", "energy_drift", "ledger", "missed", "escaped")
 
 
+@app.command(
+    epilog=examples(
+        "atmosbox tradeoff lifting-dry",
+        "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
+    )
+)
+@guarded
 def tradeoff(
-    scene: str,
-    *,
-    values: Sequence[str],
-    budget: str,
-    seed: str | None,
-    out: str | None,
-    force: bool,
-    as_json: bool,
-    quiet: bool,
-    words: Sequence[str],
+    ctx: typer.Context,
+    scene: Annotated[str, SceneName],
+    values: ValuesOfAll = None,
+    budget: Annotated[str, typer.Option(metavar="TIME", help="For how long to measure.")] = "60s",
+    seed: Annotated[str | None, typer.Option(metavar="N", help="The first seed.  [default: 1]")] = None,
+    out: Annotated[
+        str | None, out_option("The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]")
+    ] = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Measure the errors and the cost of many ways of running a scene, and say what came out.
+    """Measure speed against accuracy: a scene through engines and settings, errors beside seconds.
 
-    Parameters
-    ----------
-    scene
-        The name of the scene.
-    values
-        What stood behind each ``--set``.
-    budget
-        For how long to measure.
-    seed
-        The first seed.
-    out, force
-        The netCDF file, and whether files may be replaced; a table and a figure stand beside it.
-    as_json, quiet
-        The options of these names.
-    words
-        What was typed, for the history of the file.
-
-    Raises
-    ------
-    AtmosboxError
-        If something is refused or fails.
-    typer.Exit
-        With the status of an interruption, if the measurement was stopped.
+    Every way of running is run again and again, with other seeds, while the budget lasts. Ctrl-C ends it
+    early and keeps what was measured.
     """
     from atmosbox.cli.config import parse_set
     from atmosbox.file.netcdf import write
@@ -75,18 +62,18 @@ def tradeoff(
     except SettingError as error:
         fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
         raise type(error)(error.setting, error.value, error.problem, fix) from None
-    path = Path(f"{default_path(scene).stem}-tradeoff.nc") if out is None else Path(out)
+    path = netcdf_name(out, for_scene(scene, "-tradeoff.nc"))
     files = [path, path.with_suffix(".csv"), path.with_suffix(".png")]
     for file in files:
         check_writable(file, force)
     with progress(scene, quiet=quiet) as show:
         found = measure(
             scene,
-            settings=parse_set(values),
+            settings=parse_set(values or ()),
             budget=seconds,
             seed=first,
             progress=show,
-            command=shlex.join(words),
+            command=typed(ctx),
         )
     write(found, path, force=force)
     write_whole(files[1], as_csv(found).encode())

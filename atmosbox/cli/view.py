@@ -1,45 +1,54 @@
-"""What ``atmosbox view`` does: from files of runs to a page."""
+"""The command ``view``: the molecules of a run on a page."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from enum import StrEnum
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Force, Verbose, out_option
+from atmosbox.cli.output_name import beside
 from atmosbox.cli.progress import progress
-from atmosbox.cli.terminal import say
+from atmosbox.cli.terminal import guarded, say
 from atmosbox.errors import SettingError
-
-__all__ = ["view"]
 
 MOST = 2
 
 
-def view(files: Sequence[str], out: str | None, *, theme: str, force: bool) -> None:
-    """Write the page of a run or of two, and say where it is.
+class Colours(StrEnum):
+    """The colours of a page."""
 
-    Parameters
-    ----------
-    files
-        The files of the runs.
-    out
-        The page; None for one beside the first file, by its name.
-    theme
-        The colours: ``auto``, ``light`` or ``dark``.
-    force
-        Whether a page of that name may be replaced.
+    auto = "auto"
+    light = "light"
+    dark = "dark"
 
-    Raises
-    ------
-    SettingError
-        If there are more than two files.
-    FileError
-        If a file is no run, holds no molecules, or the page cannot be written.
 
-    Examples
-    --------
-    >>> view(["a.nc", "b.nc", "c.nc"], None, theme="auto", force=False)
-    Traceback (most recent call last):
-    atmosbox.errors.SettingError: FILE is given 3 times: give one run, or two to compare.
+@app.command(
+    epilog=examples(
+        "atmosbox run temperature --save-molecules",
+        "atmosbox view temperature.nc",
+        "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
+    )
+)
+@guarded
+def view(
+    files: Annotated[
+        list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two, made with --save-molecules.")
+    ],
+    out: Annotated[str | None, out_option("The page.  [default: beside FILE, by its name]")] = None,
+    theme: Annotated[
+        Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
+    ] = Colours.auto,
+    force: Force = False,
+    verbose: Verbose = False,
+) -> None:
+    """Show the molecules of a run in three dimensions, with its graphs on the same clock.
+
+    The page is one HTML file, which opens in a browser without a network. Two runs stand side by side and share
+    the clock.
     """
     if len(files) > MOST:
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")
@@ -48,18 +57,11 @@ def view(files: Sequence[str], out: str | None, *, theme: str, force: bool) -> N
         from atmosbox.file.netcdf import read
         from atmosbox.file.output_path import check_writable
 
-        path = Path(out) if out is not None else _beside(files)
+        path = Path(out) if out is not None else beside(files, "html")
         check_writable(path, force)
         runs = [read(file) for file in files]
         show(0.4, "writing the page")
         from atmosbox.page import save
 
-        written = save(runs, path, theme=theme, force=force)
+        written = save(runs, path, theme=theme.value, force=force)
     say(str(written))
-
-
-def _beside(files: Sequence[str]) -> Path:
-    """Return the page beside the first file, named after all of them."""
-    first = Path(files[0])
-    rest = "".join(f"-and-{Path(file).stem}" for file in files[1:])
-    return first.with_name(f"{first.stem}{rest}.html")

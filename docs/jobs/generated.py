@@ -11,7 +11,7 @@ from pathlib import Path
 from jobs.registry import DOCS, ROOT, Findings, job
 
 from atmosbox import scenarios
-from atmosbox.cli.scene import summaries
+from atmosbox.cli.list_scenes import summaries
 from atmosbox.file import dataset as diagnostics
 from atmosbox.file.provenance import global_attributes
 from atmosbox.simulation import runner

@@ -4,8 +4,7 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
-from atmosbox.cli.application import app
-from atmosbox.cli.command import main  # noqa: F401, the commands add themselves to the application
+from atmosbox.cli import app
 from atmosbox.file.netcdf import write
 
 RUNNER = CliRunner()

@@ -1,4 +1,4 @@
-"""The command ``plot``."""
+"""The command ``plot``: the figure of a run."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import app, examples
-from atmosbox.cli.option import Force, Format, RunFile, Theme, Verbose
+from atmosbox.cli.option import Force, Format, RunFile, Theme, Verbose, out_option
+from atmosbox.cli.output_name import beside
 from atmosbox.cli.terminal import guarded, say
 
 
@@ -22,9 +23,7 @@ from atmosbox.cli.terminal import guarded, say
 @guarded
 def plot(
     file: RunFile,
-    out: Annotated[
-        str | None, typer.Option(metavar="FILE", help="The figure.  [default: beside FILE, by its name]")
-    ] = None,
+    out: Annotated[str | None, out_option("The figure.  [default: beside FILE, by its name]")] = None,
     format: Annotated[
         Format | None, typer.Option(help="The format, where the name of the figure does not say it.")
     ] = None,
@@ -36,9 +35,8 @@ def plot(
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
-    kind = None if format is None else format.value
-    path = Path(file).with_suffix(f".{kind or 'png'}") if out is None else Path(out)
+    path = beside([file], "png" if format is None else format.value) if out is None else Path(out)
 
     from atmosbox.plot import save
 
-    say(str(save(dataset, path, kind, theme=theme.value, force=force)))
+    say(str(save(dataset, path, format and format.value, theme=theme.value, force=force)))

@@ -1,0 +1,38 @@
+"""The command ``info``: what a scene is about, and what may be set."""
+
+from __future__ import annotations
+
+import shlex
+from typing import Annotated
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Json, SceneName, Verbose
+from atmosbox.cli.table import story, table
+from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, width
+
+
+@app.command(epilog=examples("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json"))
+@guarded
+def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbose = False) -> None:
+    """Show what a scene is about and what may be set."""
+    from atmosbox.cli.report import card_json, parameter_lines
+    from atmosbox.simulation import runner
+
+    with prints_to_stderr():
+        card = runner.card(runner.prepare(scene, {}))
+    if as_json:
+        say_json(card_json(card))
+        return
+    columns = width()
+    lines = [
+        f"{card.scene}: {card.title}",
+        "",
+        *story(card.story, columns),
+        "",
+        *table(["", ""], card.facts, columns),
+        "",
+        *parameter_lines(card.parameters, columns),
+        "",
+        f"next: atmosbox run {shlex.quote(card.scene)}",
+    ]
+    say("\n".join(lines))
