@@ -10,12 +10,14 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError
 from atmosbox.file.netcdf import image
 from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_failure, write_whole
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["Checkpoint"]
 

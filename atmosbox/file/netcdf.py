@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-
-import netCDF4
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError, shown
 from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_whole
 from atmosbox.file.provenance import FORMAT
 from atmosbox.version import __version__
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["image", "read", "write"]
 
@@ -109,6 +110,10 @@ def read(path: AnyPath) -> xr.Dataset:
         raise FileError(f"{source} may not be read: check what ls -l says of it, or {fix}.")
     if source.stat().st_size == 0:
         raise FileError(f"{source} is empty: {fix}.")
+
+    import netCDF4
+    import xarray as xr
+
     try:
         with netCDF4.Dataset(source) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special
 
 
 class BlockAverage(NamedTuple):
@@ -120,6 +119,8 @@ def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> 
     >>> round(float(kolmogorov_smirnov_critical(10_000, 0.01)), 5)
     0.01628
     """
+    from scipy import special  # loads slowly
+
     critical: NDArray[np.float64] = special.kolmogi(np.asarray(level, dtype=np.float64)) / np.sqrt(
         np.asarray(samples, dtype=np.float64)
     )

@@ -7,7 +7,6 @@ Rankine and Kirchhoff says :math:`d \ln e_s / d \ln T = \ell`.
 from collections.abc import Callable
 
 import numpy as np
-from scipy import special
 
 from atmosbox.theory._array import FloatArray
 from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, WATER
@@ -126,6 +125,8 @@ def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, he
 
     `heat` is the heat capacity of a molecule of air with all that is as warm and holds no water.
     """
+    from scipy import special  # loads slowly
+
     vapor = np.minimum(saturated_vapor(pressure, temperature), water)
     wet = vapor < water
     y = np.log(temperature / TRIPLE_TEMPERATURE)
@@ -140,6 +141,8 @@ def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, he
 
 def temperature_of_entropy(target: FloatArray, pressure: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
     """Return the temperature at which air and water have this entropy per molecule of air."""
+    from scipy import special  # loads slowly
+
     s, p, w, c = np.broadcast_arrays(target, pressure, water, heat)
     e = p * w / (1.0 + w)
     triple = BINDING / TRIPLE_TEMPERATURE - EXCESS

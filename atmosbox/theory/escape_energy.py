@@ -6,7 +6,6 @@ the binding energy and what a molecule of vapour carries across a surface. Units
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory._water import BINDING, LIQUID_HEAT, VAPOR_HEAT, checked_positive
@@ -19,6 +18,8 @@ LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
 
 
 def _mean_density(edges: ArrayLike, temperature: float, shape: float, least: float) -> FloatArray:
+    from scipy import special  # loads slowly
+
     bounds = np.maximum(as_floats(edges) / BOLTZMANN - least, 0.0)
     warm = checked_positive(as_floats(temperature), "temperature")
     density: FloatArray = np.diff(special.gammainc(shape, bounds / warm)) / np.diff(as_floats(edges))

@@ -19,7 +19,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
-from scipy import optimize
 
 from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
 from atmosbox.theory._crowding import Crowding, crowding
@@ -80,6 +79,8 @@ def _profile(
     dimensions: int,
 ) -> Callable[[FloatArray], FloatArray]:
     """Return the function that gives the number density at heights inside the column."""
+    from scipy import optimize  # loads slowly
+
     require_positive(molecules_per_area=molecules_per_area, kT=kT, mass=mass)
     require_not_negative(gravity=gravity, diameter=diameter)
     gas = crowding(dimensions, form)

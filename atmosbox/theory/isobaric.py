@@ -7,7 +7,6 @@ condensation must lead under a piston. The liquid is that of :mod:`atmosbox.theo
 from typing import NamedTuple
 
 import numpy as np
-from scipy import special
 
 from atmosbox.theory._array import FloatArray, require_not_negative, require_positive
 from atmosbox.theory._water import (
@@ -92,6 +91,8 @@ def isobaric_water(
     >>> round(end.vapor, 1), round(end.variance, 1), round(end.temperature, 1)
     (3.9, 1.6, 291.5)
     """
+    from scipy import special  # loads slowly
+
     require_positive(pressure=pressure, temperature=temperature)
     require_not_negative(air=air, vapor=vapor, liquid=liquid, nuclei_heat=nuclei_heat)
     water = int(vapor) + int(liquid)

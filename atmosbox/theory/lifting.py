@@ -7,7 +7,6 @@ that do not rotate have 3, and cool faster.
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory.constants import STANDARD_GRAVITY
@@ -203,6 +202,8 @@ def piston_pressure_ratio(piston_speed: ArrayLike, kT: ArrayLike, mass: ArrayLik
     >>> round(float(piston_pressure_ratio(1.8, BOLTZMANN * 288.15, DRY_AIR.molecule_mass)), 3)
     0.99
     """
+    from scipy import special  # loads slowly
+
     s = as_floats(piston_speed) / np.sqrt(2.0 * as_floats(kT) / as_floats(mass))
     ratio: FloatArray = (1.0 + 2.0 * s**2) * special.erfc(s) - 2.0 / np.sqrt(np.pi) * s * np.exp(-(s**2))
     return ratio

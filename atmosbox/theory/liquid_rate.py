@@ -12,7 +12,6 @@ by detailed balance.
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from atmosbox.theory import _water
 from atmosbox.theory._array import FloatArray, as_floats
@@ -116,6 +115,8 @@ def microcanonical_flux(
     >>> round(float(microcanonical_flux(energy, 50) / hertz_knudsen_flux(293.15)), 2)
     0.74
     """
+    from scipy import special  # loads slowly
+
     energy = checked_not_negative(as_floats(thermal_energy), "thermal_energy") / BOLTZMANN
     number = checked_not_negative(as_floats(molecules), "molecules")
     nuclei = checked_not_negative(as_floats(nuclei_heat), "nuclei_heat")

@@ -7,7 +7,6 @@ Maxwell, J. C. (1860), doi:10.1080/14786446008642818.
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from atmosbox.theory._array import FloatArray, as_floats, require_dimensions
 
@@ -208,6 +207,8 @@ def maxwell_speed_cumulative(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, d
     >>> round(1.0 / float(faster), -3)
     24000.0
     """
+    from scipy import special  # loads slowly
+
     require_dimensions(dimensions)
     share: FloatArray = special.gammainc(
         dimensions / 2.0, as_floats(mass) * as_floats(speed) ** 2 / (2.0 * as_floats(kT))
@@ -271,6 +272,8 @@ def constant_energy_speed_factor(dof: ArrayLike) -> FloatArray:
     >>> round(float(constant_energy_speed_factor(3 * 10)), 4)
     1.0084
     """
+    from scipy import special  # loads slowly
+
     f = as_floats(dof)
     factor: FloatArray = np.sqrt(f / 2.0) * np.exp(special.gammaln(f / 2.0) - special.gammaln((f + 1.0) / 2.0))
     return factor

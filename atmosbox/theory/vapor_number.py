@@ -7,7 +7,6 @@ liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 from typing import NamedTuple
 
 import numpy as np
-from scipy import special
 
 from atmosbox.theory import _water
 from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
@@ -82,6 +81,8 @@ def isothermal_vapor_number(water: int, temperature: float, volume: float) -> Va
     530.4 214.1
     397.4 9.0
     """
+    from scipy import special  # loads slowly
+
     require_positive(temperature=temperature, volume=volume)
     require_not_negative(water=water)
     checked_temperature(as_floats(temperature))
@@ -142,6 +143,8 @@ def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nu
     >>> round(number.mean, 1), round(number.variance, 1)
     (160.1, 15.5)
     """
+    from scipy import special  # loads slowly
+
     require_positive(energy=energy, volume=volume)
     require_not_negative(water=water, air=air, nuclei_heat=nuclei_heat)
     if not water + air + nuclei_heat > 0.0:
