@@ -369,7 +369,7 @@ except DiskFullError as error:
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (xr.Dataset, "to_netcdf")])
+@pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (Path, "write_bytes")])
 def test_an_interrupt_leaves_no_half_of_a_file(tmp_path, monkeypatch, place):
     monkeypatch.setattr(*place, interrupted)
     with pytest.raises(KeyboardInterrupt):

@@ -16,7 +16,7 @@ from atmosbox.errors import EngineError
 from atmosbox.file.declaration import SUFFIXES, Variable, derived
 from atmosbox.file.variables import VARIABLES, variable
 
-__all__ = ["VARIABLES", "Variable", "dataset", "headline_variables", "variable"]
+__all__ = ["VARIABLES", "Variable", "dataset", "extended", "headline_variables", "variable"]
 
 _LABELS = {"wall": ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high"), "axis": ("x", "y", "z")}
 
@@ -95,6 +95,16 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
     return array.astype(declared.dtype)
 
 
+def _measured(frames: Mapping[str, npt.ArrayLike]) -> dict[str, xr.Variable]:
+    """Return the variables that hold some arrays."""
+    held = {}
+    for name, values in frames.items():
+        declared = variable(name)
+        array = _array(declared, values)
+        held[name] = xr.Variable(declared.dims, array, declared.attributes(), declared.encoding(array.shape))
+    return held
+
+
 def _coordinate(name: str, values: npt.ArrayLike, time_unit: str) -> xr.Variable:
     """Return a coordinate or its bounds."""
     if name.endswith("_bnds"):
@@ -159,31 +169,63 @@ def dataset(
     """
     if time_unit not in ("s", "ns", "ps"):
         raise ValueError(f"elapsed_time cannot be in {time_unit!r}, only in s, ns or ps")
-    held: dict[str, xr.Variable] = {}
-    for name, values in frames.items():
-        declared = variable(name)
-        array = _array(declared, values)
-        held[name] = xr.Variable(declared.dims, array, declared.attributes(), declared.encoding(array.shape))
+    held = _measured(frames)
     sizes = {dim: size for entry in held.values() for dim, size in entry.sizes.items()}
     given = {dim: names for dim, names in _LABELS.items() if sizes.get(dim) == len(names)} | dict(coords)
     axes = {name: _coordinate(name, values, time_unit) for name, values in given.items()}
-    for dim in sizes:
-        if dim not in axes and dim not in ("molecule", "drop"):
-            raise KeyError(f"the dimension {dim!r} has no coordinate")
     for name in axes:
         if f"{name}_bnds" in axes:
             axes[name].attrs["bounds"] = f"{name}_bnds"
+    bounds = {name: entry for name, entry in axes.items() if name.endswith("_bnds")}
+    only = {name: entry for name, entry in axes.items() if name not in bounds}
+    return _with(xr.Dataset(bounds, only, dict(attrs)), held, headlines)
+
+
+def extended(run: xr.Dataset, frames: Mapping[str, npt.ArrayLike], headlines: Iterable[_Headline] = ()) -> xr.Dataset:
+    """Return a dataset with more variables, such as the answers of theory, and with headlines.
+
+    Parameters
+    ----------
+    run
+        From `dataset`; it stays as it is.
+    frames, headlines
+        As `dataset` takes them; a variable of the same name is replaced.
+
+    Raises
+    ------
+    KeyError
+        If a name is not declared, or a dimension lacks its coordinate.
+    ValueError
+        If a shape is not the declared one, or a headline has the name of a variable.
+    EngineError
+        If a value of a ledger variable or a count is not finite.
+
+    Examples
+    --------
+    >>> measured = dataset({"air_temperature": [300.0, 301.0]}, {"elapsed_time": [0.5, 1.0]}, {})
+    >>> run = extended(measured, {"air_temperature_theory": [300.0, 300.0]})
+    >>> run.air_temperature.attrs["ancillary_variables"], len(measured.data_vars)
+    ('air_temperature_theory', 1)
+    """
+    return _with(run, _measured(frames), headlines)
+
+
+def _with(run: xr.Dataset, held: dict[str, xr.Variable], headlines: Iterable[_Headline]) -> xr.Dataset:
+    """Return a dataset with variables and headlines, in which every variable names those derived from it."""
+    for dim in {dim for entry in held.values() for dim in entry.dims}:
+        if dim not in run.coords and dim not in ("molecule", "drop"):
+            raise KeyError(f"the dimension {dim!r} has no coordinate")
     names = []
     for headline in headlines:
         names.append(headline.name)
         for name, entry in headline_variables(headline).items():
-            if name in held or name in axes:
+            if name in held or name in run.variables:
                 raise ValueError(f"the headline {name} has the name of a variable")
             held[name] = entry
-    for name, entry in held.items():
-        companions = [name + suffix for suffix in SUFFIXES if name + suffix in held]
+    whole = run.assign(held)
+    for parent, entry in whole.variables.items():
+        companions = [f"{parent}{suffix}" for suffix in SUFFIXES if f"{parent}{suffix}" in whole.variables]
         if companions:
             entry.attrs["ancillary_variables"] = " ".join(companions)
-    bounds = {name: entry for name, entry in axes.items() if name.endswith("_bnds")}
-    only = {name: entry for name, entry in axes.items() if name not in bounds}
-    return xr.Dataset(bounds | held, only, {**attrs, "atmosbox_headlines": json.dumps(names)})
+    whole.attrs["atmosbox_headlines"] = json.dumps(names)
+    return whole

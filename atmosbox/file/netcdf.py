@@ -26,12 +26,21 @@ def image(dataset: xr.Dataset) -> memoryview:
     The file is built in memory, because HDF5 reports a full disk as a lack of permission or as nothing in
     particular, and keeps hold of the broken file.
     """
+    import netCDF4
+    from xarray.backends import NetCDF4DataStore
+
     if "atmosbox_parameters" not in dataset.attrs:
         raise KeyError("a dataset without the attribute atmosbox_parameters could not be read again")
     whole = dataset.copy()
     for variable in whole.variables.values():
         variable.encoding.setdefault("_FillValue", None)
-    return whole.to_netcdf(engine="netcdf4", format="NETCDF4")
+    # not Dataset.to_netcdf, which first imports Dask, where that is installed, to ask for its scheduler
+    file = netCDF4.Dataset("run.nc", "w", format="NETCDF4", memory=1)
+    try:
+        whole.dump_to_store(NetCDF4DataStore(file))  # type: ignore[no-untyped-call]
+    finally:
+        content: memoryview = file.close()
+    return content
 
 
 def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:

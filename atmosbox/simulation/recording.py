@@ -89,7 +89,7 @@ class Recording:
         judged
             Whether the scene's headlines are drawn from it.
         """
-        from atmosbox.file import dataset as diagnostics
+        from atmosbox.file.dataset import dataset, extended
 
         setup, settings, module = self.setup, self.prepared.settings, self.prepared.module
         unseen = int(bool(self.first))
@@ -105,14 +105,11 @@ class Recording:
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
         attributes = self.attributes | {"atmosbox_status": status}
         seen = {"elapsed_time": slice(unseen, None)}
-        measured = diagnostics.dataset(readings, coords, attributes, time_unit=setup.time_unit)
+        measured = dataset(readings, coords, attributes, time_unit=setup.time_unit)
         if self.frames < 2:
             return measured.isel(seen) if unseen else measured, ()
-        answers = module.theory(measured, settings)
-        full = diagnostics.dataset(readings | answers, coords, attributes, time_unit=setup.time_unit)
+        full = extended(measured, module.theory(measured, settings))
         if not judged or unseen:
             return full.isel(seen) if unseen else full, ()
         headlines = with_bias(module.headlines(full, settings), self.prepared.parameters)
-        return diagnostics.dataset(
-            readings | answers, coords, attributes, headlines, time_unit=setup.time_unit
-        ), headlines
+        return extended(full, {}, headlines), headlines
