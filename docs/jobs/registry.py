@@ -21,11 +21,12 @@ LARGEST_FIGURE = 300_000
 
 
 class Job(NamedTuple):
-    """A job: its name, its function, and whether it takes no more than a second or two."""
+    """A job: its name, its function, whether it takes no more than a second or two, and the file where it stands."""
 
     name: str
     function: Callable[["Findings"], None]
     quick: bool
+    file: Path
 
 
 JOBS: dict[str, Job] = {}
@@ -38,7 +39,8 @@ def job(name: str, *, quick: bool = False) -> Callable[[Callable[["Findings"], N
     def enter(function: Callable[["Findings"], None]) -> Callable[["Findings"], None]:
         if name in JOBS:
             raise ValueError(f"there are two jobs named {name}")
-        JOBS[name] = Job(name, function, quick)
+        file = Path(getattr(function, "func", function).__code__.co_filename)
+        JOBS[name] = Job(name, function, quick, file)
         return function
 
     return enter
