@@ -88,7 +88,7 @@ def test_every_library_the_package_imports_is_a_dependency():
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 imported.add(node.module.split(".")[0])
     used = {name.lower() for name in imported - sys.stdlib_module_names - {"atmosbox"}}
-    used = {name.replace("_", "-") for name in used}
+    used = {{"markdown_it": "markdown-it-py"}.get(name, name).replace("_", "-") for name in used}
     carried = {"llvmlite", "rich", "pil"}  # by numba, by typer and by matplotlib
     extras = {
         re.match(r"[\w-]+", line).group().lower()

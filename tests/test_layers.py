@@ -36,7 +36,11 @@ LAYERS = {
     "plot": Layer("errors theory file scene scenarios", "numpy xarray matplotlib metpy"),
     "page": Layer("errors theory file scene", "numpy", lazily="plot scenarios xarray"),
     "film": Layer("errors theory file scene plot", "numpy matplotlib PIL", lazily="xarray imageio_ffmpeg"),
-    "sheet": Layer("version errors file scenarios scene simulation", "numpy", lazily="reportlab matplotlib"),
+    "sheet": Layer(
+        "version errors file scenarios scene simulation",
+        "numpy jinja2 markdown_it pydantic uncertainties",
+        lazily="reportlab matplotlib",
+    ),
     "sweep": Layer("version errors file scenarios scene simulation", "numpy xarray", lazily="distributed"),
     "trade": Layer("engine errors theory file scenarios scene simulation", "numpy xarray"),
     "live": Layer("version engine errors theory file scene simulation page", "numpy websockets", lazily="xarray"),

@@ -9,20 +9,20 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pypdf
 import pytest
 from typer.testing import CliRunner
 
-from atmosbox import scenarios
+from atmosbox import scenarios, theory
 from atmosbox import sheet as sheets
 from atmosbox.cli import app
 from atmosbox.errors import ConfigError, FileError, PhysicsError, SettingError
-from atmosbox.sheet.arithmetic import Measured, filled
-from atmosbox.sheet.block import Answer, Blank, Commands, Kept, Measurements, Text
-from atmosbox.sheet.markdown import markdown
+from atmosbox.sheet.marks import PARSER
 from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
 from atmosbox.sheet.pdf import PAPERS, load_fonts, pdf
 from atmosbox.sheet.sheet_run import Trial, execute, trials
+from atmosbox.sheet.sums import Measured, filled
 from atmosbox.sheet.text import SECTIONS, read, text_of
 from atmosbox.simulation import runner
 
@@ -44,13 +44,20 @@ SMALL = {
 """Runs that take a second, and report what the scene does."""
 
 
-def flat(blocks):
-    """Yield all blocks, those that are kept together one by one."""
-    for block in blocks:
-        if isinstance(block, Kept):
-            yield from flat(block.blocks)
-        else:
-            yield block
+def answers_of(text):
+    """Return the answers of a sheet."""
+    return re.findall(r"^> (.+)$", text, re.MULTILINE)
+
+
+def commands_of(text):
+    """Return letter and command of each run of a sheet."""
+    return re.findall(r"^\*\*([A-D])\*\*, .*:\n\n```sh\n(.*)\n```$", text, re.MULTILINE)
+
+
+def table_of(text):
+    """Return the cells of the table of a sheet, line by line without its head."""
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows[2:]]
 
 
 def text_of_pdf(content):
@@ -89,28 +96,19 @@ def own(tmp_path):
 
 @pytest.mark.parametrize("paper", PAPERS)
 @pytest.mark.parametrize("name", NAMES)
-def test_the_sheet_of_every_scene_is_at_most_two_pages(name, paper):
+def test_the_sheet_of_every_scene_is_two_pages_whose_type_is_embedded(name, paper):
     sheet = sheets.worksheet(name)
     content, pages = pdf(sheet, paper)
     each, text = text_of_pdf(content)
-    assert len(each) == pages
-    assert 1 <= pages <= 2
+    assert len(each) == pages <= 2
     assert f"{pages} / {pages}" in text
-    for block in flat(sheet.blocks):
-        if isinstance(block, Commands):
-            assert block.lines[0] in text
+    assert all(command in text for _, command in commands_of(sheet.text))
     for heading in ("Goal", "Predict, before you run anything", "Run", "Measure", *SECTIONS.values(), "leaves out"):
         assert heading in text
-    box = pypdf.PdfReader(io.BytesIO(content)).pages[0].mediabox
+    reader = pypdf.PdfReader(io.BytesIO(content))
+    box = reader.pages[0].mediabox
     assert (float(box.width), float(box.height)) == pytest.approx(PAPERS[paper], abs=0.01)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_sign_of_a_sheet_is_in_its_embedded_type(name):
-    content = pdf(sheets.worksheet(name)).content
-    fonts = [font.get_object() for page in pypdf.PdfReader(io.BytesIO(content)).pages
-             for font in page["/Resources"]["/Font"].values()]  # fmt: skip
-    assert fonts
+    fonts = [font.get_object() for page in reader.pages for font in page["/Resources"]["/Font"].values()]
     used = [font for font in fonts if font["/Subtype"] == "/TrueType"]
     assert used
     assert all("/FontFile2" in font["/FontDescriptor"].get_object() for font in used)
@@ -118,25 +116,23 @@ def test_every_sign_of_a_sheet_is_in_its_embedded_type(name):
     from matplotlib.ft2font import FT2Font
 
     known = FT2Font(str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf")).get_charmap()
-    assert {sign for sign in markdown(sheets.worksheet(name)) if ord(sign) not in known} <= {"\n"}
+    assert {sign for sign in sheet.text if ord(sign) not in known} <= {"\n"}
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_commands_of_a_sheet_are_the_runs_that_it_means(name):
-    sheet = sheets.worksheet(name, {"seed": 7})
-    commands = [block for block in flat(sheet.blocks) if isinstance(block, Commands)]
-    assert [block.letter for block in commands] == list("ABCD"[: len(commands)])
-    assert len(commands) >= 2
+    commands = commands_of(sheets.worksheet(name, {"seed": 7}).text)
+    assert "".join(letter for letter, _ in commands) in ("AB", "ABC", "ABCD")
     found = []
-    for block in commands:
-        program, verb, scene, *words = shlex.split(block.lines[0])
+    for letter, command in commands:
+        program, verb, scene, *words = shlex.split(command)
         assert (program, verb, scene) == ("atmosbox", "run", name)
         options = dict(zip(words[::2], words[1::2], strict=True))
         given = dict(
             word.split("=", 1) for option, word in zip(words[::2], words[1::2], strict=True) if option == "--set"
         )
         settings = runner.prepare(name, {**given, "seed": options["--seed"]}).settings
-        assert options["--out"] == f"{name}-{block.letter}.nc"
+        assert options["--out"] == f"{name}-{letter}.nc"
         found.append(settings.as_dict())
     assert found[0] == runner.prepare(name, {"seed": 7}).settings.as_dict()
     for other in found[1:]:
@@ -148,8 +144,8 @@ def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
     first = runner.prepare(name, SMALL[name])
     words = read(text_of(first.module))
     (made,) = execute([Trial("A", "", first)])
-    assert words.rows
-    for row in words.rows:
+    assert words.row
+    for row in words.row:
         headline = filled(row.headline, {"A": made})
         if headline not in made.headlines:  # few molecules, or a hurried run, may have no level to report
             assert headline in ("cloud_base", "lfc", "el", "cin", "cape", "mean_liquid_temperature", "metpy_cape")
@@ -160,23 +156,43 @@ def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_question_has_an_answer_and_room_to_write_one(name):
+def test_every_question_has_an_answer_and_a_place_for_it(name):
     words = read(text_of(scenarios.load(name)))
-    assert set(words.questions) == set(SECTIONS)
-    for section in words.questions.values():
+    for section in (words.notice, words.try_, words.differ, words.further):
         assert section
-        assert all(question.answer and question.lines for question in section)
+        assert all(question.answer and question.lines != 0 for question in section)
     assert words.predict
     for prediction in words.predict:
         assert prediction.answer
-        assert prediction.choices or prediction.sketch or prediction.lines
-    assert words.goal.count(". ") <= 2
+        assert bool(prediction.choices) == bool(prediction.right)
     assert words.leaves_out
 
 
 def test_the_words_of_a_sheet_stand_beside_every_scene_and_the_file_of_no_scene_is_left():
     beside = {path.name.removesuffix(".sheet.toml") for path in (ROOT / "scenarios").glob("*.sheet.toml")}
     assert beside == {name.replace("-", "_") for name in NAMES}
+
+
+@pytest.mark.parametrize("temperature", [0.0, 17.84, 30.0])
+def test_the_latent_heat_in_the_answers_of_evaporation_is_that_of_theory(temperature):
+    first = runner.prepare("evaporation", {"temperature": temperature})
+    last = read(text_of(first.module)).further[-1]
+    run = {"A": Trial("A", "", first)}
+    latent = float(theory.water_latent_heat_vaporization(temperature + 273.15)) / 1e6
+    (told,) = re.findall(r"([\d.]+) MJ/kg", filled(last.answer, run))
+    assert float(told) == pytest.approx(latent, abs=0.001)
+    (carried,) = re.findall(r"along (\d+) zJ", filled(last.ask, run))
+    edges = np.linspace(90e-21, 250e-21, 2001)
+    density = theory.leaving_energy_density(edges, temperature + 273.15)
+    mean = float((density * np.diff(edges) * 0.5 * (edges[1:] + edges[:-1])).sum())
+    assert float(carried) == pytest.approx(mean * 1e21, abs=0.6)
+
+
+def test_the_binding_energy_over_the_mean_in_the_liquid_is_what_condensation_says():
+    first = runner.prepare("condensation", {})
+    text = filled(read(text_of(first.module)).differ[1].answer.partition("To leave")[2], {"A": Trial("A", "", first)})
+    binding = theory.BINDING_TEMPERATURE / 293.15
+    assert f"{binding:.0f} k T, which is {binding / theory.LIQUID_HEAT_CAPACITY:.1f} times" in text
 
 
 @pytest.fixture(scope="module")
@@ -188,16 +204,21 @@ def test_the_answers_are_numbers_of_the_runs_and_not_written_down(answered):
     first = runner.prepare("elastic-collisions", {"seed": 3})
     (run,) = execute(trials(first, []))
     light = run.fact("energy_of_light_discs")
-    (table,) = [block for block in flat(answered.blocks) if isinstance(block, Measurements)]
-    line = table.rows[0][2][0]
-    assert line.measured == measured(light.value, light.error)
-    assert line.theory == theoretical(1.0, light.value, light.error)
-    assert float(line.misfit.replace("−", "-")) == pytest.approx((light.value - 1.0) / light.error, abs=0.051)
-    answers = [block.text for block in flat(answered.blocks) if isinstance(block, Answer)]
-    assert any(measured(light.value, light.error) in text for text in answers)
-    assert not any(isinstance(block, Blank) for block in flat(answered.blocks))
-    other = markdown(sheets.worksheet("elastic-collisions", {"seed": 4}, answers=True))
-    assert measured(light.value, light.error) not in other
+    _, _, letter, value, expected, misfit = table_of(answered.text)[0]
+    assert (letter, value) == ("A", measured(light.n, light.s))
+    assert expected == theoretical(1.0, light.s)
+    assert float(misfit.replace("−", "-")) == pytest.approx((light.n - 1.0) / light.s, abs=0.051)
+    assert any(value in text for text in answers_of(answered.text))
+    assert "____" not in answered.text
+    assert value not in sheets.worksheet("elastic-collisions", {"seed": 4}, answers=True).text
+
+
+def test_the_answers_tick_the_right_prediction_and_the_students_sheet_none(answered):
+    assert re.findall(r"- \[x\] (.*)", answered.text) == ["4.5 times"]
+    assert "☑ 4.5 times" in text_of_pdf(pdf(answered).content)[1]
+    blank = sheets.worksheet("elastic-collisions").text
+    assert "- [ ] 4.5 times" in blank
+    assert "[x]" not in blank
 
 
 def test_the_answers_fit_on_two_pages_and_are_marked_as_such(answered):
@@ -217,27 +238,21 @@ def test_no_break_parts_a_question_from_its_answer_or_the_runs_of_a_quantity(ans
     def where(text):
         return {number for number, page in enumerate(each) if text in page}
 
-    asked = [block for block in answered.blocks if isinstance(block, Kept)]
-    parted = 0
-    for kept in asked:
-        answers = [block.text for block in kept.blocks if isinstance(block, Answer)]
-        numbers = [re.match(r"\*\*(\d+\.)\*\* (.{12})", block.text) for block in kept.blocks if isinstance(block, Text)]
-        if answers and any(numbers):
-            (number,) = [match for match in numbers if match]
-            parted += 1
-            assert where(f"{number[1]} {number[2]}") & where(answers[0][:20]), number[0]
-    assert parted >= 9
-    (table,) = [block for block in flat(answered.blocks) if isinstance(block, Measurements)]
-    for label, _, lines in table.rows:
-        cells = " ".join(" ".join(filter(None, (line.run, line.measured, line.theory, line.misfit))) for line in lines)
-        assert any(label in page and cells in page for page in each), label
+    asked = re.findall(r"^\*\*(\d+\.)\*\* (.{12}).*\n\n(?:- .*\n)*\n*> (.{20})", answered.text, re.MULTILINE)
+    assert len(asked) >= 9
+    for number, question, answer in asked:
+        assert where(f"{number} {question}") & where(answer), number
+    rows = table_of(answered.text)
+    starts = [number for number, row in enumerate(rows) if row[0]]
+    for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
+        cells = " ".join(" ".join(row[2:]) for row in rows[start:end])
+        assert any(rows[start][0] in page and cells in page for page in each), rows[start][0]
 
 
 def test_the_students_sheet_gives_nothing_away():
-    sheet = sheets.worksheet("elastic-collisions")
-    assert not any(isinstance(block, Answer) for block in flat(sheet.blocks))
-    (table,) = [block for block in flat(sheet.blocks) if isinstance(block, Measurements)]
-    assert all(line.measured == line.theory == line.misfit == "" for _, _, lines in table.rows for line in lines)
+    text = sheets.worksheet("elastic-collisions").text
+    assert answers_of(text) == []
+    assert all(row[3:] == ["±", "", ""] for row in table_of(text))
 
 
 def test_the_same_sheet_gives_the_same_bytes(tmp_path):
@@ -253,28 +268,20 @@ def test_the_same_sheet_gives_the_same_bytes(tmp_path):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_markdown_is_well_formed(name):
-    text = markdown(sheets.worksheet(name))
-    assert text.count("\n# ") + text.startswith("# ") == 1
-    assert text.count("```") % 2 == 0
-    lines = text.splitlines()
-    rows = [line for line in lines if line.startswith("|")]
-    cells = {len(re.split(r"(?<!\\)\|", row)) for row in rows}
-    assert cells == {8}
-    assert re.fullmatch(r"\| quantity .*", rows[0])
+    text = sheets.worksheet(name).text
+    tokens = PARSER.parse(text)
+    assert [token.tag for token in tokens if token.type == "heading_open"].count("h1") == 1
+    inline = [child for token in tokens for child in token.children or ()]
+    tags = [child.content for child in inline if child.type == "html_inline"]
+    assert set(tags) <= {"<sub>", "</sub>", "<sup>", "</sup>"}
+    assert not any(re.search(r"[*`{}]", child.content) for child in inline if child.type == "text")
+    assert {len(row) for row in table_of(text)} == {6}
     numbers = [int(found) for found in re.findall(r"^\*\*(\d+)\.\*\*", text, re.MULTILINE)]
     assert numbers == list(range(1, len(numbers) + 1))
-    assert "{" not in text
-    assert not re.search(r"[\^_]\(", text)
-
-
-def test_units_stand_beside_the_quantities():
-    text = markdown(sheets.worksheet("lifting-dry"))
-    assert "temperature at 700 hPa [°C]" in text
-    assert "lapse rate of the first kilometre [K km⁻¹]" in text
 
 
 def test_what_is_set_stands_in_texts_and_commands_of_all_runs():
-    text = markdown(sheets.worksheet("temperature", {"molecules": 100, "temperature": "0 degC"}, engine="dsmc"))
+    text = sheets.worksheet("temperature", {"molecules": 100, "temperature": "0 degC"}, engine="dsmc").text
     assert "100 molecules of air" in text
     assert "between walls of 0 °C" in text
     assert "--set molecules=100 --set temperature=0degC --engine dsmc --out temperature-A.nc" in text
@@ -283,10 +290,11 @@ def test_what_is_set_stands_in_texts_and_commands_of_all_runs():
 
 
 def test_answers_say_where_their_words_may_not_fit():
-    sheet = sheets.worksheet("elastic-collisions", {"molecules": 20, "duration": "20 s"}, answers=True)
-    assert "the words of the answers are for the scene as it comes" in markdown(sheet)
+    text = sheets.worksheet("elastic-collisions", {"molecules": 20, "duration": "20 s"}, answers=True).text
+    assert "the words of the answers are for the scene as it comes" in text
+    assert "[x]" not in text
     dry = {"molecules": 100, "ascent": 20, "top_pressure": "500 hPa"}
-    text = markdown(sheets.worksheet("lifting-dry", dry, answers=True))
+    text = sheets.worksheet("lifting-dry", dry, answers=True).text
     assert "Written for the scene as it comes" in text
     assert "temperature at 500 hPa" in text
 
@@ -297,19 +305,19 @@ def test_a_change_that_changes_nothing_is_refused():
 
 
 def test_a_scene_without_words_gets_a_sheet_from_its_card_and_headlines(own):
-    blank = markdown(sheets.worksheet(own))
+    blank = sheets.worksheet(own).text
     assert "Discs that nobody has written questions for. They fly {and meet}." in blank
     assert "energy of a light disc over the mean" in blank
     assert "Left out: friction. Exaggerated: nothing." in blank
     assert "--seed 2 --out my_scene-B.nc" in blank
     assert pdf(sheets.worksheet(own, {"seed": 5})).pages <= 2
-    answered = markdown(sheets.worksheet(own, answers=True))
-    assert "B less A: energy of a light disc over the mean: " in answered
+    answered = sheets.worksheet(own, answers=True).text
+    assert "B minus A: energy of a light disc over the mean: " in answered
     assert "±" in answered
 
 
 def test_the_example_of_the_pages_has_words_of_its_own():
-    text = markdown(sheets.worksheet(ROOT / "docs" / "examples" / "my_scene.py"))
+    text = sheets.worksheet(ROOT / "docs" / "examples" / "my_scene.py").text
     assert "A vacuum flask keeps coffee hot" in text
     assert "--set pressure=0.005Pa" in text
 
@@ -317,44 +325,96 @@ def test_the_example_of_the_pages_has_words_of_its_own():
 @pytest.mark.parametrize(
     ("written", "said"),
     [
-        ("goal = 3", "the sheet needs a text goal"),
-        ("goal = 'a'\nhurry = 'b'", "the sheet does not know hurry"),
-        ("goal = 'a'\n[[notice]]\nasks = 'b'", "needs a text ask"),
-        ("goal = 'a'\n[notice]\nask = 'b'", "two brackets"),
-        ("goal = 'a'\n[[notice]]\nask = 'b'\nlines = 99", "from 0 to 12"),
-        ("goal = 'a'\n[[change]]\ntitle = 'b'", "needs the setting that it changes"),
-        ("goal = 'a'\n[[predict]]\nask = 'b'\nchoices = 'c'", "a list of texts"),
-        ("goal = 'a'\n[[predict]]\nask = 'b'\nsketch = {x = 'c'}", "needs a text y"),
+        ("goal = 3", "goal is no text: put it in quotes"),
+        ("goal = 'a'\nhurry = 'b'", "hurry is unknown"),
+        ("goal = 'a'\n[[notice]]\nasks = 'b'", "notice 1, ask is missing: add it"),
+        ("goal = 'a'\n[[notice]]\nask = ' '", "notice 1, ask is empty"),
+        ("goal = 'a'\n[notice]\nask = 'b'", "write [[notice]] with two brackets"),
+        ("goal = 'a'\n[[notice]]\nask = 'b'\nlines = 99", "notice 1, lines"),
+        ("goal = 'a'\n[[change]]\ntitle = 'b'", "change 1, set is missing"),
+        ("goal = 'a'\n[[predict]]\nask = 'b'\nchoices = 'c'", "a list of texts for choices"),
+        ("goal = 'a'\n[[predict]]\nask = 'b'\nchoices = ['c']\nright = 2", "right = 2"),
+        ("goal = 'a'\n[[predict]]\nask = 'b'\nsketch = {x = 'c'}", "predict 1, sketch, y is missing"),
+        ("goal = 'a'\n" + 4 * "[[change]]\ntitle = 'b'\nset = {seed = 3}\n", "keep three"),
         ("goal = ", "is not TOML"),
-        ("goal = '{A.molecule}'", "before run A was made"),
-        ("goal = '{A.molecules'", "cannot be filled in"),
-        ("goal = '{().__class__}'", "is none of its sums"),
-        ("goal = '{__import__(\"os\")}'", "is none of its sums"),
-        ("goal = '{9 ** 9 ** 9 ** 9}'", "cannot be filled in"),
+        ("goal = '{{ A.molecule }}'", "goal: molecule is asked for before run A was made"),
+        ("goal = 'a'\n[[change]]\ntitle = 'b'\nset = {seed = '{{ A.sed }}'}", "change 1, set, seed: sed is asked for"),
+        ("goal = '{{ A.molecules'", "cannot be understood"),
+        ("goal = '<script>alert(1)</script>'", "goal: the mark <script> is not printed"),
+        ("goal = 'see <script>alert(1)</script>'", "the mark <script> is not printed"),
+        ("goal = 'see ![a](b.png)'", "the mark image is not printed"),
+        ("goal = '- a list'", "begins as a bullet list of Markdown does"),
     ],
 )
-def test_words_that_cannot_be_understood_are_refused_with_their_file(own, written, said):
-    own.with_suffix(".sheet.toml").write_text(written, encoding="utf-8")
-    with pytest.raises(ConfigError, match=re.escape(said)):
+def test_words_that_cannot_be_understood_are_refused_with_file_and_entry(own, written, said):
+    path = own.with_suffix(".sheet.toml")
+    path.write_text(written, encoding="utf-8")
+    with pytest.raises(ConfigError, match=re.escape(said)) as refused:
         sheets.worksheet(own)
+    assert str(refused.value).startswith(str(path))
+    assert "\n" not in str(refused.value)
 
 
-def test_a_sum_carries_its_error():
-    class Run:
-        def fact(self, name):
-            return {"x": Measured(3.0, 0.3, 2.0), "y": Measured(4.0, 0.4), "n": 800, "s": [9.0, 1.0, 2.0, 3.0, 2.0]}[
-                name
-            ]
+class Run:
+    """A run whose facts are known."""
 
+    def __init__(self):
+        x, y = Measured(3.0, 0.3, 2.0), Measured(4.0, 0.4)
+        self.facts = {"x": x, "y": y, "n": 800, "s": [9.0, 1.0, 2.0, 3.0, 2.0]}
+
+    def fact(self, name):
+        return self.facts[name]
+
+
+@pytest.mark.parametrize(
+    "sum",
+    [
+        "{{ ().__class__.__base__.__subclasses__() }}",
+        "{{ A.__class__ }}",
+        "{{ A.x.__init__.__globals__ }}",
+        "{{ A.fact.__func__ }}",
+        "{{ round.__globals__ }}",
+        "{{ self.__init__ }}",
+        "{{ ''.format }}",
+        "{{ __import__('os') }}",
+        "{{ A['x'] }}",
+        "{{ A|attr('fact') }}",
+        "{% for i in range(10**9) %}x{% endfor %}",
+        "{% include '/etc/passwd' %}",
+        "{% set x = 1 %}",
+        "{{ range(10**9) }}",
+        "{{ lipsum(10**9) }}",
+        "{{ 9 ** 9 ** 9 ** 9 }}",
+        "{{ 'a' * 10 ** 10 }}",
+        "{{ [1] * 10 ** 10 }}",
+        "{{ '%0999999999d' % 1 }}",
+        "{{ 'a'.ljust(10 ** 10) }}",
+        "{{ " + 5000 * "(" + "1" + 5000 * ")" + " }}",
+        "{{ " + 5000 * "-" + "1 }}",
+        "{{ " + 5000 * "9" + " * 2 }}",
+        "{{ 1 / 0 }}",
+        "{{ A }}",
+        "{{ round }}",
+    ],
+)
+def test_a_hostile_sum_is_refused_in_no_time(sum):
+    with pytest.raises(ConfigError):
+        filled(sum, {"A": Run()})
+
+
+def test_a_sum_carries_its_error_and_knows_what_it_has_in_common_with_itself():
     names = {"A": Run()}
-    assert filled("{A.x - A.y}", names) == "−1.00 ± 0.50"
-    assert filled("{A.x / A.y}", names) == "0.75 ± 0.11"
-    assert filled("{2 * A.x} {A.x ** 2}", names) == "6.00 ± 0.60 9.0 ± 1.8"
-    assert filled("{A.x.theory} {A.x.sigmas:.1f} {A.x.misfit}", names) == "2.00 3.3 1.00 ± 0.30"
-    assert filled("{last(A.s)} {mean(A.s)} {highest(A.s)} {A.n}", names) == "2.00 2.00 9.00 800"
-    assert filled("{word(A.x - A.y, 'warmer', 'colder')} {{as it is}}", names) == "colder {as it is}"
+    assert filled("{{ A.x - A.y }}", names) == "−1.00 ± 0.50"
+    assert filled("{{ A.x / A.y }}", names) == "0.75 ± 0.11"
+    assert filled("{{ 2 * A.x }} {{ A.x ** 2 }}", names) == "6.00 ± 0.60 9.0 ± 1.8"
+    assert filled("{{ A.x - A.x }} {{ (A.x + A.y) / A.x }}", names) == "0 2.33 ± 0.19"
+    assert filled("{{ exp(A.x) }}", names) == "20.1 ± 6.0"
+    assert filled("{{ A.x.theory }} {{ round(A.x.sigmas, 1) }} {{ A.x.misfit }}", names) == "2 3.3 1.00 ± 0.30"
+    assert filled("{{ last(A.s) }} {{ mean(A.s) }} {{ highest(A.s) }} {{ A.n }}", names) == "2 2 9 800"
+    assert filled("{{ word(A.x - A.y, 'warmer', 'colder') }} {as it is}", names) == "colder {as it is}"
+    assert filled("{{ round(1, 10 ** 9) }}", names) == "1.000000000000"
     with pytest.raises(ConfigError, match="theory says nothing"):
-        filled("{A.y.theory}", names)
+        filled("{{ A.y.theory }}", names)
 
 
 def test_numbers_and_units_are_printed_as_in_print():
@@ -371,7 +431,7 @@ def test_a_file_appears_whole_and_replaces_nothing_unasked(tmp_path, monkeypatch
     sheet = sheets.worksheet("temperature")
     path = sheets.save(sheet, tmp_path / "sheet", "md")
     assert path.name == "sheet.md"
-    assert path.read_text(encoding="utf-8") == markdown(sheet)
+    assert path.read_text(encoding="utf-8") == sheet.text
     with pytest.raises(FileError, match="exists already: add --force"):
         sheets.save(sheet, path)
     sheets.save(sheet, path, force=True)
@@ -448,4 +508,4 @@ def test_a_run_that_disagrees_with_theory_is_named(monkeypatch):
     monkeypatch.setattr(runner, "execute", off)
     sheet = sheets.worksheet("elastic-collisions", answers=True)
     assert "Run A disagrees with theory: largest change of the energy." in sheet.disagreements
-    assert "Run A disagrees with theory: largest change of the energy." in markdown(sheet)
+    assert "Run A disagrees with theory: largest change of the energy." in sheet.text

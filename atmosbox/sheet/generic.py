@@ -1,128 +1,77 @@
-"""The words of a sheet for a scene that brings none: made from its card and from the numbers that it reports."""
+"""What the sheet of any scene can say: of its docstring, its settings and what its runs report."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
-from atmosbox.scene.headline import Headline
-from atmosbox.scene.parameter import Parameter
-from atmosbox.sheet.number_text import spelled
-from atmosbox.sheet.text import Change, Prediction, Question, Row, SheetText
+from atmosbox.sheet.number_text import measured, spelled
+from atmosbox.sheet.sheet_run import Trial
 
-__all__ = ["generic", "left_out"]
+__all__ = ["WORDS", "AnyScene", "left_out"]
 
-_CHANCE = Change("with another seed, and so by chance alone", {"seed": "{A.seed + 1}"})
+WORDS = Path(__file__).with_suffix(".sheet.toml")
+"""The words of a sheet for a scene that brings none."""
 MOST_SETTINGS = 6
 
 
 def left_out(story: str) -> str:
-    r"""Return what the story of a scene says is left out and exaggerated; nothing if it does not say.
+    r"""Return what the docstring of a scene says is left out and exaggerated; nothing if it does not say.
 
     Examples
     --------
     >>> left_out("Air rises.\n\nModelled: spheres.\nLeft out: water,\nwind. Exaggerated: the pace.")
     'Left out: water, wind. Exaggerated: the pace.'
     """
-    flat = " ".join(story.split())
-    found = re.search(r"Left out: .*", flat)
+    found = re.search(r"Left out: .*", " ".join(story.split()))
     return found.group() if found else ""
 
 
-def _goal(story: str, title: str) -> str:
-    """Return the first two sentences of a story."""
-    flat = " ".join(story.partition("Modelled:")[0].split())
-    sentences = re.split(r"(?<=[.!?])\s+", flat)
-    return " ".join(sentences[:2]) or f"{title}."
-
-
-def _literal(text: str) -> str:
-    """Return a text whose braces are no sums."""
-    return text.replace("{", "{{").replace("}", "}}")
-
-
-def generic(story: str, title: str, parameters: Sequence[Parameter], headlines: Sequence[Headline]) -> SheetText:
-    """Return words that fit any scene; they ask what is chance and what is not.
+class AnyScene:
+    """What the words of `WORDS` call ``scene``.
 
     Parameters
     ----------
-    story, title
-        The docstring of the scene, and its title.
-    parameters
-        What may be set.
-    headlines
-        What a run of it has reported.
-
-    Returns
-    -------
-    SheetText
-        Words about runs A and B, which differ by their seed.
-
-    Examples
-    --------
-    >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.0, "none", "K", "degC", "temperature")
-    >>> generic("A box. It is warm.", "Box", [], [warm]).predict[0].ask
-    'What will come out for the temperature in °C, and by how much will a second run with another seed differ?'
+    runs
+        The runs of the sheet; the first was made, and all if the sheet has answers.
     """
-    rows = tuple(Row(each.name, each.label, each.display_unit) for each in headlines)
-    names = [f"`{p.name}` ({p.help})" for p in parameters if p.name != "seed"][:MOST_SETTINGS]
-    asked = f"the {rows[0].label}" + (f" in {spelled(rows[0].unit)}" if spelled(rows[0].unit) else "") if rows else "it"
-    apart = "; ".join(
-        _literal(f"{row.label}: ") + f"{{B.{row.headline} - A.{row.headline}}}"
-        for row, each in zip(rows, headlines, strict=True)
-        if each.standard_error > 0.0
-    )
-    known = "; ".join(
-        _literal(f"{row.label}: ") + f"{{A.{row.headline}.sigmas:.1f}}"
-        for row, each in zip(rows, headlines, strict=True)
-        if each.theory is not None and each.standard_error > 0.0
-    )
-    return SheetText(
-        goal=_literal(_goal(story, title)),
-        predict=(
-            Prediction(
-                _literal(
-                    f"What will come out for {asked}, and by how much will a second run with another seed differ?"
-                ),
-                lines=2,
-                answer=f"{{A.{rows[0].headline}}} with the one seed, {{B.{rows[0].headline}}} with the other."
-                if rows
-                else "",
-            ),
-        ),
-        changes=(_CHANCE,),
-        rows=rows,
-        questions={
-            "notice": (
-                Question(
-                    "Which numbers of run A agree with theory? By how many of their standard errors are they apart?",
-                    f"Standard errors apart: {known}." if known else "",
-                ),
-                Question("What in the figure did you not expect?", "", 3),
-            ),
-            "try": (
-                Question(
-                    _literal(
-                        f"Change one setting{': ' + ', '.join(names) if names else ''}. "
-                        "Write down the command and your prediction, and run it as `-C.nc`."
-                    ),
-                    "",
-                    4,
-                ),
-            ),
-            "differ": (
-                Question(
-                    "A and B differ in nothing but the seed. By how many standard errors are they apart? "
-                    "From how many on would you no longer believe in chance?",
-                    f"B less A: {apart}. More than 4 standard errors happen by chance once in 16 000 times."
-                    if apart
-                    else "",
-                ),
-                Question("Where a number is off by more than chance: is it the theory, the model, or the run?"),
-            ),
-            "further": (
-                Question("Choose one thing that the model leaves out. Which number would it change, and which way?"),
-            ),
-        },
-        leaves_out=_literal(left_out(story)),
-    )
+
+    def __init__(self, runs: Sequence[Trial]) -> None:
+        self.runs = runs
+
+    def fact(self, name: str) -> Any:
+        """Return a text about the scene by name.
+
+        Examples
+        --------
+        >>> from atmosbox.simulation import runner
+        >>> AnyScene([Trial("A", "", runner.prepare("lifting-dry", {}))]).fact("quantity")
+        'result'
+        """
+        prepared, found = self.runs[0].prepared, list(self.runs[0].headlines.values())
+        story = prepared.module.__doc__ or ""
+        made = {each.name: [run.fact(each.name) for run in self.runs if each.name in run.headlines] for each in found}
+        known = [(each.label, *made[each.name]) for each in found if each.standard_error > 0.0]
+        match name:
+            case "goal":
+                sentences = re.split(r"(?<=[.!?])\s+", " ".join(story.partition("Modelled:")[0].split()))
+                return " ".join(sentences[:2]) or f"{getattr(prepared.module, 'title', prepared.scene)}."
+            case "leaves_out":
+                return left_out(story)
+            case "settings":
+                named = [f"`{p.name}` ({p.help})" for p in prepared.settings.describe() if p.name != "seed"]
+                return f": {', '.join(named[:MOST_SETTINGS])}" if named else ""
+            case "quantity" if found:
+                unit = spelled(found[0].display_unit)
+                return f"{found[0].label} in {unit}" if unit else found[0].label
+            case "both" if found:
+                return " and ".join(measured(x.n, x.s) for x in made[found[0].name]) + " with the two seeds."
+            case "misfits":
+                numbers = [(label, a) for label, a, *_ in known if a.theory is not None]
+                return "; ".join(f"{label}: {abs(a.n - a.theory) / a.s:.1f}" for label, a in numbers)
+            case "differences":
+                apart = [(label, b[0] - a) for label, a, *b in known if b]
+                return "; ".join(f"{label}: {measured(x.n, x.s)}" for label, x in apart)
+        return "result" if name == "quantity" else ""

@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 
-__all__ = ["bare", "measured", "raised", "spelled", "theoretical"]
+from uncertainties import ufloat
+
+__all__ = ["bare", "measured", "spelled", "theoretical"]
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _UNITS = {"degC": "°C", "percent": "%", "um": "µm", "us": "µs"}
-LONGEST = 8
-"""How many decimals a number has at most before its power of ten is taken out."""
-
-
-def raised(exponent: int) -> str:
-    """Return an exponent in raised digits.
-
-    Examples
-    --------
-    >>> raised(-21)
-    '⁻²¹'
-    """
-    return str(exponent).translate(_RAISED)
 
 
 def spelled(unit: str) -> str:
@@ -31,28 +21,14 @@ def spelled(unit: str) -> str:
     >>> spelled("degC"), spelled("m s-1"), spelled("1")
     ('°C', 'm s⁻¹', '')
     """
-    words = []
-    for word in unit.split():
-        base = word.rstrip("-0123456789")
-        words.append(_UNITS.get(word) or base + word[len(base) :].translate(_RAISED))
-    return " ".join(words) if unit != "1" else ""
+    power = re.compile(r"-?\d+$")
+    words = (_UNITS.get(word) or power.sub(lambda n: n[0].translate(_RAISED), word) for word in unit.split())
+    return "" if unit == "1" else " ".join(words)
 
 
-def _power(value: float) -> int:
-    """Return the power of ten to take out of a number; zero for one that is easily read as it is."""
-    first = math.floor(math.log10(abs(value))) if value and math.isfinite(value) else 0
-    return 0 if -4 < first < 6 else first
-
-
-def _decimals(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, fewer than none for tens and hundreds."""
-    rounded = round(value, decimals) + 0.0  # never "-0"
-    return f"{rounded:.{max(decimals, 0)}f}".replace("-", "−")
-
-
-def _scaled(mantissa: str, power: int) -> str:
-    """Return a number with its power of ten."""
-    return f"{mantissa}·10{raised(power)}" if power else mantissa
+def _easy(size: float) -> bool:
+    """Return whether a number of this size is easily read without a power of ten."""
+    return size == 0.0 or 1e-4 <= size < 1e6
 
 
 def bare(value: float, figures: int = 3) -> str:
@@ -60,17 +36,15 @@ def bare(value: float, figures: int = 3) -> str:
 
     Examples
     --------
-    >>> bare(17.2071), bare(-0.000123), bare(2.4e19), bare(1013.25)
-    ('17.2', '−1.23·10⁻⁴', '2.40·10¹⁹', '1013')
+    >>> bare(17.2071), bare(-0.000123), bare(2.4e-19), bare(1013.25)
+    ('17.2', '−0.000123', '2.40·10⁻¹⁹', '1013')
     """
     if not math.isfinite(value):
         return "–"
-    if value == 0.0:
-        return "0"
-    power = _power(value)
-    mantissa = value / 10.0**power
-    first = math.floor(math.log10(abs(mantissa)))
-    return _scaled(_decimals(mantissa, max(figures - 1 - first, 0)), power)
+    mantissa, power = f"{value:.{figures - 1}e}".split("e")
+    if not _easy(abs(value)):
+        return f"{mantissa}·10{str(int(power)).translate(_RAISED)}".replace("-", "−")
+    return f"{value:.{max(figures - 1 - int(power), 0) if value else 0}f}".replace("-", "−")
 
 
 def measured(value: float, error: float) -> str:
@@ -85,23 +59,19 @@ def measured(value: float, error: float) -> str:
         return "–"
     if error <= 0.0:
         return bare(value)
-    power = _power(max(abs(value), error))
-    value, error = value / 10.0**power, error / 10.0**power
-    decimals = min(1 - math.floor(math.log10(error)), LONGEST)
-    both = f"{_decimals(value, decimals)} ± {_decimals(error, decimals)}"
-    return _scaled(f"({both})", power) if power else both
+    form = "f" if _easy(max(abs(value), error)) else "e"
+    text = format(ufloat(value, error), f".2u{form}P")
+    return text.replace("±", " ± ").replace("×", "·").replace("-", "−")
 
 
-def theoretical(value: float, beside: float, error: float) -> str:
-    """Return a number of theory with the digits of the measurement beside it.
+def theoretical(value: float, error: float) -> str:
+    """Return a number of theory with the digits of the measurement that has this error.
 
     Examples
     --------
-    >>> theoretical(25.0, 25.784, 0.983), theoretical(6.671e9, 6.691e9, 6.0e7)
+    >>> theoretical(25.0, 0.983), theoretical(6.671e9, 6.0e7)
     ('25.00', '6.671·10⁹')
     """
-    if not (math.isfinite(value) and math.isfinite(beside) and error > 0.0):
+    if not (math.isfinite(value) and error > 0.0):
         return bare(value, 4)
-    power = _power(max(abs(beside), error))
-    decimals = min(1 - math.floor(math.log10(error / 10.0**power)), LONGEST)
-    return _scaled(_decimals(value / 10.0**power, decimals), power)
+    return re.sub(r"\(?([−\d.]+) ± [\d.]+\)?", r"\1", measured(value, error))

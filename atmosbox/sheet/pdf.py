@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import functools
 import io
+import itertools
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.errors import FileError, SettingError
-from atmosbox.sheet.flow import BODY, BOLD, GREY, MM, SLANTED, TYPED, Flow
+from atmosbox.sheet.marks import PARSER, TYPED, as_paragraph
 from atmosbox.sheet.worksheet import Worksheet
+
+if TYPE_CHECKING:
+    from markdown_it.token import Token
+    from reportlab.platypus import Flowable
 
 __all__ = ["PAPERS", "Printed", "check_paper", "load_fonts", "pdf"]
 
+MM = 72.0 / 25.4
 PAPERS = {"a4": (210.0 * MM, 297.0 * MM), "letter": (612.0, 792.0)}
 """Width and height of the papers [points]."""
 MARGIN = 17.0 * MM
@@ -22,6 +29,17 @@ PADDING = 6.0
 ROOM = (1.0, 0.95, 0.9, 0.85, 0.8)
 """What is tried of the usual room to write, until the sheet fits on two pages."""
 MOST_PAGES = 2
+BODY, BOLD, SLANTED = "DejaVuSans", "DejaVuSans-Bold", "DejaVuSans-Oblique"
+WRITING = 7.0 * MM
+"""Distance of the lines to write on."""
+ROW = 6.1 * MM
+"""Height of a line of the table that is to be filled in."""
+AXES = 34.0 * MM
+LONG = 100
+"""How many characters of answers to tick stand beside each other."""
+GREY = 0.45
+SHARES = (0.43, 0.06, 0.24, 0.15, 0.12)
+"""Widths of the columns of the table, in that of the text."""
 
 
 class Printed(NamedTuple):
@@ -143,6 +161,172 @@ def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
         canvas.drawRightString(width - MARGIN - PADDING, 0.6 * FOOT, f"{document.page} / {pages}")
         canvas.restoreState()
 
-    made = Flow(width - 2.0 * (MARGIN + PADDING), room)
-    document.build(made.story(sheet, title), onFirstPage=foot, onLaterPages=foot)
+    story = _Layout(width - 2.0 * (MARGIN + PADDING), room).story(sheet, title)
+    document.build(story, onFirstPage=foot, onLaterPages=foot)
     return Printed(stream.getvalue(), document.page)
+
+
+class _Layout:
+    """Turns the Markdown of a sheet into what reportlab lays out.
+
+    Parameters
+    ----------
+    width
+        Width of the text [points].
+    room
+        How high lines to write on, empty axes and rows of the table are, in their usual height.
+    """
+
+    def __init__(self, width: float, room: float) -> None:
+        from reportlab.lib.styles import ParagraphStyle as Style
+
+        self.width, self.room = width, room
+        self.body = Style("body", fontName=BODY, fontSize=9.0, leading=11.9, spaceAfter=3.0)
+        self.heading = Style("heading", self.body, fontName=BOLD, fontSize=10.5, leading=13.0, spaceBefore=7.0)
+        self.title = Style("title", self.body, fontName=BOLD, fontSize=16.0, leading=19.0, spaceAfter=1.0)
+        self.small = Style("small", self.body, fontSize=7.6, leading=9.8)
+        self.typed = Style("typed", self.body, fontSize=7.8, leading=10.2, leftIndent=14.0)
+        self.answer = Style("answer", self.body, fontSize=8.4, leading=11.0, leftIndent=14.0)
+        self.cell = Style("cell", self.body, fontSize=8.2, leading=10.0, spaceAfter=0.0)
+        self.middle = Style("middle", self.cell, alignment=1)
+        self.right = Style("right", self.small, alignment=2)
+
+    def line(self, token: Token, style: Any) -> Flowable:
+        """Return a line of text in a style."""
+        from reportlab.platypus import Paragraph
+
+        return Paragraph(as_paragraph(token.children or (), style.fontSize), style)
+
+    def marked(self, text: str, style: Any) -> Flowable:
+        """Return a text with marks in a style."""
+        return self.line(PARSER.parseInline(text)[0], style)
+
+    def table(
+        self, rows: Sequence[Sequence[Any]], widths: Sequence[float], style: Sequence[Any], **more: Any
+    ) -> Flowable:
+        """Return a table with columns of these shares of the width."""
+        from reportlab.platypus import Table
+
+        return Table(rows, colWidths=[share * self.width for share in widths], style=style, **more)
+
+    def story(self, sheet: Worksheet, title: str) -> list[Flowable]:
+        """Return the whole sheet; a heading and what begins in bold stay with what follows."""
+        from reportlab.platypus import KeepTogether, Spacer
+
+        name, share = (
+            ("for the lecturer", 0.8) if sheet.answers else ("Name: ___________________   Date: __________", 0.62)
+        )
+        head = self.table(
+            [[self.marked(title, self.title), self.marked(name, self.right)]],
+            (share, 1.0 - share),
+            [("VALIGN", (0, 0), (-1, -1), "BOTTOM"), ("LEFTPADDING", (0, 0), (0, 0), 0.0),
+             ("RIGHTPADDING", (-1, 0), (-1, 0), 0.0), ("LINEBELOW", (0, 0), (-1, -1), 0.8, (0, 0, 0))],
+        )  # fmt: skip
+        about = self.marked(f"`atmosbox run {sheet.scene}` · {sheet.about}", self.small)
+        parts: list[list[Flowable]] = []
+        headed = False
+        for kind, flowable in self.blocks(PARSER.parse(sheet.text)):
+            if kind == "heading" or (kind == "begin" and not headed) or not parts:
+                parts.append([])
+            headed = kind == "heading"
+            parts[-1].append(flowable)
+        return [head, Spacer(1.0, 3.0), about, *map(KeepTogether, parts)]
+
+    def blocks(self, tokens: Sequence[Token]) -> Iterator[tuple[str, Flowable]]:
+        """Yield what follows the head of the sheet, each with whether it is a heading, begins something or goes on."""
+        from reportlab.platypus import HRFlowable
+
+        starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
+        small, headed, pitch = False, False, self.room * WRITING
+        for first, after in itertools.pairwise([*starts, len(tokens)]):
+            block, inside = tokens[first], [token for token in tokens[first:after] if token.type == "inline"]
+            headed = headed or (block.type == "heading_open" and block.tag == "h2")
+            match block.type:
+                case _ if not headed:
+                    continue
+                case "heading_open":
+                    small = inside[0].content == "Measure"
+                    yield "heading", self.line(inside[0], self.heading)
+                case "paragraph_open":
+                    kind = "begin" if inside[0].content.startswith("**") else "on"
+                    yield kind, self.line(inside[0], self.small if small else self.body)
+                case "blockquote_open":
+                    yield "on", self.barred(inside)
+                case "bullet_list_open":
+                    yield "on", self.choices([token.content for token in inside])
+                case "fence" if block.info == "axes":
+                    y, *_, x = block.content.splitlines()
+                    yield "on", self.axes(x.partition("> ")[2], y.strip())
+                case "fence":
+                    yield "on", self.marked(f"`{block.content.strip()}`", self.typed)
+                case "hr":
+                    yield "on", HRFlowable("100%", 0.4, color=(GREY,) * 3, spaceBefore=pitch, spaceAfter=4.0)
+                case "table_open":
+                    yield "begin", self.measurements(inside)
+
+    def barred(self, lines: Sequence[Token]) -> Flowable:
+        """Return an answer, with a bar beside it."""
+        style = [("LINEBEFORE", (0, 0), (0, -1), 1.6, (0.0, 0.447, 0.698)), ("TOPPADDING", (0, 0), (-1, -1), 0.5),
+                 ("BOTTOMPADDING", (0, 0), (-1, -1), 0.5), ("LEFTPADDING", (0, 0), (-1, -1), 0.0)]  # fmt: skip
+        return self.table([[[self.line(line, self.answer) for line in lines]]], (1.0,), style, spaceAfter=4.0)
+
+    def choices(self, items: Sequence[str]) -> Flowable:
+        """Return boxes to tick, beside each other as far as there is room."""
+        texts = [item.replace("[ ]", "☐", 1).replace("[x]", "☑", 1) for item in items]
+        columns = max(min(len(texts), LONG // max(map(len, texts))), 1)
+        columns = 2 if columns == 3 and len(texts) == 4 else columns
+        cells: list[Any] = [self.marked(text, self.cell) for text in texts] + [""] * (-len(texts) % columns)
+        style = [("TOPPADDING", (0, 0), (-1, -1), 1.0), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.0),
+                 ("LEFTPADDING", (0, 0), (-1, -1), 14.0)]  # fmt: skip
+        rows = [cells[first : first + columns] for first in range(0, len(cells), columns)]
+        return self.table(rows, [1.0 / columns] * columns, style, spaceAfter=3.0)
+
+    def measurements(self, cells: Sequence[Token]) -> Flowable:
+        """Return the table; the formula stands below its quantity, and the lines of one quantity stay together."""
+        from reportlab.platypus import Paragraph
+
+        texts = [as_paragraph(cell.children or (), self.cell.fontSize) for cell in cells]
+        (_, _, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
+        rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in ("quantity, with its formula", *names)]]
+        style: list[Any] = [
+            ("GRID", (0, 0), (-1, -1), 0.4, (GREY,) * 3), ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
+            ("TOPPADDING", (0, 0), (-1, -1), 1.5), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.0),
+            ("LEFTPADDING", (0, 0), (-1, -1), 4.0), ("RIGHTPADDING", (0, 0), (-1, -1), 3.0),
+        ]  # fmt: skip
+        tops = [number for number, (label, *_) in enumerate(lines, 1) if label] + [len(lines) + 1]
+        for top, below in itertools.pairwise(tops):
+            # reportlab never breaks a page within a span
+            style += [("SPAN", (0, top), (0, below - 1)), ("LINEABOVE", (0, top), (-1, top), 1.0, (0, 0, 0))]
+        for label, formula, run, value, *others in lines:
+            named = f'{label}<br/><font size="7.6">{formula}</font>' if formula else label
+            middle = self.middle if value == "±" else self.cell
+            rows.append([Paragraph(named, self.cell), Paragraph(run, self.cell), Paragraph(value, middle),
+                         *(Paragraph(other, self.cell) for other in others)])  # fmt: skip
+        height = self.room * ROW if any(value == "±" for _, _, _, value, *_ in lines) else None
+        heights = [None, *[height] * len(lines)]
+        return self.table(rows, SHARES, style, rowHeights=heights, repeatRows=1, spaceBefore=2.0, spaceAfter=5.0)
+
+    def axes(self, x: str, y: str) -> Flowable:
+        """Return empty axes with a pale grid."""
+        from reportlab.graphics.shapes import Drawing, Line, PolyLine, String
+        from reportlab.lib.colors import Color
+
+        drawing = Drawing(self.width, self.room * AXES)
+        left, right, low, high = 14.0, 0.72 * self.width, 14.0, self.room * AXES - 14.0
+        pale = {"strokeWidth": 0.3, "strokeColor": Color(0.85, 0.85, 0.85)}
+        for part in range(1, 9):
+            at = left + part * (right - left) / 8.0
+            drawing.add(Line(at, low, at, high, **pale))
+        for part in range(1, 5):
+            at = low + part * (high - low) / 4.0
+            drawing.add(Line(left, at, right, at, **pale))
+        end, top = right + 8.0, high + 6.0
+        for line in (
+            (left, top, left, low, end, low),
+            (end - 4.0, low + 2.0, end, low, end - 4.0, low - 2.0),
+            (left - 2.0, top - 4.0, left, top, left + 2.0, top - 4.0),
+        ):
+            drawing.add(PolyLine(line, strokeWidth=0.9))
+        drawing.add(String(left + 6.0, high + 3.0, y, fontName=BODY, fontSize=7.6))
+        drawing.add(String(right + 8.0, low - 10.0, x, fontName=BODY, fontSize=7.6, textAnchor="end"))
+        return drawing

@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 
 from atmosbox.file.output_path import named, write_whole
-from atmosbox.sheet.markdown import markdown
 from atmosbox.sheet.pdf import check_paper, load_fonts, pdf
 from atmosbox.sheet.worksheet import Worksheet
 
@@ -91,6 +90,6 @@ def save(
     atmosbox.errors.FileError: The folder no does not exist: type mkdir -p no first.
     """
     path = check(path, format, paper=paper, force=force)
-    content = markdown(sheet).encode("utf-8") if path.suffix.lower() == ".md" else pdf(sheet, paper).content
+    content = sheet.text.encode("utf-8") if path.suffix.lower() == ".md" else pdf(sheet, paper).content
     write_whole(path, content)
     return path

@@ -5,18 +5,19 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from atmosbox.errors import ConfigError, PhysicsError, shown
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import Headline
-from atmosbox.sheet.arithmetic import Measured, filled
+from atmosbox.sheet.sums import Measured, SetNumber
 from atmosbox.sheet.text import Change
 from atmosbox.simulation import runner
 
-__all__ = ["LETTERS", "Trial", "execute", "trials"]
+__all__ = ["Trial", "execute", "trials"]
 
-LETTERS = "ABCD"
+_LETTERS = "ABCD"
 
 
 @dataclass(frozen=True)
@@ -103,31 +104,24 @@ class Trial:
         300.0
         """
         if name in self.headlines:
-            return shown_of(self.headlines[name])
+            return self._measured[name]
         if name in (settings := self.prepared.settings.as_dict()):
-            return settings[name]
+            return SetNumber(settings[name]) if isinstance(settings[name], float) else settings[name]
         if self.outcome is None:
-            raise ConfigError(
-                f"The sheet asks for {shown(name)} before run {self.letter} was made: use settings there."
-            )
+            raise ConfigError(f"{shown(name)} is asked for before run {self.letter} was made: use a setting there")
         if name in self.outcome.dataset.variables:
             return self.outcome.dataset[name].values
-        raise ConfigError(f"The sheet asks for {shown(name)} of run {self.letter}, which does not report it.")
+        raise ConfigError(f"run {self.letter} does not report {shown(name)}: name a headline, a setting or a variable")
 
-
-def shown_of(headline: Headline) -> Measured:
-    """Return a headline in the unit in which it is shown.
-
-    Examples
-    --------
-    >>> warm = Headline("t", 291.0, 2.0, 288.15, 0.0, "none", "K", "degC", "temperature")
-    >>> str(shown_of(warm)), round(shown_of(warm).theory, 6)
-    ('17.9 ± 2.0', 15.0)
-    """
-    unit = headline.display_unit
-    error = from_si(headline.standard_error, unit, difference=True)
-    theory = None if headline.theory is None else from_si(headline.theory, unit)
-    return Measured(from_si(headline.value, unit), error, theory)
+    @cached_property
+    def _measured(self) -> dict[str, Measured]:
+        """The headlines in their units; one number each, so that a sum knows what it has in common with itself."""
+        found = {}
+        for name, each in self.headlines.items():
+            unit, theory = each.display_unit, each.theory
+            error = from_si(each.standard_error, unit, difference=True)
+            found[name] = Measured(from_si(each.value, unit), error, None if theory is None else from_si(theory, unit))
+        return found
 
 
 def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ...]:
@@ -138,7 +132,7 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
     first
         The scene with the settings of all.
     changes
-        What the others change.
+        What the others change, with its sums worked out.
 
     Raises
     ------
@@ -149,20 +143,18 @@ def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ..
 
     Examples
     --------
-    >>> fast = Change("ten times as fast", {"ascent": "{A.ascent / 10:g}"})
+    >>> fast = Change(title="ten times as fast", set={"ascent": 160})
     >>> found = trials(runner.prepare("lifting-dry", {}), [fast])
     >>> [(each.letter, each.fact("ascent")) for each in found]
     [('A', 1600.0), ('B', 160.0)]
     """
-    found = [Trial(LETTERS[0], "as it comes" if not first.settings.changed().keys() - {"seed"} else "as set", first)]
-    for letter, change in zip(LETTERS[1:], changes, strict=False):
-        names = {LETTERS[0]: found[0]}
-        over = {n: filled(v, names) if isinstance(v, str) else v for n, v in change.settings.items()}
-        settings = type(first.settings).from_user({**first.settings.as_dict(), **over})
+    found = [Trial(_LETTERS[0], "as it comes" if not first.settings.changed().keys() - {"seed"} else "as set", first)]
+    for letter, change in zip(_LETTERS[1:], changes, strict=False):
+        settings = type(first.settings).from_user({**first.settings.as_dict(), **change.set})
         if settings == first.settings:
-            same = ", ".join(f"{name}={value}" for name, value in over.items())
+            same = ", ".join(f"{name}={value}" for name, value in change.set.items())
             raise ConfigError(f"Run {letter} of this sheet sets {same}, and so does run A: set run A otherwise.")
-        found.append(Trial(letter, filled(change.title, names), replace(first, settings=settings)))
+        found.append(Trial(letter, change.title, replace(first, settings=settings)))
     return tuple(found)
 
 

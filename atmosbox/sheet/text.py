@@ -1,155 +1,139 @@
 """The words of a sheet: what a lecturer writes about a scene, read from a file beside it.
 
-The file of ``my_scene.py`` is ``my_scene.sheet.toml``. It is data: nothing in it runs. Its texts may hold sums in
-braces (see `arithmetic`) and marks of `markup`.
+The file of ``my_scene.py`` is ``my_scene.sheet.toml``. It is data: nothing in it runs. Its texts may hold sums (see
+`sums`) and marks (see `marks`).
 """
 
 from __future__ import annotations
 
 import os
+import re
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictInt, ValidationError, model_validator
 
 from atmosbox import scenarios
-from atmosbox.errors import ConfigError, FileError
-from atmosbox.sheet.entry import Table
+from atmosbox.errors import ConfigError, FileError, shown
+from atmosbox.sheet import marks, sums
 
 __all__ = ["SECTIONS", "Change", "Prediction", "Question", "Row", "SheetText", "Sketch", "read", "text_of"]
 
 SUFFIX = ".sheet.toml"
-SECTIONS = {
-    "notice": "Notice",
-    "try": "Try",
-    "differ": "Why do they differ?",
-    "further": "Go further",
-}
+SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}
 """The headings of the questions by their names in the file."""
-MOST_RUNS = 4
 
 
-@dataclass(frozen=True)
-class Sketch:
-    """Empty axes to draw a guess into.
-
-    Parameters
-    ----------
-    x, y
-        What the axes show, with units.
-    hint
-        What to draw.
-    """
-
-    x: str
-    y: str
-    hint: str = ""
+def _checked(text: str) -> str:
+    """Return a text on one line, if its sums and marks can be understood."""
+    text = " ".join(text.split())
+    sums.check(text)
+    marks.check(re.sub(r"\{\{.*?\}\}", "0", text))
+    return text
 
 
-@dataclass(frozen=True)
-class Prediction:
-    """What is written down before the run.
+Text = Annotated[str, Field(max_length=4000), AfterValidator(_checked)]
+Needed = Annotated[Text, Field(pattern=r"\S")]
+Lines = Annotated[StrictInt, Field(ge=0, le=12)]
 
-    Parameters
-    ----------
-    ask
-        The question.
-    choices
-        Answers to tick; none for free lines.
-    sketch
-        Axes to draw into; None for none.
-    lines
-        How many empty lines there are.
-    answer
-        What the run shows.
-    """
 
-    ask: str
-    choices: tuple[str, ...] = ()
+class _Entry(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Sketch(_Entry):
+    """Empty axes to draw a guess into; what they show, with units."""
+
+    x: Needed
+    y: Needed
+
+
+class Question(_Entry):
+    """A question with empty lines below it, or with its answer."""
+
+    ask: Needed
+    answer: Text = ""
+    lines: Lines | None = None
+
+
+class Prediction(Question):
+    """What is written down before the run: answers to tick, of which one is right, axes to draw into, or free lines."""
+
+    choices: tuple[Needed, ...] = ()
+    right: int | None = None
     sketch: Sketch | None = None
-    lines: int = 1
-    answer: str = ""
+
+    @model_validator(mode="after")
+    def _check_right(self) -> Prediction:
+        if self.right is not None and not 1 <= self.right <= len(self.choices):
+            raise ValueError(
+                f"right = {self.right} is the number of none of its {len(self.choices)} choices: count from 1"
+            )
+        return self
 
 
-@dataclass(frozen=True)
-class Change:
-    """A run beside the first that differs in one thing.
+class Change(_Entry):
+    """A run beside the first that differs in one thing, by one setting or by those few that make it up."""
 
-    Parameters
-    ----------
-    title
-        What differs, in words.
-    settings
-        The setting, or those few that make up the one thing.
-    """
-
-    title: str
-    settings: Mapping[str, Any]
+    title: Needed
+    set: Annotated[dict[str, Any], Field(min_length=1)]
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of the table: a headline of the scene.
+class Row(_Entry):
+    """A row of the table.
 
-    Parameters
+    Attributes
     ----------
     headline
-        Its name.
+        The name of a headline of the scene.
     label, unit
         What the table calls it and the unit it is in, as the headline has them.
     theory
         The formula from which the student works out what theory says; empty where a computer must.
     runs
-        The letters of the runs that report it; empty for all.
+        The letters of the runs that report it.
     """
 
-    headline: str
-    label: str
-    unit: str
-    theory: str = ""
-    runs: str = ""
+    headline: Needed
+    label: Needed
+    unit: str = "1"
+    theory: Text = ""
+    runs: str = "ABCD"
 
 
-@dataclass(frozen=True)
-class Question:
-    """A question with empty lines below it, or with its answer."""
-
-    ask: str
-    answer: str = ""
-    lines: int = 2
-
-
-@dataclass(frozen=True)
-class SheetText:
+class SheetText(_Entry):
     """All words of the sheet of a scene.
 
-    Parameters
+    Attributes
     ----------
     goal
         What it is about, in two sentences.
     predict
         What is to be written down before the run.
-    changes
+    change
         The runs beside the first.
-    rows
+    row
         The rows of the table; none to take whatever the scene reports.
-    questions
-        Those of each section, by its name in `SECTIONS`.
+    notice, try_, differ, further
+        The questions.
     constants
-        What the formulas need, below the table.
+        What the formulas need, above the table.
     leaves_out
-        What the model leaves out.
+        What the model leaves out; what the scene's docstring says where it is empty.
     """
 
-    goal: str
-    predict: tuple[Prediction, ...]
-    changes: tuple[Change, ...]
-    rows: tuple[Row, ...]
-    questions: Mapping[str, tuple[Question, ...]]
-    constants: str = ""
-    leaves_out: str = ""
+    goal: Needed
+    predict: tuple[Prediction, ...] = ()
+    change: Annotated[tuple[Change, ...], Field(max_length=3)] = ()
+    row: tuple[Row, ...] = ()
+    notice: tuple[Question, ...] = ()
+    try_: tuple[Question, ...] = Field((), alias="try")
+    differ: tuple[Question, ...] = ()
+    further: tuple[Question, ...] = ()
+    constants: Text = ""
+    leaves_out: Text = ""
 
 
 def text_of(module: ModuleType) -> Path | None:
@@ -205,66 +189,30 @@ def read(path: str | os.PathLike[str]) -> SheetText:
     atmosbox.errors.FileError: The words of the sheet cannot be read from no/such.sheet.toml: No such file or directory.
     """
     try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return SheetText.model_validate(tomllib.loads(Path(path).read_text(encoding="utf-8")))
     except OSError as error:
         raise FileError(f"The words of the sheet cannot be read from {path}: {error.strerror}.") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
-    return _sheet(Table(os.fspath(path), "the sheet", content))
+    except ValidationError as error:
+        raise ConfigError(f"{path}: {_problem(error)}; see docs/sheet.md.") from error
 
 
-def _sheet(table: Table) -> SheetText:
-    """Return a sheet from the table that the file is."""
-    questions = {
-        name: tuple(_question(each) for each in table.tables(name, f"question [[{name}]]")) for name in SECTIONS
-    }
-    found = SheetText(
-        goal=table.text("goal"),
-        predict=tuple(_prediction(each) for each in table.tables("predict", "prediction")),
-        changes=tuple(_change(each) for each in table.tables("change", "change")),
-        rows=tuple(_row(each) for each in table.tables("row", "row")),
-        questions=questions,
-        constants=table.text("constants", ""),
-        leaves_out=table.text("leaves_out", ""),
-    )
-    table.close()
-    if len(found.changes) >= MOST_RUNS:
-        raise table.refusal(f"has {len(found.changes)} changes, and {MOST_RUNS - 1} are the most")
-    return found
+_PROBLEMS = {
+    "missing": "is missing: add it",
+    "extra_forbidden": "is unknown: correct the name, or remove it",
+    "string_pattern_mismatch": "is empty: write a text",
+    "string_type": "is no text: put it in quotes",
+    "tuple_type": "is no list: write [[{0}]] with two brackets, or a list of texts for choices",
+    "too_long": "are too many: keep three of them",
+}
 
 
-def _question(table: Table) -> Question:
-    found = Question(table.text("ask"), table.text("answer", ""), table.number("lines", 2))
-    table.close()
-    return found
-
-
-def _row(table: Table) -> Row:
-    names = table.text("headline"), table.text("label"), table.text("unit", "1")
-    found = Row(*names, table.text("theory", ""), table.text("runs", ""))
-    table.close()
-    return found
-
-
-def _change(table: Table) -> Change:
-    settings = table.content.pop("set", None)
-    if not isinstance(settings, dict) or not settings:
-        raise table.refusal("needs the setting that it changes, such as set = {molecules = 800}")
-    found = Change(table.text("title"), settings)
-    table.close()
-    return found
-
-
-def _prediction(table: Table) -> Prediction:
-    choices = table.content.pop("choices", [])
-    if not isinstance(choices, list) or not all(isinstance(each, str) for each in choices):
-        raise table.refusal("needs a list of texts for choices")
-    sketch = table.content.pop("sketch", None)
-    if sketch is not None:
-        axes = Table(table.path, f"the sketch of {table.name}", sketch)
-        sketch = Sketch(axes.text("x"), axes.text("y"), axes.text("hint", ""))
-        axes.close()
-    lines = table.number("lines", 0 if choices or sketch else 2)
-    found = Prediction(table.text("ask"), tuple(choices), sketch, lines, table.text("answer", ""))
-    table.close()
-    return found
+def _problem(error: ValidationError) -> str:
+    """Return what is wrong with the first wrong entry, by name and number: 'notice 2, ask is missing: add it'."""
+    first = error.errors()[0]
+    place = ", ".join(str(part) for part in first["loc"])
+    place = re.sub(r", (\d+)", lambda n: f" {int(n[1]) + 1}", place)
+    own = first.get("ctx", {}).get("error")
+    said = f": {own}" if own else " " + _PROBLEMS.get(first["type"], first["msg"]).format(*first["loc"])
+    return f"{shown(place, 100)}{said}"

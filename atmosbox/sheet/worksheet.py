@@ -1,42 +1,31 @@
-"""From the words of a sheet and its runs to its blocks, in the order in which they are read."""
+"""From the words of a sheet and its runs to its text, in Markdown, by the template ``sheet.md.jinja``."""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
+
+import jinja2
 
 from atmosbox.errors import ConfigError
 from atmosbox.scene.conversion import from_si
-from atmosbox.scene.headline import Headline
-from atmosbox.sheet.arithmetic import filled
-from atmosbox.sheet.block import (
-    Answer,
-    Axes,
-    Blank,
-    Block,
-    Choices,
-    Commands,
-    Heading,
-    Kept,
-    Line,
-    Measurements,
-    Text,
-)
-from atmosbox.sheet.generic import generic, left_out
+from atmosbox.sheet.generic import WORDS, AnyScene, left_out
 from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
-from atmosbox.sheet.sheet_run import LETTERS, Trial, execute, shown_of, trials
-from atmosbox.sheet.text import SECTIONS, Prediction, Question, SheetText, read, text_of
+from atmosbox.sheet.sheet_run import Trial, execute, trials
+from atmosbox.sheet.sums import Facts, filled
+from atmosbox.sheet.text import SECTIONS, Change, SheetText, read, text_of
 from atmosbox.simulation import runner
 from atmosbox.version import __version__
 
 __all__ = ["Worksheet", "worksheet"]
 
-_TABLE = (
-    "Copy what the program prints, with its standard error. Work out the theory from the formula; where there is none, "
-    "copy it: the program has solved the equations. misfit / error = (measured − theory) / standard error: "
-    "up to 2 is chance nearly always, more than 4 practically never."
+_NOT_HERE = "*Written for the scene as it comes; with these settings its numbers are not there.*"
+_WITH_CARE = (
+    "The numbers are of these runs, but the words of the answers are for the scene as it comes: read them with care."
 )
 
 
@@ -50,8 +39,8 @@ class Worksheet:
         What it is about.
     about
         The line below the title: number of molecules, seed, engine.
-    blocks
-        What it consists of.
+    text
+        All of it, as Markdown.
     answers
         Whether it is the lecturer's.
     disagreements
@@ -61,7 +50,7 @@ class Worksheet:
     scene: str
     title: str
     about: str
-    blocks: tuple[Block, ...]
+    text: str
     answers: bool
     disagreements: tuple[str, ...] = ()
 
@@ -85,7 +74,7 @@ def worksheet(
     engine
         What lets time pass in them.
     answers
-        Whether its runs are made and its answers given. A scene that brings no words of its own is run once for
+        Whether its runs are made and its answers given. A scene whose sheet names no rows of the table is run once for
         the blank sheet, too: only a run tells which numbers it reports.
     progress
         Called with the share that is done and a word on what goes on.
@@ -107,178 +96,132 @@ def worksheet(
     'N = 500, seed 7'
     """
     first = runner.prepare(scene, settings or {}, engine=engine)
-    path = text_of(first.module)
-    if path is not None:
-        words = read(path)
-        asked = trials(first, words.changes)
-        made = execute(asked, progress) if answers else asked
-    else:
-        (known,) = execute(trials(first, ()), progress)
-        story, title = (first.module.__doc__ or "").strip(), getattr(first.module, "title", first.scene)
-        words = generic(story, title, first.settings.describe(), tuple(known.headlines.values()))
-        asked = trials(first, words.changes)
-        made = (known, *execute(asked[1:], progress)) if answers else asked
-    return _Composer(words, made, answers).sheet()
+    path = text_of(first.module) or WORDS
+    words = read(path)
+    alone = _Filling(path, trials(first, ()))
+    changes = [Change(**alone.all(each.model_dump(), f"change {n}")) for n, each in enumerate(words.change, 1)]
+    runs = trials(first, changes)
+    if path != WORDS:
+        _Filling(path, runs).sheet(words)  # a slip is refused before a run is spent on it
+    if answers:
+        runs = execute(runs, progress)
+    elif not words.row:
+        runs = (*execute(runs[:1], progress), *runs[1:])
+    return _written(path, words, runs, answers)
 
 
-class _Composer:
-    """Puts words and runs together."""
+class _Filling:
+    """Works out the sums in the words of a sheet.
 
-    def __init__(self, words: SheetText, runs: Sequence[Trial], answers: bool) -> None:
-        self.words, self.runs, self.answers = words, runs, answers
-        self.names = {run.letter: run for run in runs}
+    Parameters
+    ----------
+    path
+        The file of the words, for refusals.
+    runs
+        The runs of the sheet.
+    answers
+        Whether answers are given.
+    differs
+        Whether they are not those that the words were written for, so that a sum of an answer may find no number.
+    """
+
+    def __init__(self, path: Path, runs: Sequence[Trial], *, answers: bool = False, differs: bool = False) -> None:
+        self.path, self.answers, self.differs = path, answers, differs
+        scene: dict[str, Facts] = {"scene": AnyScene(runs)} if path == WORDS else {}
+        self.after = {run.letter: run for run in runs} | scene
         # what is asked, and what is said beforehand, may not know what a run finds
-        self.before = {run.letter: Trial(run.letter, run.title, run.prepared) for run in runs}
-        self.number = 0
+        self.before = {run.letter: Trial(run.letter, run.title, run.prepared) for run in runs} | scene
 
-    def sheet(self) -> Worksheet:
-        """Return the sheet."""
-        first = self.runs[0].prepared
-        parts: list[Block] = [Heading("Goal"), Text(self.ask(self.words.goal))]
-        if self.words.predict:
-            parts += self.section("Predict, before you run anything", map(self.prediction, self.words.predict))
-        parts += [Heading("Run"), *(Commands(run.letter, run.title, (run.command,)) for run in self.runs)]
-        parts.append(Text(self.drawing()))
-        parts += [Heading("Measure"), *([] if self.answers else [Text(_TABLE, small=True)])]
-        parts += [Text(self.ask(self.words.constants), small=True)] if self.words.constants else []
-        parts.append(self.table())
-        parts += self.remarks() if self.answers else []
-        for name, heading in SECTIONS.items():
-            if self.words.questions[name]:
-                parts += self.section(heading, map(self.question, self.words.questions[name]))
-        missing = self.words.leaves_out or left_out(first.module.__doc__ or "")
-        if missing:
-            parts.append(Kept((Heading("What the model leaves out"), Text(self.ask(missing)))))
-        return Worksheet(
-            first.scene, getattr(first.module, "title", first.scene), self.about(), tuple(parts), self.answers,
-            tuple(self.disagreements()),
-        )  # fmt: skip
+    def sheet(self, words: SheetText) -> dict[str, Any]:
+        """Return all words of a sheet."""
+        content = words.model_dump(by_alias=True, exclude={"change"})
+        return {key: self.all(value, key) for key, value in content.items()}
 
-    def ask(self, text: str) -> str:
-        """Return a text of the student's, with the sums of settings in it worked out."""
-        return filled(text, self.before)
+    def all(self, value: Any, place: str) -> Any:
+        """Return an entry with all sums in it worked out; a refusal says where it stands."""
+        match value:
+            case dict():
+                return {key: self.all(each, f"{place}, {key}") for key, each in value.items()}
+            case list() | tuple():
+                return [self.all(each, f"{place} {number}") for number, each in enumerate(value, 1)]
+            case str():
+                answer = place.endswith(", answer")
+                if answer and not self.answers:
+                    return ""
+                try:
+                    return filled(value, self.after if answer else self.before, setting=", set, " in place)
+                except ConfigError as error:
+                    if answer and self.differs:
+                        return _NOT_HERE
+                    raise ConfigError(f"{self.path}: {place}: {error}; see docs/sheet.md.") from error
+        return value
 
-    def section(self, heading: str, parts: Any) -> list[Block]:
-        """Return a heading with what stands below it; the first question never leaves it."""
-        first, *rest = parts
-        return [Kept((Heading(heading), *first.blocks)), *rest]
 
-    def numbered(self, ask: str) -> Text:
-        """Return a question with its number."""
-        self.number += 1
-        return Text(f"**{self.number}.** {self.ask(ask)}")
-
-    def answered(self, answer: str, blank: Sequence[Block]) -> tuple[Block, ...]:
-        """Return the answer, or the place to write one."""
-        if not self.answers:
-            return tuple(blank)
-        if not answer:
-            return ()
-        try:
-            return (Answer(filled(answer, self.names)),)
-        except ConfigError:
-            if not self.differs:
-                raise
-            return (Answer("*Written for the scene as it comes; with these settings its numbers are not there.*"),)
-
-    @property
-    def differs(self) -> bool:
-        """Whether the runs are not those that the words were written for."""
-        first = self.runs[0].prepared
-        return bool(first.settings.changed().keys() - {"seed"}) or str(first.engine) != "exact"
-
-    def question(self, asked: Question) -> Kept:
-        """Return a question with its lines, or its answer."""
-        blank = [Blank(asked.lines)] if asked.lines else []
-        return Kept((self.numbered(asked.ask), *self.answered(asked.answer, blank)))
-
-    def prediction(self, asked: Prediction) -> Kept:
-        """Return a prediction with what is to be ticked, drawn or written, or what comes out."""
-        above: list[Block] = [self.numbered(asked.ask)]
-        blank: list[Block] = []
-        if asked.choices:
-            above.append(Choices(tuple(self.ask(each) for each in asked.choices)))
-        if asked.sketch is not None:
-            above += [Text(self.ask(asked.sketch.hint), small=True)] if asked.sketch.hint else []
-            blank.append(Axes(self.ask(asked.sketch.x), self.ask(asked.sketch.y)))
-        blank += [Blank(asked.lines)] if asked.lines else []
-        return Kept((*above, *self.answered(asked.answer, blank)))
-
-    def drawing(self) -> str:
-        """Return how the figures are made."""
-        first, *others = self.runs
-        also = f", and likewise of {' and '.join(run.letter for run in others)}" if others else ""
-        return f"The figure of {first.letter}: `{first.plot_command}`{also}."
-
-    def about(self) -> str:
-        """Return number of molecules, seed and engine."""
-        first = self.runs[0].prepared
-        molecules = getattr(first.settings, "molecules", None)
-        parts = [] if molecules is None else [f"N = {molecules}"]
-        parts.append(f"seed {first.settings.seed}")
-        parts += [] if str(first.engine) == "exact" else [f"engine {first.engine}"]
-        parts += [f"atmosbox {__version__}"] if self.answers else []
-        return ", ".join(parts)
-
-    def table(self) -> Measurements:
-        """Return the table of all runs."""
-        rows = []
-        for row in self.words.rows:
-            name, label = filled(row.headline, self.before), self.ask(row.label)
-            unit = spelled(row.unit)
-            lines = tuple(self.line(run, name) for run in self.runs if run.letter in (row.runs or LETTERS))
-            rows.append((f"{label} [{unit}]" if unit else label, self.ask(row.theory), lines))
-        return Measurements(tuple(rows))
-
-    def line(self, run: Trial, name: str) -> Line:
-        """Return what a run says of a quantity; nothing on the student's sheet."""
-        if run.outcome is None or not self.answers:
-            return Line(run.letter)
-        if name not in run.headlines:
-            return Line(run.letter, "not reported", "–", "–")
-        found = shown_of(run.headlines[name])
-        theory = misfit = "–"
-        if found.theory is not None:
-            theory = theoretical(found.theory, found.value, found.error)
-            if found.error > 0.0:
-                misfit = f"{(found.value - found.theory) / found.error:.1f}".replace("-", "−")
-        return Line(run.letter, measured(found.value, found.error), theory, misfit)
-
-    def remarks(self) -> list[Block]:
-        """Return why a number may be off, where it is by more than chance; and whether the words may not fit."""
-        shown = {filled(row.headline, self.before) for row in self.words.rows}
-        excuses: dict[str, dict[str, list[str]]] = {}
-        for run in self.runs:
-            for each in run.headlines.values():
-                far = each.misfit is not None and abs(each.misfit) > 4.0 * each.standard_error
-                if each.name in shown and each.agrees and far:
-                    excuses.setdefault(each.reason, {}).setdefault(each.label, []).append(_excuse(run.letter, each))
-        found = [
-            "More than chance: "
-            + "; ".join(f"{label} ({', '.join(each)})" for label, each in labels.items())
-            + f", for {reason}."
-            for reason, labels in excuses.items()
+def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool) -> Worksheet:
+    """Return the sheet."""
+    first = runs[0].prepared
+    differs = bool(first.settings.changed().keys() - {"seed"}) or str(first.engine) != "exact"
+    content = _Filling(path, runs, answers=answers, differs=differs).sheet(words)
+    content["leaves_out"] = content["leaves_out"] or left_out(first.module.__doc__ or "").replace("<", "&lt;")
+    if not words.row:
+        found = runs[0].headlines.values()
+        content["row"] = [
+            {"headline": h.name, "label": h.label, "unit": h.display_unit, "theory": "", "runs": "ABCD"} for h in found
         ]
-        found += self.disagreements()
-        if self.differs:
-            found.append(
-                "The numbers are of these runs, but the words of the answers are for the scene as it comes: "
-                "read them with care."
-            )
-        return [Text(f"*{text}*", small=True) for text in found]
+    for row in content["row"]:
+        unit = spelled(row["unit"])
+        row["label"] += f" [{unit}]" if unit else ""
+        row["lines"] = [_line(run, row["headline"], answers) for run in runs if run.letter in row["runs"]]
+    disagreements = [
+        f"Run {run.letter} disagrees with theory: {each.label}."
+        for run in runs
+        for each in run.headlines.values()
+        if each.agrees is False
+    ]
+    remarks = [*_excuses(runs, {row["headline"] for row in content["row"]}), *disagreements]
+    title, about = getattr(first.module, "title", first.scene), _about(first, answers)
+    template = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined).from_string(
+        Path(__file__).with_name("sheet.md.jinja").read_text(encoding="utf-8")
+    )
+    text = template.render(
+        content, scene=first.scene, title=title, about=about, answers=answers, runs=runs,
+        sections=SECTIONS, questions={name: content[name] for name in SECTIONS},
+        remarks=[*remarks, *([_WITH_CARE] if differs else [])] if answers else [], ticked=answers and not differs,
+    )  # fmt: skip
+    text = re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
+    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements))
 
-    def disagreements(self) -> list[str]:
-        """Return what disagrees with theory."""
-        return [
-            f"Run {run.letter} disagrees with theory: {each.label}."
-            for run in self.runs
-            for each in run.headlines.values()
-            if each.agrees is False
-        ]
+
+def _about(first: runner.Prepared, answers: bool) -> str:
+    """Return number of molecules, seed and engine."""
+    molecules = getattr(first.settings, "molecules", None)
+    parts = [] if molecules is None else [f"N = {molecules}"]
+    parts.append(f"seed {first.settings.seed}")
+    parts += [] if str(first.engine) == "exact" else [f"engine {first.engine}"]
+    return ", ".join([*parts, f"atmosbox {__version__}"] if answers else parts)
 
 
-def _excuse(letter: str, headline: Headline) -> str:
-    """Return by how much a number of a run may be off."""
-    unit = {"degC": "K"}.get(headline.display_unit, spelled(headline.display_unit))
-    allowed = bare(from_si(headline.tolerance, headline.display_unit, difference=True), 2)
-    return f"{letter}: up to {allowed} {unit}".rstrip()
+def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
+    """Return what a run says of a quantity: its letter, measurement, theory and misfit; to be filled in by students."""
+    if not answers:
+        return run.letter, "±", "", ""
+    if name not in run.headlines:
+        return run.letter, "not reported", "–", "–"
+    found = run.fact(name)
+    theory = "–" if found.theory is None else theoretical(found.theory, found.s)
+    known = found.theory is not None and found.s > 0.0
+    misfit = f"{(found.n - found.theory) / found.s:.1f}".replace("-", "−") if known else "–"
+    return run.letter, measured(found.n, found.s), theory, misfit
+
+
+def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
+    """Return why a number of the table may be off, where it is by more than chance."""
+    excuses: dict[str, list[str]] = {}
+    for run in runs:
+        for each in run.headlines.values():
+            far = each.misfit is not None and abs(each.misfit) > 4.0 * each.standard_error
+            if each.name in rows and each.agrees and far:
+                unit = {"degC": "K"}.get(each.display_unit, spelled(each.display_unit))
+                allowed = f"{bare(from_si(each.tolerance, each.display_unit, difference=True), 2)} {unit}".rstrip()
+                excuses.setdefault(each.reason, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
+    return [f"More than chance: {'; '.join(numbers)}, for {reason}." for reason, numbers in excuses.items()]

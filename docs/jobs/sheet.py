@@ -2,7 +2,6 @@
 
 from jobs.registry import DOCS, Findings, job
 
-from atmosbox.sheet.markdown import markdown
 from atmosbox.sheet.worksheet import worksheet
 
 EXAMPLE = DOCS / "examples" / "my_scene.py"
@@ -20,5 +19,5 @@ def sheet(found: Findings) -> None:
     """Show the sheet that they make, with its answers."""
     made = worksheet(EXAMPLE, answers=True)
     found.failures += made.disagreements
-    text = markdown(made).replace(str(EXAMPLE), "./my_scene.py").rstrip()
+    text = made.text.replace(str(EXAMPLE), "./my_scene.py").rstrip()
     found.text(f"````markdown\n{text}\n````")

@@ -1,0 +1,85 @@
+"""The marks of a text: those of Markdown that a line can have, and what is raised and lowered."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import escape, quoteattr
+
+from markdown_it import MarkdownIt
+
+from atmosbox.errors import ConfigError, shown
+
+if TYPE_CHECKING:
+    from markdown_it.token import Token
+
+__all__ = ["PARSER", "TYPED", "as_paragraph", "check"]
+
+PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
+TYPED = "DejaVuSansMono"
+LONGEST = 60
+"""What is typed and not longer stands on one line [characters]."""
+SMALLER = 0.72
+_RISE = {"sup": 0.38, "sub": 0.16}
+"""How far a mark rises or falls, in the size of the type."""
+_TAGS = {"em_open": "<i>", "em_close": "</i>", "strong_open": "<b>", "strong_close": "</b>", "link_close": "</a>"}
+_KNOWN = {"text", "text_special", "softbreak", "code_inline", "link_open", *_TAGS}
+_HTML = {"<sub>", "</sub>", "<sup>", "</sup>"}
+
+
+def check(text: str) -> None:
+    """Refuse a text with marks that are not printed: pictures, lists, headings, and of HTML all but sub and sup.
+
+    Raises
+    ------
+    ConfigError
+        If it has such a mark.
+
+    Examples
+    --------
+    >>> check("p<sup>2/7</sup> is *not* a < b")
+    >>> check("<script>alert(1)</script>")
+    Traceback (most recent call last):
+    atmosbox.errors.ConfigError: the mark <script> is not printed: of HTML write <sub> and <sup> alone
+    """
+    for token in PARSER.parseInline(text)[0].children or ():
+        if token.type == "html_inline" and token.content not in _HTML:
+            raise ConfigError(f"the mark {shown(token.content)} is not printed: of HTML write <sub> and <sup> alone")
+        if token.type not in _KNOWN and token.type != "html_inline":
+            raise ConfigError(f"the mark {token.type} is not printed: write text, *slanted*, **bold** or `typed`")
+    for block in PARSER.parse(text)[:1]:
+        if block.type != "paragraph_open":
+            kind = block.type.removesuffix("_open").replace("_", " ")
+            raise ConfigError(f"{shown(text)} begins as a {kind} of Markdown does: begin it with a word")
+
+
+def as_paragraph(tokens: Sequence[Token], size: float) -> str:
+    """Return the marks of a line as those of a paragraph of reportlab.
+
+    Parameters
+    ----------
+    tokens
+        What `PARSER` found in the line.
+    size
+        The size of the type [points].
+
+    Examples
+    --------
+    >>> as_paragraph(PARSER.parseInline("p<sup>2/7</sup> and `plot`")[0].children, 10.0)
+    'p<sup rise="3.8" size="7.2">2/7</sup> and <font face="DejaVuSansMono">plot</font>'
+    """
+    made = []
+    for token in tokens:
+        tag = token.content.strip("<>")
+        if token.type == "html_inline" and tag in _RISE:
+            made.append(f'<{tag} rise="{_RISE[tag] * size:.1f}" size="{SMALLER * size:.1f}">')
+        elif token.type == "html_inline" and token.content in _HTML:
+            made.append(token.content)
+        elif token.type == "code_inline":
+            typed = token.content if len(token.content) > LONGEST else token.content.replace(" ", "\u00a0")
+            made.append(f'<font face="{TYPED}">{escape(typed)}</font>')
+        elif token.type == "link_open":
+            made.append(f"<a href={quoteattr(str(token.attrGet('href')))}>")
+        else:
+            made.append(_TAGS.get(token.type) or escape(token.content or " "))
+    return "".join(made)

@@ -1,0 +1,238 @@
+"""The sums in the texts of a sheet: ``{{ B.mean_temperature - A.mean_temperature }}``, worked out by Jinja.
+
+A file of a sheet is data and runs no code. Of Jinja's language it may use expressions alone, no loops and no macros;
+these know the runs, the functions below and the parts of a number, and no attribute, method or filter of Python's.
+Errors go through a sum with the package ``uncertainties``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+import jinja2
+import numpy as np
+from jinja2 import nodes
+from jinja2.exceptions import SecurityError
+from jinja2.sandbox import SandboxedEnvironment
+from uncertainties import UFloat, Variable, nominal_value, std_dev, umath
+
+from atmosbox.errors import ConfigError, shown
+from atmosbox.sheet.number_text import bare, measured
+
+__all__ = ["Facts", "Measured", "SetNumber", "check", "filled"]
+
+MOST_DIGITS = 12
+
+
+@runtime_checkable
+class Facts(Protocol):
+    """Something whose facts a sum may ask for by name."""
+
+    def fact(self, name: str) -> Any:
+        """Return a fact; raise ConfigError if there is none of that name."""
+
+
+class SetNumber(float):
+    """A number that was set, and is shown with all the digits that it was given."""
+
+
+class Measured(Variable):  # type: ignore[misc]
+    """A number with its standard error, which goes with it through a sum, and with what theory says of it.
+
+    Parameters
+    ----------
+    value, error
+        The number and its standard error.
+    theory
+        What theory says of it; None where it says nothing.
+
+    Examples
+    --------
+    >>> warm, cold = Measured(25.0, 3.0), Measured(20.0, 4.0)
+    >>> print(warm - cold, 2.0 * warm, warm - warm)
+    5+/-5 50+/-6 0.0+/-0
+    """
+
+    def __init__(self, value: float, error: float = 0.0, theory: float | None = None) -> None:
+        super().__init__(value, error)
+        self.theory = theory
+
+
+def _part(number: Any, name: str) -> Any:
+    """Return a part of a number by name."""
+    theory = getattr(number, "theory", None)
+    if name in ("theory", "misfit", "sigmas") and theory is None:
+        raise ConfigError(f"theory says nothing of a number whose {name} is asked for: leave it out")
+    match name:
+        case "value":
+            return float(nominal_value(number))
+        case "error":
+            return float(std_dev(number))
+        case "theory":
+            return theory
+        case "misfit":
+            return number - theory
+        case "sigmas":
+            return abs(number.n - theory) / number.s if number.s > 0.0 else math.inf
+    raise ConfigError(f"a number has no {shown(name)}: give one of value, error, theory, misfit, sigmas")
+
+
+def _late(series: Any) -> np.ndarray:
+    """Return the last four fifths of a series, which have forgotten how it began."""
+    return np.asarray(series, dtype=float)[len(series) // 5 :]
+
+
+def _digits(number: float) -> int:
+    """Return how many digits are asked for, as far as they fit on a line."""
+    return int(min(max(number, 0), MOST_DIGITS))
+
+
+def _round(number: Any, digits: float = 0) -> str:
+    """Return a number with so many digits behind the point."""
+    places = _digits(digits)
+    return f"{round(nominal_value(number), places) + 0.0:.{places}f}".replace("-", "−")  # never "-0"
+
+
+def _at(level: float, along: Any, series: Any) -> float:
+    """Return where a curve is at a level of its abscissa."""
+    order = np.argsort(along)
+    return float(np.interp(level, np.asarray(along)[order], np.asarray(series)[order]))
+
+
+_FUNCTIONS = {
+    "pi": math.pi,
+    "abs": abs,
+    "sqrt": umath.sqrt,
+    "exp": umath.exp,
+    "ln": umath.log,
+    "round": _round,
+    "figures": lambda number, count: bare(nominal_value(number), max(_digits(count), 1)),
+    "first": lambda series: float(series[0]),
+    "last": lambda series: float(series[-1]),
+    "lowest": lambda series: float(np.nanmin(series)),
+    "highest": lambda series: float(np.nanmax(series)),
+    "mean": lambda series: float(np.nanmean(_late(series))),
+    "scatter": lambda series: float(np.nanstd(_late(series), ddof=1)),
+    "at": _at,
+    "word": lambda number, above, below: above if nominal_value(number) > 0.0 else below,
+}
+_ALLOWED = (
+    nodes.Template, nodes.Output, nodes.TemplateData, nodes.Const, nodes.Name, nodes.Getattr, nodes.Call,
+    nodes.BinExpr, nodes.UnaryExpr, nodes.Concat, nodes.CondExpr,
+)  # fmt: skip
+"""All of Jinja's language that a text may hold: no statement, and nothing that could go on for long."""
+_NUMBERS = (bool, int, float, UFloat, np.ndarray)
+
+
+class _Sandbox(SandboxedEnvironment):
+    """Jinja's sandbox, in which only the facts of a run and the parts of a number are attributes."""
+
+    intercepted_binops = frozenset(SandboxedEnvironment.default_binop_table)
+
+    def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:
+        """Work out a sum of numbers; in floating point, so that no power of whole numbers fills the memory."""
+        if not (isinstance(left, _NUMBERS) and isinstance(right, _NUMBERS)):
+            raise SecurityError(f"{operator} stands between things that are no numbers")
+        return super().call_binop(context, operator, left * 1.0 if operator == "**" else left, right)
+
+    def getattr(self, obj: Any, attribute: str) -> Any:
+        """Return a fact of a run, or a part of a number."""
+        if isinstance(obj, Facts):
+            return obj.fact(attribute)
+        if isinstance(obj, UFloat | float):
+            return _part(obj, attribute)
+        name = getattr(obj, "_undefined_name", None)
+        raise SecurityError(f"{name} is no run" if name else f"{attribute} is no fact of a run and no part of a number")
+
+
+def _printed(result: Any) -> str:
+    """Return what a sum came to as text."""
+    match result:
+        case str():
+            return result.replace("<", "&lt;")
+        case bool():
+            return "on" if result else "off"
+        case SetNumber():
+            return f"{result:.12g}".replace("-", "−")
+        case UFloat():
+            return measured(result.n, result.s)
+        case int() | float():
+            whole = abs(result) < 1e6 and result == int(result) if math.isfinite(result) else False
+            return str(int(result)).replace("-", "−") if whole else bare(float(result))
+    raise ConfigError("a sum comes to something that is no number: name a number of the run")
+
+
+def _typed(result: Any) -> str:
+    """Return what a sum came to as it is typed for a setting."""
+    return f"{result:.12g}" if isinstance(result, float) else str(result)
+
+
+_TEXTS = _Sandbox(undefined=jinja2.StrictUndefined, finalize=_printed, autoescape=False)
+_TEXTS.globals, _TEXTS.filters, _TEXTS.tests = dict(_FUNCTIONS), {}, {}
+_SETTINGS = _TEXTS.overlay(finalize=_typed)
+
+
+def _syntax(text: str) -> None:
+    """Refuse what is more than texts and sums."""
+    for node in _TEXTS.parse(text).find_all(nodes.Node):
+        if not isinstance(node, _ALLOWED):
+            raise SecurityError(f"a {type(node).__name__.lower()} is more than a sum")
+
+
+def check(text: str) -> None:
+    """Refuse a text whose sums cannot be understood, or are more than sums; none of them is worked out.
+
+    Raises
+    ------
+    ConfigError
+        If a brace is open, or a text holds a loop, a macro or a filter.
+
+    Examples
+    --------
+    >>> check("{% for i in (1, 2) %}again{% endfor %}")
+    Traceback (most recent call last):
+    atmosbox.errors.ConfigError: its sums cannot be understood (a for is more than a sum): write sums as {{ 2 * 3 }}
+    """
+    try:
+        _syntax(text)
+    except (jinja2.TemplateError, RecursionError) as error:
+        raise ConfigError(f"its sums cannot be understood ({error}): write sums as {{{{ 2 * 3 }}}}") from error
+
+
+def filled(text: str, names: Mapping[str, Facts], *, setting: bool = False) -> str:
+    """Return a text with its sums worked out.
+
+    Parameters
+    ----------
+    text
+        The text. A sum becomes a number of three figures, or a measurement with its error; ``round(x, 1)`` says how
+        many decimals, ``figures(x, 2)`` how many figures. Other functions are abs, sqrt, exp, ln; of a series of a run
+        first, last, lowest, highest, mean and scatter (of its last four fifths), and ``at(level, along, series)``;
+        and ``word(x, 'warmer', 'colder')``, which is the first word if x is above zero.
+    names
+        The runs by their letters.
+    setting
+        Whether it is a setting, with all digits and signs as they are typed.
+
+    Raises
+    ------
+    ConfigError
+        If a sum cannot be worked out.
+
+    Examples
+    --------
+    >>> class Box:
+    ...     def fact(self, name):
+    ...         return {"molecules": 800, "temperature": Measured(25.8, 0.9, 25.0)}[name]
+    >>> filled("{{ A.temperature }} °C, noise {{ round(298 * sqrt(2 / (3 * A.molecules)), 1) }} K", {"A": Box()})
+    '25.80 ± 0.90 °C, noise 8.6 K'
+    """
+    try:
+        _syntax(text)
+        return (_SETTINGS if setting else _TEXTS).from_string(text).render(names)
+    except ConfigError:
+        raise
+    except (jinja2.TemplateError, ArithmeticError, ValueError, TypeError, LookupError, RecursionError) as error:
+        raise ConfigError(f"a sum cannot be worked out ({error}): correct {shown(text, 200)}") from error
