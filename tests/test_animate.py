@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -15,15 +16,15 @@ from atmosbox import film
 from atmosbox.cli import app
 from atmosbox.errors import FileError, SettingError
 from atmosbox.file import netcdf as output
+from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.film import encoder
-from atmosbox.film.camera import FACES, View, corners
-from atmosbox.film.film_box import Box, box
 from atmosbox.film.film_file import sized
 from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.graph import chosen
 from atmosbox.film.pace import MOST, pace
 from atmosbox.film.running import Running
-from atmosbox.film.stage import legend
+from atmosbox.plot.box_picture import BoxPicture
+from atmosbox.plot.camera import FACES, Camera, corners
 from atmosbox.plot.layout import panels_of
 from atmosbox.plot.theme import find, style
 from atmosbox.scene.panels import Line, Panel, to_json
@@ -97,23 +98,30 @@ def test_a_film_of_too_many_pictures_is_refused():
 # The box
 
 
-def test_the_box_is_read_from_the_file_in_a_unit_that_can_be_read(runs):
-    small, large = (box(runs[scene][0]) for scene in ("temperature", "atmosphere"))
+def picture(held):
+    return BoxPicture(Figure().add_axes((0.0, 0.0, 1.0, 1.0)), held, LOOK)
+
+
+def legend(dataset):
+    return picture(molecules(dataset)).legend()
+
+
+def test_the_box_is_drawn_in_a_unit_that_can_be_read(runs):
+    small, large = (picture(molecules(runs[scene][0])) for scene in ("temperature", "atmosphere"))
     assert (small.unit, large.unit) == ("nm", "km")
-    assert small.walls == ("heat_bath",) * 6
-    assert large.walls == ("periodic",) * 4 + ("heat_bath", "specular")
-    assert (small.position[-1] > 0.0).all()
-    assert (small.position[-1] < small.side[-1]).all()
+    assert 1.0 < small.largest.max() < 1000.0
+    assert large.held.walls == ("periodic",) * 4 + ("heat_bath", "specular")
 
 
-def test_a_piston_moves_and_the_view_holds_the_largest_box(runs):
-    found = box(runs["lifting-dry"][0])
-    assert found.walls[5] == "piston"
-    assert found.side[-1, 2] > 2.0 * found.side[0, 2]
-    low, high = View(found.side[-1]).limits(found.side[0])
-    least, most = View(found.side[-1]).limits(found.side[-1])
-    assert (low >= least - 1e-9).all()
-    assert (high <= most + 1e-9).all()
+def test_a_piston_moves_and_the_camera_sees_the_largest_box(runs):
+    held = molecules(runs["lifting-dry"][0])
+    assert held.walls[5] == "piston"
+    assert held.side[-1, 2] > 2.0 * held.side[0, 2]
+    camera = Camera(held.side[-1])
+    low, high = camera.limits(held.side[0])
+    least, most = camera.limits(held.side[-1])
+    assert (low >= least - 1e-12).all()
+    assert (high <= most + 1e-12).all()
 
 
 def test_every_wall_has_the_corners_that_lie_in_it():
@@ -124,31 +132,38 @@ def test_every_wall_has_the_corners_that_lie_in_it():
 
 
 def test_the_caption_says_what_is_tinted_and_how_large_molecules_are_drawn(runs):
-    assert legend(box(runs["temperature"][0]))[1].replace("\u00a0", " ") == "orange: all walls kept at 25 °C"
-    words = legend(box(runs["atmosphere"][0]))
+    assert legend(runs["temperature"][0])[1].replace("\u00a0", " ") == "orange: all walls kept at 25 °C"
+    words = legend(runs["atmosphere"][0])
     assert "dashed: periodic sides" in words
     assert words[0].endswith("m wide")
-    assert "grey lid: piston" in legend(box(runs["lifting-dry"][0]))
+    assert "grey lid: piston" in legend(runs["lifting-dry"][0])
+
+
+def box_of(position, **others):
+    """Some molecules in a box of 100 nm with plain walls."""
+    frames, count = position.shape[:2]
+    speed, side = np.full((frames, count), 400.0), np.full((frames, 3), 1e-7)
+    each = np.full(count, 3.7e-10)
+    walls, unknown = ("specular",) * 6, np.full((frames, 6), np.nan)
+    plain = Molecules(False, np.arange(frames), position, speed, each, each, None, side, walls, unknown, False, False)
+    return plain._replace(**others)
 
 
 def test_no_more_molecules_are_drawn_than_can_be_told_apart():
-    many = 9000
-    place = np.random.default_rng(1).random((2, many, 3)) * 1e-7
-    walls = {"flag_meanings": "specular periodic"}
-    dataset = xr.Dataset(
-        {
-            "molecule_position": (("elapsed_time", "molecule", "axis"), place),
-            "molecule_speed": (("elapsed_time", "molecule"), np.full((2, many), 400.0)),
-            "molecule_diameter": ("molecule", np.full(many, 3.7e-10)),
-            "box_side": (("elapsed_time", "axis"), np.full((2, 3), 1e-7)),
-            "wall_law": ("wall", np.zeros(6, np.int8), walls),
-            "wall_temperature": (("elapsed_time", "wall"), np.full((2, 6), np.nan)),
-        }
-    )
-    found = box(dataset)
-    assert found.position.shape == (2, 4000, 3)
-    assert found.molecules == many
-    assert legend(found)[0].startswith("4000 of 9000 ")
+    many = picture(box_of(np.random.default_rng(1).random((2, 9000, 3)) * 1e-7))
+    many.artists(1)
+    assert many.molecules.get_offsets().shape == (4000, 2)
+    assert many.legend()[0].startswith("4000 of 9000 ")
+
+
+def test_water_and_drops_are_marked_and_molecules_in_the_liquid_are_not_drawn():
+    position = np.full((1, 3, 3), 3e-8)
+    position[0, 2] = np.nan
+    water, drops = np.array([False, True, True]), np.array([[[5e-8, 5e-8, 5e-8, 2e-8]]])
+    moist = picture(box_of(position, water=water, drops=drops, liquid=np.array([1])))
+    assert moist.legend()[1:] == ["red rims: water", "blue balls: drops"]
+    moist.artists(0)
+    assert len(moist.molecules.get_offsets()) == 3  # two molecules and a drop
 
 
 # The pictures
@@ -157,7 +172,7 @@ def test_no_more_molecules_are_drawn_than_can_be_told_apart():
 @pytest.mark.parametrize("scene", ["temperature", "lifting-dry", "atmosphere", "elastic-collisions"])
 def test_pictures_have_their_size_and_change_with_the_clock(runs, scene):
     with style(LOOK):
-        sheet = Sheet(runs[scene][0], LOOK)
+        sheet = Sheet(runs[scene][0], LOOK, molecules(runs[scene][0]))
         first, last = sheet.picture(0), sheet.picture(runs[scene][0].sizes["elapsed_time"] - 1)
         again = sheet.picture(0)
     assert first.shape == (450, 800, 3)
@@ -168,21 +183,21 @@ def test_pictures_have_their_size_and_change_with_the_clock(runs, scene):
 def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs):
     dataset = runs["temperature"][0]
     with style(LOOK):
-        sheet = Sheet(dataset, LOOK)
+        sheet = Sheet(dataset, LOOK, molecules(dataset))
         sheet.picture(7)
     drawn = sheet.stage.molecules
     seen = np.asarray(drawn.get_offsets())
-    places, scale = sheet.stage.view.project(sheet.box.position[7])
+    places, scale = sheet.stage.camera.project(dataset.molecule_position.values[7] * 1e9)
     order = np.argsort(scale, kind="stable")
     assert seen == pytest.approx(places[order])
-    colours = sheet.stage.colours(sheet.stage.norm(sheet.box.speed[7][order]))
+    colours = sheet.stage.colours(sheet.stage.norm(dataset.molecule_speed.values[7][order]))
     assert np.asarray(drawn.get_facecolor()) == pytest.approx(colours)
 
 
 def test_curves_end_at_the_clock_and_theory_stands_from_the_start(runs):
     dataset = runs["lifting-dry"][0]
     with style(LOOK):
-        sheet = Sheet(dataset, LOOK, graphs=True)
+        sheet = Sheet(dataset, LOOK)
         whole = len(sheet.graphs[0].axes.lines)
         sheet.picture(4)
         axes = sheet.graphs[0].axes
@@ -227,7 +242,7 @@ def test_molecules_whose_scene_has_no_graph_that_grows_are_filmed_alone(runs, tm
     law = Line("layer_temperature_theory", "height", "law", "theory")
     dataset.attrs["atmosbox_panels"] = to_json([Panel("profile", "A law", (law,))])
     with style(LOOK):
-        sheet = Sheet(dataset, LOOK)
+        sheet = Sheet(dataset, LOOK, molecules(dataset))
         assert sheet.picture(0).shape == (450, 800, 3)
     assert sheet.graphs == []
     with pytest.raises(FileError, match="no graph that grows"):
@@ -300,7 +315,7 @@ def test_a_film_without_its_end_is_refused(runs, tmp_path, monkeypatch):
 
 def test_colours_of_a_gif_are_close_to_those_of_the_pictures(runs):
     with style(LOOK):
-        picture = Sheet(runs["temperature"][0], LOOK).picture(50)
+        picture = Sheet(runs["temperature"][0], LOOK, molecules(runs["temperature"][0])).picture(50)
     shown = np.asarray(Image.open(io.BytesIO(encoder.encode_gif([picture], [picture], 10.0))).convert("RGB"), float)
     assert np.abs(shown - picture).mean() < 3.0
 
@@ -367,11 +382,3 @@ def test_what_cannot_be_filmed_so_is_refused_at_once(runs, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     assert said in refused(command(runs["temperature"][1], *words))
     assert list(tmp_path.iterdir()) == []
-
-
-def test_water_and_drops_are_marked():
-    moist = Box(
-        np.full((1, 2, 3), 10.0), np.full((1, 2), 500.0), np.ones(2), np.array([False, True]), np.full((1, 3), 30.0),
-        ("specular",) * 6, np.full((1, 6), np.nan), np.array([[[5.0, 5.0, 5.0, 2.0]]]), np.array([3]), "nm", 2.7, 2,
-    )  # fmt: skip
-    assert legend(moist)[1:] == ["red rims: water", "blue balls: drops"]

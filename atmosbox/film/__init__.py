@@ -3,9 +3,9 @@
 Everything comes from the file: places and speeds of the molecules, the box and its walls, which a run keeps when it
 is asked to (``--save-molecules``), and the panels of its scene. Without molecules the graphs alone can be filmed.
 
-Read in this order: `pace` (which frames, how fast), `box` (what the file says of the box), `view` (from space to the
-page), `stage` and `table` (the molecules in space and in a plane), `running` and `graph` (graphs that grow), `sheet`
-(where everything stands), `encoder` and `file` (GIF and MP4).
+The room `plot` draws the box (`plot.box_picture`) and the graphs; here is what a film adds. Read in this order: `pace`
+(which frames, how fast), `running` and `graph` (graphs that grow), `film_sheet` (where everything stands), `encoder`
+and `film_file` (GIF and MP4).
 """
 
 from atmosbox.film.film_file import FORMATS, save

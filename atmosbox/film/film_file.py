@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox.errors import FileError
+from atmosbox.file.molecules import molecules
 from atmosbox.file.output_path import named, whole_file, write_whole
 from atmosbox.film.encoder import Picture, encode_gif, encode_mp4, movie_program
-from atmosbox.film.film_box import box, has_discs, has_molecules
 from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.pace import Pace, pace
-from atmosbox.plot.plane import discs
 from atmosbox.plot.theme import Theme, find, style
 
 if TYPE_CHECKING:
@@ -90,15 +89,12 @@ def save(
     if kind == "mp4":
         movie_program()
     count = dataset.sizes.get("elapsed_time", 0)
-    if not graphs and not has_discs(dataset) and not has_molecules(dataset):
-        raise FileError(
-            f"{dataset.encoding.get('source', 'The file')} has no molecules to film: run the scene again with "
-            "--save-molecules, or film its graphs alone with --graphs."
-        )
-    smooth = count > 1 and not graphs and _step(dataset) < _SMOOTH
-    chosen = pace(max(count, 1), fps=fps, seconds=seconds, smooth=smooth)
+    if count == 0:
+        raise FileError("The file has no frame to film: the run was stopped before its first one; run it again.")
+    held = None if graphs else molecules(dataset, otherwise=", or film its graphs alone with --graphs")
+    chosen = pace(count, fps=fps, seconds=seconds, smooth=held is not None and held.step < _SMOOTH)
     with style(look):
-        sheet = Sheet(dataset, look, graphs=graphs, frames=chosen.frames)
+        sheet = Sheet(dataset, look, held, chosen.frames)
 
         def pictures() -> Iterator[Picture]:
             for done, frame in enumerate(chosen.frames, 1):
@@ -111,8 +107,8 @@ def save(
             samples = [sheet.picture(int(chosen.frames[each])) for each in some]
             write_whole(path, encode_gif(pictures(), samples, chosen.fps))
         else:
-            with whole_file(path) as part:
-                encode_mp4(pictures(), part, chosen.fps)
+            with whole_file(path) as temporary:
+                encode_mp4(pictures(), temporary, chosen.fps)
     return path, chosen
 
 
@@ -128,11 +124,3 @@ def sized(theme: Theme, kind: str) -> Theme:
     wide, high = _SIZES[kind][theme.name]
     dots = wide / _WIDE[theme.name]
     return replace(theme, wide=(wide / dots, high / dots), dots_per_inch=dots, grows=False)
-
-
-def _step(dataset: xr.Dataset) -> float:
-    """Return how far molecules are from where they were a frame before, in sides of the box."""
-    if has_molecules(dataset):
-        return box(dataset).step
-    found = discs(dataset, "m")
-    return float(np.median(np.linalg.norm(np.diff(found.place, axis=0), axis=2)) / np.ptp(found.box[:, 0]))

@@ -78,7 +78,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, mos
     return tuple(panel for panel in panels if panel in picked)
 
 
-class GraphPainter:
+class GraphPainter(Painter):
     """Draws what stands still in panels, within the limits of all that they will hold.
 
     Parameters
@@ -104,43 +104,30 @@ class GraphPainter:
     """
 
     def __init__(self, dataset: xr.Dataset, look: Theme, running: Running) -> None:
-        self.dataset, self.look, self.running = dataset, look, running
+        super().__init__(dataset, look)
+        self.running = running
 
     def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
         """Draw a panel at its place, along the abscissa of the one above if that is given."""
         scratch = Figure(figsize=tuple(drawing.get_size_inches()))
-        whole = Painter(self.dataset, self.look)
-        full, entries = whole.draw(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
+        full, entries = super().draw(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
         still = tuple(line for line in panel.lines if not _grows(self.dataset, line, self.running))
         if still:
             axes, _ = Painter(self.dataset, self.look, still).draw(drawing, spot, panel, above)
         else:
             axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
             axes.grid(visible=True)
-        axes.set_xlim(full.get_xlim())
-        axes.set_ylim(full.get_ylim())
-        if panel.kind == "histogram":
-            axes.set_ylim(top=max(axes.get_ylim()[1], self._highest(panel)))
+        axes.set(xlim=full.get_xlim(), ylim=full.get_ylim())
+        if panel.kind == "histogram":  # its steps may be higher on the way than at the end
+            count = self.dataset.sizes["elapsed_time"]
+            tops = [
+                convert(self.running.values(line.y, frame), _unit(self.dataset, line.y), panel.y_unit).max()
+                for line in panel.lines
+                if line.y in self.running.names
+                for frame in range(0, count, max(1, count // 60))
+            ]
+            axes.set_ylim(top=max(axes.get_ylim()[1], _HEADROOM * max(tops, default=0.0)))
         return axes, entries
-
-    def _highest(self, panel: Panel) -> float:
-        """Return what a histogram must have room for."""
-        lines = [line for line in panel.lines if line.y in self.running.names]
-        frames = range(0, self.dataset.sizes["elapsed_time"], max(1, self.dataset.sizes["elapsed_time"] // 60))
-        tops = [
-            float(np.max(convert(self.running.values(line.y, frame), _unit(self.dataset, line.y), panel.y_unit)))
-            for line in lines
-            for frame in frames
-        ]
-        return _HEADROOM * max(tops, default=0.0)
-
-    def labels(self, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Return what the two axes of a panel show, and in which units."""
-        return Painter(self.dataset, self.look).labels(panel)
-
-    def levels(self, panel: Panel) -> dict[str, float]:
-        """Return the pressures that a panel marks [hPa]."""
-        return Painter(self.dataset, self.look).levels(panel)
 
 
 class Graph:
@@ -199,8 +186,7 @@ class Graph:
             if artist.axes is not None:
                 artist.remove()
         before = set(self.axes.get_children())
-        if len(self.curves) < len(self.lines):
-            so_far = self.running.at(frame)
+        so_far = self.running.at(frame) if len(self.curves) < len(self.lines) else self.dataset
         for line, index in self.lines:
             if line in self.curves:
                 self._draw_so_far(line, index, frame)
@@ -211,8 +197,6 @@ class Graph:
                 draw_line(self.axes, self.panel, line, values, self.look, index)
         new = [artist for artist in self.axes.get_children() if artist not in before]
         self.drawn = sorted(new, key=lambda artist: artist.get_zorder())
-        for artist in self.drawn:
-            artist.set_animated(True)
         self.cursor.set_xdata([self.time[frame]] * 2)
         for shade in self.shades:
             shade.set_clip_path(self._below(frame))
@@ -232,17 +216,10 @@ class Graph:
         values = Curve(np.where(past, x, np.nan), np.where(past, y, np.nan), error)
         draw_line(self.axes, self.panel, line, values, self.look, index)
         if each:
-            self.axes.add_line(
-                Line2D(
-                    x[[frame]],
-                    y[[frame]],
-                    marker="o",
-                    markersize=1.5 * self.look.marker,
-                    markerfacecolor=DATA_COLOURS[index % len(DATA_COLOURS)],
-                    markeredgecolor="white",
-                    zorder=6.0,
-                )
-            )
+            colour = DATA_COLOURS[index % len(DATA_COLOURS)]
+            dot = Line2D(x[[frame]], y[[frame]], marker="o", markersize=1.5 * self.look.marker, zorder=6.0)
+            dot.set(markerfacecolor=colour, markeredgecolor="white")
+            self.axes.add_line(dot)
 
 
 def _unit(dataset: xr.Dataset, name: str) -> str:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = ["Box", "length_text", "length_unit"]
+from atmosbox.file.molecules import Molecules
+
+__all__ = ["Box", "length_text", "length_unit", "page_box"]
 
 _UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
 _WALLS = 6
@@ -67,6 +69,28 @@ class Box:
             "planar": self.planar,
             "gravity": self.gravity,
         }
+
+
+def page_box(seen: Molecules) -> Box:
+    """Return the box of a saved run.
+
+    Parameters
+    ----------
+    seen : Molecules
+        The molecules of the run and their box.
+
+    Examples
+    --------
+    >>> none = np.zeros((1, 0))
+    >>> sides, unknown = np.array([[2e-8, 2e-8, 3e-8]]), np.full((1, 6), np.nan)
+    >>> air = Molecules(False, none, none, none, none, none, None, sides, ("specular",) * 6, unknown, False, False)
+    >>> page_box(air).length
+    (2e-08, 2e-08, 3e-08)
+    """
+    x, y, z = (float(side) for side in seen.side[0])
+    warm = tuple(float(value) if math.isfinite(value) else None for value in seen.wall_temperature[0])
+    reach = None if seen.discs else float(seen.side[:, 2].max())
+    return Box((x, y, z), seen.walls, warm, seen.planar, seen.gravity, reach)
 
 
 def length_unit(length: float) -> str:

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
-from atmosbox.page.moment import Moments, moments
-from atmosbox.page.page_box import Box
+from atmosbox.file.molecules import Molecules, molecules
+from atmosbox.file.provenance import parameters
+from atmosbox.page.page_box import Box, page_box
 from atmosbox.page.page_panel import Meaning, names
 from atmosbox.page.page_stage import Stage, stage
 from atmosbox.page.thinning import share
@@ -62,7 +63,7 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
     atmosbox.errors.FileError: The run holds no molecules: type atmosbox run temperature --save-molecules.
     """
     headings = changed(runs) if len(runs) > 1 else [""]
-    every = [moments(run) for run in runs]
+    every = [molecules(run) for run in runs]
     units = {str(run["elapsed_time"].attrs.get("units", "ns")) for run in runs}
     if len(units) > 1:
         raise FileError(
@@ -74,19 +75,21 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
     ]
 
 
-def _page(dataset: xr.Dataset, seen: Moments, heading: str, fastest: float, runs: int) -> Page:
+def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, runs: int) -> Page:
     room = share(seen.position.shape[1], len(seen.time), runs)
     kept = np.unique(np.rint(np.linspace(0, len(seen.time) - 1, room.frames)).astype(int))
     panels, marks, sentences = _graphs(dataset)
+    made, box = parameters(dataset), page_box(seen)
+    scene, seed = str(made.get("scene", "")), made.get("settings", {}).get("seed")
     told = stage(
-        scene=seen.scene,
-        title=str(dataset.attrs.get("title", seen.scene)),
+        scene=scene,
+        title=str(dataset.attrs.get("title", scene)),
         story=story_of(dataset),
         settings=settings_of(dataset),
         version=str(dataset.attrs.get("product_version", "")),
-        seed=seen.seed,
-        engine=seen.engine,
-        box=seen.box,
+        seed=None if seed is None else int(seed),
+        engine=str(made.get("engine", "exact")),
+        box=box,
         mass=seen.mass,
         diameter=seen.diameter,
         water=seen.water,
@@ -104,12 +107,12 @@ def _page(dataset: xr.Dataset, seen: Moments, heading: str, fastest: float, runs
         "heading": heading,
         "footer": footer_of(dataset),
         "notes": notes(seen, told.record, frames=len(kept)),
-        **_values(dataset, panels, seen.box),
+        **_values(dataset, panels, box),
     }
     return Page(record, list(_frames(told, seen, kept)))
 
 
-def _frames(told: Stage, seen: Moments, kept: NDArray[np.int_]) -> Iterator[bytes]:
+def _frames(told: Stage, seen: Molecules, kept: NDArray[np.int_]) -> Iterator[bytes]:
     """Yield the frames that are kept."""
     for sequence, index in enumerate(kept):
         yield told.frame(
@@ -119,8 +122,8 @@ def _frames(told: Stage, seen: Moments, kept: NDArray[np.int_]) -> Iterator[byte
             seen.position[index],
             seen.speed[index],
             drops=None if seen.drops is None else seen.drops[index],
-            liquid=int(seen.liquid[index]),
-            rained=int(seen.rained[index]),
+            liquid=0 if seen.liquid is None else int(seen.liquid[index]),
+            rained=0 if seen.rained is None else int(seen.rained[index]),
         )
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from atmosbox.file.molecules import Molecules
 from atmosbox.file.provenance import parameters
-from atmosbox.page.moment import Moments
 from atmosbox.page.page_box import length_text
 
 if TYPE_CHECKING:
@@ -128,12 +128,12 @@ def footer_of(dataset: xr.Dataset) -> str:
     return footer(dataset)
 
 
-def notes(seen: Moments, stage: Mapping[str, Any], *, frames: int) -> list[str]:
+def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str]:
     """Return what the picture leaves out or adds, in sentences.
 
     Parameters
     ----------
-    seen : Moments
+    seen : Molecules
         The run.
     stage : mapping
         The record of its stage.
@@ -174,14 +174,14 @@ def notes(seen: Moments, stage: Mapping[str, Any], *, frames: int) -> list[str]:
         wider = dict(stage["settings"]).get("drop size")
         if wider:
             found.append(f"The drops are {wider} times as wide as real ones of so many molecules.")
-    elif np.any(seen.liquid):
+    elif seen.liquid is not None and np.any(seen.liquid):
         found.append("The liquid is a mist without places: it is drawn as clumps, whose places the page chose.")
-    if np.any(seen.rained):
+    if seen.rained is not None and np.any(seen.rained):
         found.append("Rain has left the box: it is drawn as a layer on the floor.")
     return found
 
 
-def _flight(seen: Moments) -> tuple[float, float]:
+def _flight(seen: Molecules) -> tuple[float, float]:
     """Return how far a molecule comes from frame to frame [m], in the middle of the run, and in sides of the box."""
     if len(seen.time) < 2 or not seen.position.shape[1]:
         return 0.0, 0.0
@@ -193,7 +193,7 @@ def _flight(seen: Moments) -> tuple[float, float]:
     return far, far / float(np.exp(np.log(seen.side[middle]).mean()))
 
 
-def _shorter(seen: Moments, stage: Mapping[str, Any], of_side: float) -> str:
+def _shorter(seen: Molecules, stage: Mapping[str, Any], of_side: float) -> str:
     """Return which run shows the collisions: one so short that molecules fly little from frame to frame."""
     unit = stage["time"]["unit"]
     number, _, own = dict(stage["settings"]).get("duration", "").partition(" ")

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from atmosbox.file.molecules import molecules
 from atmosbox.file.netcdf import read, write
-from atmosbox.page.moment import moments
+from atmosbox.page.page_box import page_box
 from atmosbox.page.saved_run import pages
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import DRY_AIR, WATER
@@ -54,23 +55,23 @@ def test_the_ceiling_of_a_lifted_parcel_is_where_its_piston_is(saved):
     np.testing.assert_allclose(run.box_side.sel(axis="z"), run.piston_height, rtol=1e-12)
     height = run.box_side.sel(axis="z").values
     assert height[-1] > 1.5 * height[0]
-    seen = moments(run)
-    assert seen.box.walls == ("specular",) * 5 + ("piston",)
-    assert seen.box.reach == height.max()
+    seen = molecules(run)
+    assert page_box(seen).walls == ("specular",) * 5 + ("piston",)
+    assert page_box(seen).reach == height.max()
 
 
 def test_heat_baths_are_known_with_their_temperatures(saved):
-    seen = moments(saved("temperature"))
-    assert seen.box.walls == ("heat_bath",) * 6
-    np.testing.assert_allclose(seen.box.wall_temperature, 298.15)
-    assert not seen.box.gravity
-    assert not seen.box.planar
+    seen = molecules(saved("temperature"))
+    assert page_box(seen).walls == ("heat_bath",) * 6
+    np.testing.assert_allclose(page_box(seen).wall_temperature, 298.15)
+    assert not page_box(seen).gravity
+    assert not page_box(seen).planar
 
 
 def test_the_floor_under_a_pool_is_a_pool_and_its_molecules_are_water_from_the_start(saved):
     run = saved("evaporation")
-    seen = moments(run)
-    assert seen.box.walls[4:] == ("pool", "piston")
+    seen = molecules(run)
+    assert page_box(seen).walls[4:] == ("pool", "piston")
     assert seen.water.sum() == int(run.vapor_molecule_count[0] + run.liquid_molecule_count[0])
     np.testing.assert_allclose(run.molecule_mass.values[seen.water], WATER.molecule_mass)
     np.testing.assert_allclose(run.molecule_mass.values[~seen.water], DRY_AIR.molecule_mass)
@@ -89,8 +90,8 @@ def test_drops_have_places_inside_the_box_and_as_many_as_there_are(saved):
 
 def test_flat_scenes_keep_their_discs_without_being_asked(tmp_path):
     outcome = runner.execute(runner.prepare("elastic-collisions", {"duration": "2 s"}))
-    seen = moments(read(write(outcome.dataset, tmp_path / "discs.nc")))
+    seen = molecules(read(write(outcome.dataset, tmp_path / "discs.nc")))
     assert seen.discs
-    assert seen.box.planar
-    assert seen.box.unit == "m"
+    assert page_box(seen).planar
+    assert page_box(seen).unit == "m"
     assert seen.position.shape[1:] == (60, 3)

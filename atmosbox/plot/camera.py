@@ -1,4 +1,4 @@
-"""From a place in the box to a place on the page: how a camera in front of the box sees it."""
+"""From a position in the box to one in the picture: how a camera in front of the box sees it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["EDGES", "FACES", "View", "corners"]
+__all__ = ["EDGES", "FACES", "Camera", "corners"]
 
 _TURN, _TILT = math.radians(24.0), math.radians(16.0)  # of the camera to the side and above
 _DISTANCE = 4.5  # of the camera from the middle of the box, in its longest sides
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 FACES = (
     (0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5),
 )  # fmt: skip
-"""The corners of each wall, x low, x high, y low, y high, z low, z high."""
+"""The corners of each wall: x low, x high, y low, y high, z low, z high."""
 EDGES = tuple((a, b) for a in range(8) for b in range(a + 1, 8) if bin(a ^ b).count("1") == 1)
 """The corners at the ends of each edge."""
 
@@ -35,7 +35,7 @@ def corners(side: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class View:
+class Camera:
     """A camera that looks at the middle of a box, a little from the side and from above.
 
     Parameters
@@ -47,31 +47,31 @@ class View:
     --------
     What is nearer is seen larger, and the wall y = 0 is in front:
 
-    >>> view = View(np.ones(3))
-    >>> _, scale = view.project(np.array([[0.5, 0.0, 0.5], [0.5, 1.0, 0.5]]))
+    >>> camera = Camera(np.ones(3))
+    >>> _, scale = camera.project(np.array([[0.5, 0.0, 0.5], [0.5, 1.0, 0.5]]))
     >>> bool(scale[0] > scale[1])
     True
     """
 
     side: Floats
 
-    def project(self, place: Floats) -> tuple[Floats, Floats]:
-        """Return where on the page places are (n, 2) and how large a unit of length is there (n,)."""
-        place = np.asarray(place, dtype=np.float64) - self.side / 2
+    def project(self, position: Floats) -> tuple[Floats, Floats]:
+        """Return where positions are in the picture (n, 2), and how large a unit of length is there (n,)."""
+        place = np.asarray(position, dtype=np.float64) - self.side / 2
         turn, tilt = (math.cos(_TURN), math.sin(_TURN)), (math.cos(_TILT), math.sin(_TILT))
         right = place[:, 0] * turn[0] + place[:, 1] * turn[1]
         away = place[:, 1] * turn[0] - place[:, 0] * turn[1]
         up = place[:, 2] * tilt[0] + away * tilt[1]
         depth = away * tilt[0] - place[:, 2] * tilt[1]
-        far = _DISTANCE * float(self.side.max())
-        scale = far / (far + depth)
+        distance = _DISTANCE * float(self.side.max())
+        scale = distance / (distance + depth)
         return np.column_stack((right, up)) * scale[:, None], scale
 
-    def far(self, wall: int) -> bool:
+    def behind(self, wall: int) -> bool:
         """Tell whether a wall is behind the molecules, seen from the camera."""
         return wall in (0, 3, 4)
 
     def limits(self, side: Floats) -> tuple[Floats, Floats]:
-        """Return the lower left and the upper right end of what a box takes on the page."""
+        """Return the lower left and the upper right corner of a box in the picture."""
         seen, _ = self.project(corners(side))
         return seen.min(axis=0), seen.max(axis=0)

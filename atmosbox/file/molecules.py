@@ -1,0 +1,173 @@
+"""The molecules of a saved run and their box, in SI units, frame by frame: what a page, a film and a picture draw."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import FileError
+from atmosbox.file.provenance import parameters
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Molecules", "molecules"]
+
+_NEEDED = ("molecule_position", "molecule_speed", "molecule_mass", "molecule_diameter", "box_side", "wall_law")
+
+Floats = NDArray[np.floating]
+Whole = NDArray[np.integer]
+
+
+class Molecules(NamedTuple):
+    """The molecules of a run and their box.
+
+    Attributes
+    ----------
+    discs : bool
+        Whether it is a planar scene, whose molecules are called discs.
+    time : (frame,)
+        In the unit of the file.
+    position, speed : (frame, molecule, axis) and (frame, molecule)
+        Of the molecules [m, m s-1], NaN in the liquid.
+    mass, diameter : (molecule,)
+        Of each [kg, m].
+    water : (molecule,) or None
+        Which are water.
+    side : (frame, axis)
+        Sides of the box [m].
+    walls : (wall,)
+        What each wall is: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
+        x high, y low, y high, z low, z high.
+    wall_temperature : (frame, wall)
+        Temperatures of the walls [K], NaN for a wall that has none.
+    planar, gravity : bool
+        Whether nothing moves along y, and whether molecules fall.
+    drops : (frame, drop, 4) or None
+        Positions and radii of drops [m], NaN for a drop that is not there.
+    liquid, rained : (frame,) or None
+        Numbers of molecules in the liquid, and of those that have rained out.
+    """
+
+    discs: bool
+    time: Floats
+    position: Floats
+    speed: Floats
+    mass: Floats
+    diameter: Floats
+    water: NDArray[np.bool_] | None
+    side: Floats
+    walls: tuple[str, ...]
+    wall_temperature: Floats
+    planar: bool
+    gravity: bool
+    drops: Floats | None = None
+    liquid: Whole | None = None
+    rained: Whole | None = None
+
+    @property
+    def step(self) -> float:
+        """The median distance that a molecule moves between two frames, in largest sides of the box."""
+        if len(self.position) < 2:
+            return 1.0
+        moved = np.linalg.norm(np.diff(self.position, axis=0), axis=2)
+        seen = moved[np.isfinite(moved)]
+        return float(np.median(seen) / self.side.max()) if seen.size else 1.0
+
+
+def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
+    """Return the molecules of a run and their box.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A run with ``--save-molecules``, or one of a planar scene, which always keeps its discs.
+    otherwise : str
+        What else a user can do if there are no molecules, for the end of the refusal.
+
+    Returns
+    -------
+    Molecules
+        The molecules.
+
+    Raises
+    ------
+    FileError
+        If the run holds no molecules or no frame, or does not say in which box they are.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> molecules(xr.Dataset(attrs={"atmosbox_parameters": '{"scene": "./mine.py"}'}))
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox run ./mine.py --save-molecules.
+    """
+    source = dataset.encoding.get("source") or "The run"
+    if "rung" in dataset.dims:
+        raise FileError(f"{source} holds a comparison of engines and no molecules: type atmosbox plot to draw it.")
+    discs = "disc_position" in dataset
+    again = f"type atmosbox run {parameters(dataset).get('scene', 'SCENE')} --save-molecules"
+    if not discs and "molecule_position" not in dataset:
+        raise FileError(f"{source} holds no molecules: {again}{otherwise}.")
+    if dataset.sizes.get("elapsed_time", 0) == 0:
+        raise FileError(f"{source} holds no frame, for the run was stopped before its first: {again}.")
+    missing = [name for name in _NEEDED if name not in dataset]
+    if missing and not discs:
+        raise FileError(f"{source} was written by an earlier atmosbox and lacks {missing[0]}: {again}.")
+    held = _discs(dataset) if discs else _molecules(dataset)
+    frames = dataset.sizes["elapsed_time"]
+    return Molecules(
+        discs=discs,
+        time=dataset["elapsed_time"].values,
+        wall_temperature=_values(dataset, "wall_temperature", "wall", np.full((frames, 6), np.nan)),
+        liquid=_values(dataset, "liquid_molecule_count", "", None),
+        rained=_values(dataset, "rained_molecule_count", "", None),
+        **held,
+    )
+
+
+def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
+    """Return what the instrument of ``--save-molecules`` has kept."""
+    position = _values(dataset, "molecule_position", "molecule axis")
+    names = dataset["wall_law"].attrs["flag_meanings"].split()
+    drops = None
+    if "drop_position" in dataset:
+        radius = _values(dataset, "drop_radius", "drop")
+        drops = np.concatenate((_values(dataset, "drop_position", "drop axis"), radius[:, :, None]), axis=2)
+    return {
+        "position": position,
+        "speed": _values(dataset, "molecule_speed", "molecule"),
+        "mass": dataset["molecule_mass"].values,
+        "diameter": dataset["molecule_diameter"].values,
+        "water": dataset["species"].values == 1 if "species" in dataset else None,
+        "side": _values(dataset, "box_side", "axis"),
+        "walls": tuple(names[int(law)] for law in dataset["wall_law"].values),
+        "planar": position.shape[1] > 1 and float(np.ptp(position[0, :, 1])) == 0.0,
+        "gravity": "potential_energy" in dataset and bool(dataset["potential_energy"].values.any()),
+        "drops": drops,
+    }
+
+
+def _discs(dataset: xr.Dataset) -> dict[str, Any]:
+    """Return the discs that a planar scene keeps."""
+    position = _values(dataset, "disc_position", "molecule axis")
+    return {
+        "position": position,
+        "speed": np.linalg.norm(_values(dataset, "disc_velocity", "molecule axis"), axis=2),
+        "mass": dataset["disc_mass"].values,
+        "diameter": dataset["disc_diameter"].values,
+        "water": None,
+        "side": np.tile(dataset["box_length"].values, (len(position), 1)),
+        "walls": ("specular",) * 6,
+        "planar": True,
+        "gravity": False,
+    }
+
+
+def _values(dataset: xr.Dataset, name: str, dimensions: str, otherwise: Any = None) -> Any:
+    """Return a variable with time as its first dimension, in the order of the others."""
+    if name not in dataset:
+        return otherwise
+    return dataset[name].transpose("elapsed_time", *dimensions.split()).values
