@@ -189,7 +189,7 @@ def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs)
     seen = np.asarray(drawn.get_offsets())
     places, scale = sheet.stage.camera.project(dataset.molecule_position.values[7] * 1e9)
     order = np.argsort(scale, kind="stable")
-    assert seen == pytest.approx(places[order])
+    assert seen == pytest.approx(places[order], abs=1e-4)
     colours = sheet.stage.colours(sheet.stage.norm(dataset.molecule_speed.values[7][order]))
     assert np.asarray(drawn.get_facecolor()) == pytest.approx(colours)
 
