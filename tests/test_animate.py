@@ -7,7 +7,6 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.figure import Figure
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -16,15 +15,13 @@ from atmosbox import film
 from atmosbox.cli import app
 from atmosbox.errors import FileError, SettingError
 from atmosbox.file import netcdf as output
-from atmosbox.file.molecules import Molecules, molecules
+from atmosbox.file.molecules import molecules
 from atmosbox.film import encoder
 from atmosbox.film.film_file import sized
 from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.graph import chosen
 from atmosbox.film.pace import MOST, pace
 from atmosbox.film.running import Running
-from atmosbox.plot.box_picture import BoxPicture
-from atmosbox.plot.camera import FACES, Camera, corners
 from atmosbox.plot.layout import panels_of
 from atmosbox.plot.theme import find, style
 from atmosbox.scene.panels import Line, Panel, to_json
@@ -93,77 +90,6 @@ def test_a_pace_that_is_none_is_refused(wish):
 def test_a_film_of_too_many_pictures_is_refused():
     with pytest.raises(SettingError, match=f"more than the {MOST}"):
         pace(100_000, fps=50.0, seconds=3600.0)
-
-
-# The box
-
-
-def picture(held):
-    return BoxPicture(Figure().add_axes((0.0, 0.0, 1.0, 1.0)), held, LOOK)
-
-
-def legend(dataset):
-    return picture(molecules(dataset)).legend()
-
-
-def test_the_box_is_drawn_in_a_unit_that_can_be_read(runs):
-    small, large = (picture(molecules(runs[scene][0])) for scene in ("temperature", "atmosphere"))
-    assert (small.unit, large.unit) == ("nm", "km")
-    assert 1.0 < small.largest.max() < 1000.0
-    assert large.held.walls == ("periodic",) * 4 + ("heat_bath", "specular")
-
-
-def test_a_piston_moves_and_the_camera_sees_the_largest_box(runs):
-    held = molecules(runs["lifting-dry"][0])
-    assert held.walls[5] == "piston"
-    assert held.side[-1, 2] > 2.0 * held.side[0, 2]
-    camera = Camera(held.side[-1])
-    low, high = camera.limits(held.side[0])
-    least, most = camera.limits(held.side[-1])
-    assert (low >= least - 1e-12).all()
-    assert (high <= most + 1e-12).all()
-
-
-def test_every_wall_has_the_corners_that_lie_in_it():
-    ends = corners(np.array([1.0, 2.0, 3.0]))
-    for wall, face in enumerate(FACES):
-        axis, end = divmod(wall, 2)
-        assert set(ends[list(face)][:, axis]) == {end * (axis + 1.0)}
-
-
-def test_the_caption_says_what_is_tinted_and_how_large_molecules_are_drawn(runs):
-    assert legend(runs["temperature"][0])[1].replace("\u00a0", " ") == "orange: all walls kept at 25 °C"
-    words = legend(runs["atmosphere"][0])
-    assert "dashed: periodic sides" in words
-    assert words[0].endswith("m wide")
-    assert "grey lid: piston" in legend(runs["lifting-dry"][0])
-
-
-def box_of(position, **others):
-    """Some molecules in a box of 100 nm with plain walls."""
-    frames, count = position.shape[:2]
-    speed, side = np.full((frames, count), 400.0), np.full((frames, 3), 1e-7)
-    each = np.full(count, 3.7e-10)
-    walls, unknown = ("specular",) * 6, np.full((frames, 6), np.nan)
-    plain = Molecules(False, np.arange(frames), position, speed, each, each, None, side, walls, unknown, False, False)
-    return plain._replace(**others)
-
-
-def test_no_more_molecules_are_drawn_than_can_be_told_apart():
-    many = picture(box_of(np.random.default_rng(1).random((2, 9000, 3)) * 1e-7))
-    many.artists(1)
-    assert many.molecules.get_offsets().shape == (4000, 2)
-    assert many.legend()[0].startswith("4000 of 9000 ")
-
-
-def test_water_and_drops_are_marked_and_molecules_in_the_liquid_are_not_drawn():
-    position = np.full((1, 3, 3), 3e-8)
-    position[0, 2] = np.nan
-    water, drops = np.array([False, True, True]), np.array([[[5e-8, 5e-8, 5e-8, 2e-8]]])
-    moist = picture(box_of(position, water=water, drops=drops, liquid=np.array([1])))
-    assert moist.legend()[1:] == ["red rims: water", "blue balls: drops"]
-    moist.artists(0)
-    assert len(moist.molecules.get_offsets()) == 3  # two molecules and a drop
 
 
 # The pictures

@@ -18,6 +18,7 @@ from atmosbox.cli.terminal import guarded, say
         "atmosbox plot lifting-dry.nc",
         "atmosbox plot lifting-dry.nc --format pdf --theme slides",
         "atmosbox plot lifting-dry.nc --out figures/lift.svg --force",
+        "atmosbox plot lifting-dry.nc --with-box",
     )
 )
 @guarded
@@ -28,10 +29,20 @@ def plot(
         Format | None, typer.Option(help="The format, where the name of the figure does not say it.")
     ] = None,
     theme: Annotated[Theme, typer.Option(help="For a page or for a screen.")] = Theme.notes,
+    with_box: Annotated[
+        bool,
+        typer.Option(
+            "--with-box",
+            help="Draw the molecules in their box, at the start, half-way and at the end, over the graphs.",
+        ),
+    ] = False,
     force: Force = False,
     verbose: Verbose = False,
 ) -> None:
-    """Draw the figure of a run."""
+    """Draw the figure of a run.
+
+    Its box can be drawn if the run kept its molecules: atmosbox run SCENE --save-molecules.
+    """
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
@@ -39,4 +50,4 @@ def plot(
 
     from atmosbox.plot import save
 
-    say(str(save(dataset, path, format and format.value, theme=theme.value, force=force)))
+    say(str(save(dataset, path, format and format.value, theme=theme.value, force=force, with_box=with_box)))

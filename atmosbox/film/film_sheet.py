@@ -125,7 +125,7 @@ class Sheet:
             self.stage.axes.set_position((left, foot, width, top - foot))
             self.stage.fit()
             spot = (left + (1.0 - _BAR) * width / 2, bottom + 0.75 * bar, _BAR * width, 0.2 * bar)
-            speed_bar(self.stage, spot, look)
+            speed_bar(self.figure, self.stage, spot, look)
         self.background = None
 
     def picture(self, frame: int) -> NDArray[np.uint8]:

@@ -6,12 +6,13 @@ file is, without the scene and without the engine, and drawing it twice gives th
 
 Read in this order: `unit` (from SI to what a meteorologist reads), `curve` and `plane` (from a file to numbers),
 `stroke`, `draw`, `disc` and `skewt` (numbers to ink), `tick` and `caption` (what is written), `theme` (how large),
-`tilt` and `plate` (one panel), `place` and `layout` (all of them), `comparison` (several runs in one figure), `file`
-(PNG, SVG, PDF).
+`tilt` and `plate` (one panel), `place` and `layout` (all of them), `comparison` (several runs in one figure), `camera`,
+`box_picture` and `box_figure` (the molecules in their box), `figure_file` (PNG, SVG, PDF).
 """
 
+from atmosbox.plot.box_figure import figure_with_box
 from atmosbox.plot.figure_file import FORMATS, save
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import THEMES
 
-__all__ = ["FORMATS", "THEMES", "figure", "save"]
+__all__ = ["FORMATS", "THEMES", "figure", "figure_with_box", "save"]

@@ -101,8 +101,10 @@ def _put_boxes(
     each, top = (1.0 - _BAR) / len(pictures), 1.0 - 0.5 * look.text / high
     if look.heading:
         title = str(dataset.attrs.get("title", ""))
-        text = pen.figure.text(0.5 * look.text / wide, top, title, fontsize=1.3 * look.title, weight="bold", va="top")
-        top -= (pen.height(text) + 0.6 * look.text) / high
+        heading = pen.figure.text(
+            0.5 * look.text / wide, top, title, fontsize=1.3 * look.title, weight="bold", va="top"
+        )
+        top -= (pen.height(heading) + 0.6 * look.text) / high
     frames = [round(part * (len(held.time) - 1)) for part in _INSTANTS]
     said = [_said(dataset, held, moment) for moment in frames]
     lines = max(text.count("\n") for text in said) + 1
@@ -114,7 +116,7 @@ def _put_boxes(
         picture.axes.set_position((left + 0.05 * each, bottom, 0.9 * each, below - bottom))
         picture.fit()
         picture.artists(moment)
-    speed_bar(pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
+    speed_bar(pen.figure, pictures[0], (1.0 - _BAR + 0.01, bottom, 0.012, 0.9 * (below - bottom)), look)
 
 
 def _said(dataset: xr.Dataset, held: Molecules, moment: int) -> str:

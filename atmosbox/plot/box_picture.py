@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.colors import LogNorm, to_rgba
+from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import IdentityTransform
@@ -147,12 +148,12 @@ class BoxPicture:
     def fit(self) -> None:
         """Let the largest box fill the axes, alike in both directions."""
         low, high = self.camera.limits(self.largest)
-        frame, figure = self.axes.get_window_extent(), self.axes.get_figure(root=True)
+        frame = self.axes.get_window_extent()
         pixel = 1.02 * max((high[0] - low[0]) / frame.width, (high[1] - low[1]) / frame.height)  # [unit]
         (x, y), width, height = (low + high) / 2, pixel * frame.width, pixel * frame.height
         self.axes.set(xlim=(x - width / 2, x + width / 2), ylim=(y - height / 2, y + height / 2))
         self.axes.set_axis_off()
-        self.points = 72.0 / figure.dpi / pixel  # of a unit of length in the middle of the box [pt]
+        self.points = 72.0 / self.axes.figure.dpi / pixel  # of a unit of length in the middle of the box [pt]
 
     def _write_sides(self) -> None:
         """Write how wide the box is, and how high unless that changes."""
@@ -196,7 +197,7 @@ class BoxPicture:
         points = (wide * scale * self.points)[order]
         rim = np.where(water[order], 0.9, 0.35) * look.line * np.minimum(1.0, points / (3.0 * look.line))
         self.molecules.set_offsets(in_picture[order])
-        self.molecules.set_sizes((points / 2) ** 2, dpi=self.axes.get_figure(root=True).dpi)
+        self.molecules.set_sizes((points / 2) ** 2, dpi=self.axes.figure.dpi)
         self.molecules.set_facecolor([*fill[order]])
         self.molecules.set_edgecolor([*np.where(water[order, None], to_rgba(_VERMILLION), to_rgba(DARK, 0.75))])
         self.molecules.set_linewidth(rim)
@@ -296,11 +297,15 @@ def instant(dataset: xr.Dataset, held: Molecules | None, frame: int) -> str:
     return f"{text}\nliquid: {int(held.liquid[frame])} of {np.count_nonzero(held.water)} molecules of water"
 
 
-def speed_bar(picture: BoxPicture | PlanarPicture, spot: tuple[float, float, float, float], look: Theme) -> None:
+def speed_bar(
+    figure: Figure, picture: BoxPicture | PlanarPicture, spot: tuple[float, float, float, float], look: Theme
+) -> None:
     """Draw what the colours of molecules mean.
 
     Parameters
     ----------
+    figure : matplotlib.figure.Figure
+        The page.
     picture : BoxPicture or PlanarPicture
         The molecules.
     spot : tuple of float
@@ -309,7 +314,6 @@ def speed_bar(picture: BoxPicture | PlanarPicture, spot: tuple[float, float, flo
     look : Theme
         How large.
     """
-    figure = picture.axes.get_figure(root=True)
     axes = figure.add_axes(spot)
     wide, high = spot[2] * figure.get_figwidth(), spot[3] * figure.get_figheight()
     log = isinstance(picture.norm, LogNorm)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from atmosbox.file.output_path import named, write_whole
 from atmosbox.plot import sweep_figure, tradeoff_figure
+from atmosbox.plot.box_figure import figure_with_box
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import find, style
 
@@ -27,6 +28,7 @@ def save(
     *,
     theme: str = "notes",
     force: bool = False,
+    with_box: bool = False,
 ) -> Path:
     """Draw the figure of a run into a file.
 
@@ -42,6 +44,8 @@ def save(
         A figure for a page, or one for a screen.
     force : bool
         Whether a file of that name may be replaced.
+    with_box : bool
+        Whether the molecules are drawn over the panels, as `figure_with_box` does.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def save(
     """
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    drawing = _drawn(dataset, theme)
+    drawing = figure_with_box(dataset, theme) if with_box else _drawn(dataset, theme)
     title = str(dataset.attrs.get("title", "atmosbox"))
     parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
     write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))

@@ -1,111 +1,22 @@
-"""Pictures that no scene draws: the parcel on its way up, and the cells of the engine."""
+"""Pictures beside the figures of the scenes: a parcel of air in its box, and the cells of the engine."""
 
 import itertools
 
 import numpy as np
-from jobs.drawing import BLUE, VERMILLION, axes_of, save, sheet
+from jobs.drawing import BLUE, VERMILLION, axes_of, save
 from jobs.registry import Findings, job
-from matplotlib.collections import EllipseCollection
 from matplotlib.patches import Circle, Rectangle
 
+from atmosbox.plot import figure_with_box
 from atmosbox.plot.theme import DARK, FAINT
 from atmosbox.simulation import runner
-
-SLICE = 12e-9
-"""Thickness of the slice of the box that is drawn [m]."""
 
 
 @job("lifting-picture")
 def lifting_picture(found: Findings) -> None:
-    """Draw the box at three heights, and the temperature all the way."""
+    """Draw what `atmosbox plot lifting-dry.nc --with-box` draws."""
     outcome = runner.execute(runner.prepare("lifting-dry", {}, save_molecules=True))
-    data = outcome.dataset
-    width = float(np.sqrt(data.parcel_volume[0] / data.piston_height[0]))
-    frames = (0, data.sizes["elapsed_time"] // 2, data.sizes["elapsed_time"] - 1)
-    highest = float(data.piston_height.max())
-    with sheet((10.4, 6.9)) as drawing:
-        grid = drawing.add_gridspec(2, 6, height_ratios=(1.0, 1.02))
-        for k, frame in enumerate(frames):
-            axes = drawing.add_subplot(grid[0, 2 * k : 2 * k + 2])
-            colours = draw_box(axes, data.isel(elapsed_time=frame), width, highest, outcome)
-        bar = drawing.colorbar(colours, ax=drawing.axes, shrink=0.85, pad=0.01, aspect=25, extend="max")
-        bar.set_label("speed of a molecule (m s⁻¹)")
-        bar.outline.set_visible(False)
-        draw_profile(drawing.add_subplot(grid[1, :3]), data)
-        draw_misfit(drawing.add_subplot(grid[1, 3:]), data)
-        save(found, drawing, "lifting-dry", 115)
-
-
-def draw_box(axes, now, width: float, highest: float, outcome):
-    """Draw a slice of the box, its walls and its piston; return what the colours stand for."""
-    nm = 1e9
-    place = now.molecule_position.values
-    inside = np.abs(place[:, 1] - 0.5 * width) < 0.5 * SLICE
-    place, speed = place[inside] * nm, now.molecule_speed.values[inside]
-    ceiling, side = float(now.piston_height) * nm, width * nm
-    size = np.full(len(place), 1.0)
-    discs = EllipseCollection(
-        size,
-        size,
-        np.zeros(len(place)),
-        units="xy",
-        offsets=place[:, [0, 2]],
-        offset_transform=axes.transData,
-        cmap="viridis",
-        linewidths=0.2,
-        edgecolors=DARK,
-    )
-    discs.set_array(speed)
-    discs.set_clim(0.0, 1000.0)
-    axes.add_collection(discs)
-    axes.plot([0, 0, side, side], [ceiling, 0, 0, ceiling], color=DARK, linewidth=2.2)
-    axes.add_patch(Rectangle((-1.0, ceiling), side + 2.0, 3.2, color=FAINT))
-    axes.annotate(
-        "",
-        (0.5 * side, ceiling + 12.5),
-        (0.5 * side, ceiling + 3.0),
-        arrowprops={"arrowstyle": "-|>", "color": FAINT, "linewidth": 2.0},
-    )
-    axes.set(xlim=(-3.0, side + 3.0), ylim=(-2.0, highest * nm + 16.0), aspect="equal")
-    axes.set_axis_off()
-    warmth, hpa = float(now.parcel_temperature) - 273.15, float(now.parcel_pressure) / 100.0
-    text = f"{float(now.parcel_height) / 1000.0:.1f} km:  {warmth:.0f} °C,  {hpa:.0f} hPa".replace("-", "−")
-    axes.set_title(text, loc="center", fontweight="bold")
-    return discs
-
-
-def draw_profile(axes, data) -> None:
-    """Draw temperature against pressure."""
-    hpa = data.parcel_pressure / 100.0
-    axes.plot(
-        data.environment_temperature - 273.15,
-        data.environment_pressure / 100.0,
-        color="#009e73",
-        linestyle=(0, (7, 2, 1.5, 2)),
-        label="air around",
-    )
-    axes.plot(data.parcel_temperature - 273.15, hpa, "o", color=BLUE, label="molecules")
-    axes.plot(
-        data.adiabat_temperature - 273.15, hpa, "--", color=DARK, label="dry adiabat, $T\\sim p^{\\,2/7}$", zorder=5
-    )
-    axes.set(yscale="log", xlabel="temperature (°C)", ylabel="pressure (hPa)", title="They cool as air does")
-    axes.set_yticks([300, 400, 500, 700, 850, 1000], ["300", "400", "500", "700", "850", "1000"])
-    axes.set_yticks([], minor=True)
-    axes.set_ylim(1010.0, 290.0)
-    axes.legend(loc="upper right")
-
-
-def draw_misfit(axes, data) -> None:
-    """Draw what is between measurement and theory."""
-    hpa = data.parcel_pressure / 100.0
-    axes.axvline(0.0, linestyle="--", color=DARK)
-    axes.errorbar(
-        data.parcel_temperature - data.adiabat_temperature, hpa, xerr=data.parcel_temperature_se, fmt="o", color=BLUE
-    )
-    axes.set(yscale="log", xlabel="molecules less adiabat (K)", title="… to a tenth of a kelvin")
-    axes.set_yticks([300, 400, 500, 700, 850, 1000], ["300", "400", "500", "700", "850", "1000"])
-    axes.set_yticks([], minor=True)
-    axes.set(ylim=(1010.0, 290.0), xlim=(-0.5, 0.5))
+    save(found, figure_with_box(outcome.dataset), "lifting-dry", 160)
 
 
 @job("cells", quick=True)
