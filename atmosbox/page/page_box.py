@@ -81,6 +81,7 @@ def page_box(seen: Molecules) -> Box:
 
     Examples
     --------
+    >>> import numpy as np
     >>> none = np.zeros((1, 0))
     >>> sides, unknown = np.array([[2e-8, 2e-8, 3e-8]]), np.full((1, 6), np.nan)
     >>> air = Molecules(False, none, none, none, none, none, None, sides, ("specular",) * 6, unknown, False, False)
