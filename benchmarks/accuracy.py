@@ -27,7 +27,7 @@ from atmosbox.errors import AtmosboxError  # noqa: E402
 from atmosbox.file.netcdf import read  # noqa: E402
 from atmosbox.file.provenance import parameters  # noqa: E402
 from atmosbox.scene import engines  # noqa: E402
-from atmosbox.scene.quantity import parse_quantity  # noqa: E402
+from atmosbox.scene.parameter import Parameter  # noqa: E402
 from atmosbox.simulation.accuracy import said  # noqa: E402
 from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.trade import tradeoff  # noqa: E402
@@ -157,7 +157,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--json", type=Path, default=TABLE, help="file for the table")
     asked = parser.parse_args(arguments)
     try:
-        budget = parse_quantity(asked.budget, "s", "budget")
+        budget = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(asked.budget))
         declared = [name for name in scenarios.names() if hasattr(scenarios.load(name), "ladder")]
         for source in asked.sources or declared:
             print(f"\n{source}", flush=True)

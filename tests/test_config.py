@@ -1,67 +1,19 @@
-"""What a user asks for by ``--set`` and in a settings file."""
+"""A settings file is read, or refused with its line and what to write."""
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atmosbox.cli.config import load_config, parse_set
-from atmosbox.errors import ConfigError, FileError, SettingError
+from atmosbox.cli.config import Asked, load_config
+from atmosbox.errors import ConfigError, FileError
 from atmosbox.scene.settings import SceneSettings, setting
 
 
 class Settings(SceneSettings):
     molecules: int = setting(4000, "1", "number of simulated molecules", low=1, high=10_000_000)
-    temperature: float = setting(15, "degC", "temperature at the start", low=-100.0, high=500.0)
+    temperature: float = setting(15.0, "degC", "temperature at the start", low=-100.0, high=500.0)
     pressure_top: float = setting(300.0, "hPa", "pressure at which the lift ends", low=50.0, high=1000.0)
     rotation: bool = setting(True, "", "whether molecules rotate")
-    title: str = setting("", "", "what stands above the figure")
-
-
-# --set
-
-
-def test_set_reads_name_and_value():
-    assert parse_set(["temperature=25degC", " pressure-top = 300 hPa ", "title='a = b'", 'start="bottom"']) == {
-        "temperature": "25degC",
-        "pressure_top": "300 hPa",
-        "title": "a = b",
-        "start": "bottom",
-    }
-    assert parse_set([]) == {}
-
-
-@pytest.mark.parametrize(
-    ("items", "sentence"),
-    [
-        (
-            ["temperature"],
-            '--set temperature has no "=" between name and value: '
-            "give --set temperature=value, such as --set temperature=25degC.",
-        ),
-        (["=5"], "--set =5 has no name: give --set name=value, such as --set temperature=25degC."),
-        (["a="], "--set a= has no value: give --set a=value, such as --set temperature=25degC."),
-        (["a=''"], "--set a='' has no value: give --set a=value, such as --set temperature=25degC."),
-        (["a-b=1", "a_b=2"], "a_b = 2 is given twice: give --set a_b once."),
-    ],
-)
-def test_a_malformed_set_is_refused_with_its_text(items, sentence):
-    with pytest.raises(SettingError) as caught:
-        parse_set(items)
-    assert str(caught.value) == sentence
-
-
-@given(st.lists(st.text(max_size=20) | st.builds("{}={}".format, st.text(max_size=8), st.text(max_size=8)), max_size=3))
-def test_any_set_is_read_or_refused_in_one_sentence(items):
-    try:
-        values = parse_set(items)
-        Settings.from_user(values)
-    except SettingError as error:
-        sentence = str(error)
-        assert sentence.isprintable()
-        assert sentence.endswith(".")
-
-
-# --config
 
 
 def written(tmp_path, content):
@@ -76,22 +28,20 @@ def test_a_settings_file_names_a_scene_and_its_settings(tmp_path):
         'scene = "lifting-dry"\r\n\r\n[settings]\r\ntemperature = "25degC" # warm\r\nmolecules = 4_000\r\n'
         "pressure-top = 300.0\r\nrotation = false\r\n",
     )
-    scene, settings, engine, accuracy = load_config(path)
-    assert scene == "lifting-dry"
-    assert settings == {"temperature": "25degC", "molecules": 4000, "pressure-top": 300.0, "rotation": False}
+    settings = {"temperature": "25degC", "molecules": 4000, "pressure-top": 300.0, "rotation": False}
+    assert load_config(path) == load_config(str(path)) == Asked("lifting-dry", settings)
     assert Settings.from_user(settings).changed() == {"temperature": 25.0, "rotation": False}
-    assert load_config(str(path)) == (scene, settings, engine, accuracy) == (scene, settings, None, None)
 
 
 @pytest.mark.parametrize(
     ("content", "result"),
     [
-        ("", (None, {}, None, None)),
-        ('\ufeffscene = " sky "', ("sky", {}, None, None)),
-        ("[settings]", (None, {}, None, None)),
-        ("settings.seed = 5", (None, {"seed": 5}, None, None)),
-        ('engine = "stepped:delta=0.1"', (None, {}, "stepped:delta=0.1", None)),
-        ('accuracy = " 2% "', (None, {}, None, "2%")),
+        ("", Asked("", {})),
+        ('\ufeffscene = " sky "', Asked("sky", {})),
+        ("[settings]", Asked("", {})),
+        ("settings.seed = 5", Asked("", {"seed": 5})),
+        ('engine = "stepped:delta=0.1"', Asked("", {}, "stepped:delta=0.1")),
+        ('accuracy = " 2% "', Asked("", {}, accuracy="2%")),
     ],
 )
 def test_a_settings_file_may_leave_things_out(tmp_path, content, result):
@@ -169,11 +119,11 @@ def any_file(tmp_path_factory):
 def test_any_file_is_read_or_refused_in_one_sentence(any_file, content):
     any_file.write_bytes(content)
     try:
-        scene, settings, _, _ = load_config(any_file)
+        scene, settings, *_ = load_config(any_file)
     except (ConfigError, FileError) as error:
         sentence = str(error)
         assert sentence.isprintable()
         assert sentence.endswith(".")
     else:
-        assert scene is None or scene.strip()
+        assert scene == scene.strip()
         assert all(isinstance(value, bool | int | float | str) for value in settings.values())

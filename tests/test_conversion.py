@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from atmosbox.errors import UnitError
 from atmosbox.scene.conversion import from_si, to_si
 
-KNOWN_BY_HEART = {
+TABLE = {
     # unit: (the unit in pint's words, SI unit in pint's words)
     "1": ("dimensionless", "dimensionless"),
     "%": ("percent", "dimensionless"),
@@ -55,14 +55,14 @@ def registry():
     return pint.UnitRegistry()
 
 
-@pytest.mark.parametrize(("unit", "words"), KNOWN_BY_HEART.items())
-def test_units_known_by_heart_are_those_of_pint(unit, words, registry):
+@pytest.mark.parametrize(("unit", "words"), TABLE.items())
+def test_the_units_of_the_table_are_those_of_pint(unit, words, registry):
     for value in (0.0, 1.0, -40.0):
         expected = registry.Quantity(value, words[0]).to(words[1]).magnitude
         assert to_si(value, unit) == pytest.approx(expected, rel=1e-14, abs=1e-14)
 
 
-@given(value=st.floats(-1e6, 1e6), unit=st.sampled_from([*KNOWN_BY_HEART, *LOOKED_UP]), difference=st.booleans())
+@given(value=st.floats(-1e6, 1e6), unit=st.sampled_from([*TABLE, *LOOKED_UP]), difference=st.booleans())
 def test_there_and_back_is_the_same_number(value, unit, difference):
     there = to_si(value, unit, difference=difference)
     assert from_si(there, unit, difference=difference) == pytest.approx(value, rel=1e-12, abs=1e-12 + 1e-15 * 3e2)
@@ -74,7 +74,7 @@ def test_error_bars_in_degrees_have_no_offset():
     assert to_si(9.0, "degF", difference=True) == pytest.approx(5.0)
 
 
-@pytest.mark.parametrize("unit", ["blorp", "", "deg", "K K K 5", "1/s", "delta_degC"])
+@pytest.mark.parametrize("unit", ["blorp", "", "deg", "K K K 5", "delta_degC"])
 def test_a_unit_that_does_not_exist_is_refused(unit):
     with pytest.raises(UnitError, match="is not known: give one such as"):
         to_si(1.0, unit)

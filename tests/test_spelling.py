@@ -1,8 +1,11 @@
-"""The name that a user probably meant."""
+"""Names and assignments as users spell them."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from atmosbox.scene.spelling import nearest
+from atmosbox.errors import SettingError
+from atmosbox.scene.spelling import assignments, nearest
 
 
 @pytest.mark.parametrize(
@@ -21,3 +24,41 @@ from atmosbox.scene.spelling import nearest
 )
 def test_the_nearest_name_is_the_one_that_was_meant(name, meant):
     assert nearest(name, ["molecules", "temperature", "pressure_top", "seed"]) == meant
+
+
+def test_an_assignment_is_a_name_and_a_value():
+    assert assignments(["temperature=25degC", " pressure-top = 300 hPa ", "title='a = b'", 'start="bottom"']) == {
+        "temperature": "25degC",
+        "pressure_top": "300 hPa",
+        "title": "a = b",
+        "start": "bottom",
+    }
+
+
+@pytest.mark.parametrize(
+    ("items", "sentence"),
+    [
+        (["temperature"], '--set temperature has no "=" between name and value: give --set temperature=value.'),
+        (["=5"], "--set =5 has no name: give --set name=value."),
+        (["a="], "--set a= has no value: give --set a=value."),
+        (["a=''"], "--set a='' has no value: give --set a=value."),
+        (["a-b=1", "a_b=2"], "a_b = 2 is given twice: give --set a_b once."),
+    ],
+)
+def test_what_is_no_assignment_is_refused_with_its_text(items, sentence):
+    with pytest.raises(SettingError) as caught:
+        assignments(items)
+    assert str(caught.value) == sentence
+
+
+@given(st.lists(st.text(max_size=20) | st.builds("{}={}".format, st.text(max_size=8), st.text(max_size=8)), max_size=3))
+def test_any_text_is_an_assignment_or_refused_in_one_sentence(items):
+    try:
+        values = assignments(items)
+    except SettingError as error:
+        sentence = str(error)
+        assert sentence.isprintable()
+        assert sentence.endswith(".")
+    else:
+        assert len(values) == len(items)
+        assert all(values.values())

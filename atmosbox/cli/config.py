@@ -1,7 +1,7 @@
-"""What a user asks for on the command line and in a settings file, taken apart but not yet judged.
+"""A settings file, read but not yet checked.
 
-`parse_set` reads the ``--set name=value`` of the command line, `load_config` a TOML file. Which names and values
-are right, only the settings of the scene can tell: :class:`atmosbox.scene.settings.SceneSettings`.
+Which names and values are allowed, the settings of the scene tell:
+:class:`atmosbox.scene.settings.SceneSettings`.
 """
 
 from __future__ import annotations
@@ -10,14 +10,13 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from atmosbox.errors import ConfigError, FileError, SettingError, shown
+from atmosbox.errors import ConfigError, FileError, shown
 from atmosbox.scene.parameter import Value
 from atmosbox.scene.spelling import nearest
 
-__all__ = ["Config", "load_config", "parse_set"]
+__all__ = ["Asked", "load_config"]
 
 _LARGEST_CONFIG = 1_000_000  # bytes
 _WORDS = {
@@ -27,70 +26,32 @@ _WORDS = {
 }
 
 
-class Config(NamedTuple):
-    """What a settings file asks for; None for what it does not name.
+class Asked(NamedTuple):
+    """A run as a settings file, an earlier run or all of the command line asks for it.
 
     Parameters
     ----------
     scene
-        The name of the scene.
+        The name of the scene, or the path of its file; empty if none is named.
     settings
         The values as they were written, by name.
     engine
-        The name of the engine, with its options.
+        The name of the engine, with its options; None if none is named.
+    save_molecules
+        Whether the molecules are saved.
     accuracy
-        The accuracy that is wished.
+        The accuracy that is wished, if any.
     """
 
-    scene: str | None
-    settings: dict[str, Value]
+    scene: str
+    settings: dict[str, Any]
     engine: str | None = None
+    save_molecules: bool = False
     accuracy: str | None = None
 
 
-def parse_set(items: Iterable[str]) -> dict[str, str]:
-    """Return the settings of the command line's ``--set name=value``.
-
-    Parameters
-    ----------
-    items
-        The texts after each ``--set``.
-
-    Returns
-    -------
-    dict
-        The values as text, by name.
-
-    Raises
-    ------
-    SettingError
-        If a text is not a name, "=" and a value, or names a setting again.
-
-    Examples
-    --------
-    >>> parse_set(["temperature=25 degC", "pressure-top=300hPa"])
-    {'temperature': '25 degC', 'pressure_top': '300hPa'}
-    """
-    values: dict[str, str] = {}
-    for item in items:
-        name, equals, value = (part.strip() for part in item.partition("="))
-        name = name.replace("-", "_")
-        if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
-            value = value[1:-1].strip()
-        known = name if name.isascii() and name.isidentifier() else "name"
-        fix = f"give --set {known}=value, such as --set temperature=25degC"
-        if not equals:
-            raise SettingError(f"--set {item}", None, 'has no "=" between name and value', fix)
-        if not name or not value:
-            raise SettingError(f"--set {item}", None, f"has no {'value' if name else 'name'}", fix)
-        if name in values:
-            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
-        values[name] = value
-    return values
-
-
-def load_config(path: str | os.PathLike[str]) -> Config:
-    r"""Return the scene, the settings, and the engine or the accuracy that a TOML file names.
+def load_config(path: str | os.PathLike[str]) -> Asked:
+    r"""Return the scene, the settings, and the engine or the accuracy that a TOML file asks for.
 
     The file may hold the name of a scene, that of an engine or of an accuracy, and one table, and can run no code::
 
@@ -108,7 +69,7 @@ def load_config(path: str | os.PathLike[str]) -> Config:
 
     Returns
     -------
-    Config
+    Asked
         What it names.
 
     Raises
@@ -125,7 +86,7 @@ def load_config(path: str | os.PathLike[str]) -> Config:
     ...     path = pathlib.Path(folder, "lift.toml")
     ...     _ = path.write_text('scene = "lifting-dry" \n [settings] \n temperature = "25degC"')
     ...     load_config(path)
-    Config(scene='lifting-dry', settings={'temperature': '25degC'}, engine=None, accuracy=None)
+    Asked(scene='lifting-dry', settings={'temperature': '25degC'}, engine=None, save_molecules=False, accuracy=None)
     """
     where = shown(os.fspath(path), longest=4096)
     try:
@@ -158,7 +119,7 @@ def load_config(path: str | os.PathLike[str]) -> Config:
         if not isinstance(value, Value) or (isinstance(value, float) and not math.isfinite(value)):
             kind = kinds.get(type(value), "as a date or a time")
             raise refusal(key, kind, 'give one number, true, false or a text in quotes, such as "25degC"')
-    return Config(words["scene"], settings, words["engine"], words["accuracy"])
+    return Asked(words["scene"] or "", settings, words["engine"], accuracy=words["accuracy"])
 
 
 def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:

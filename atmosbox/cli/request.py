@@ -6,20 +6,13 @@ import os
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from atmosbox.cli.terminal import tell
 from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError
 
-
-class Gathered(NamedTuple):
-    """A run as all that was given says together; None for the engine or the accuracy that nothing names."""
-
-    scene: str
-    settings: dict[str, Any]
-    engine: str | None
-    molecules: bool
-    accuracy: str | None
+if TYPE_CHECKING:
+    from atmosbox.cli.config import Asked
 
 
 @dataclass(frozen=True)
@@ -53,10 +46,8 @@ class Request:
     engine: str | None = None
     accuracy: str | None = None
 
-    def gather(self) -> Gathered:
-        """Return the scene, its settings, the engine, whether molecules are saved, and the accuracy.
-
-        What is given later wins: ``--from``, ``--config``, ``--set``, ``--seed``.
+    def gather(self) -> Asked:
+        """Return what the files, ``--set`` and ``--seed`` ask for together; of two values the later one counts.
 
         Raises
         ------
@@ -64,35 +55,34 @@ class Request:
             If a file or a text cannot be understood, two of them name different scenes, or an accuracy is wished of
             a run whose engine is given.
         """
-        from atmosbox.cli.config import load_config, parse_set
+        from atmosbox.cli.config import Asked, load_config
+        from atmosbox.scene.spelling import assignments
 
-        scene = self.scene
+        scene = self.scene or ""
         settings: dict[str, Any] = {}
+        engine = None
         molecules = self.save_molecules
-        engine = self.engine
         accuracy = self.accuracy
         if self.source is not None:
-            run, settings, made_by, saved = _earlier(self.source)
-            engine = engine or made_by
-            molecules = molecules or saved
-            scene = _agreed(scene, run, "--from", self.source, FileError)
+            run = _earlier(self.source)
+            scene = _agreed(scene, run.scene, "--from", self.source, FileError)
+            settings, engine, molecules = run.settings, run.engine, molecules or run.save_molecules
         if self.config is not None:
             asked = load_config(self.config)
-            engine = self.engine or asked.engine or engine
-            accuracy = accuracy or asked.accuracy
             scene = _agreed(scene, asked.scene, "--config", self.config, ConfigError)
-            settings = _over(settings, asked.settings)
-        settings = _over(settings, parse_set(self.values))
+            settings, engine = _over(settings, asked.settings), asked.engine or engine
+            accuracy = accuracy or asked.accuracy
+        settings = _over(settings, assignments(self.values))
         if self.seed is not None:
             settings = _over(settings, {"seed": self.seed})
-        if scene is None:
+        if not scene:
             raise UnknownSceneError(
                 "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
             )
         if accuracy is not None and self.source is not None:
             problem = f"picks engine and settings, and so does --from {shlex.quote(self.source)}"
-            raise SettingError("accuracy", accuracy, problem, "leave the one or the other out")
-        return Gathered(scene, settings, engine, molecules, accuracy)
+            raise SettingError("accuracy", accuracy, problem, "leave one of them out")
+        return Asked(scene, settings, self.engine or engine, molecules, accuracy)
 
 
 def is_path(scene: str) -> bool:
@@ -100,8 +90,9 @@ def is_path(scene: str) -> bool:
     return scene.endswith(".py") or "/" in scene or os.sep in scene
 
 
-def _earlier(path: str) -> tuple[str, dict[str, Any], str, bool]:
-    """Return scene, settings and engine of the run in a file, and whether it saved molecules."""
+def _earlier(path: str) -> Asked:
+    """Return the run in a file."""
+    from atmosbox.cli.config import Asked
     from atmosbox.file.netcdf import read
     from atmosbox.file.provenance import parameters
     from atmosbox.version import __version__
@@ -112,28 +103,29 @@ def _earlier(path: str) -> tuple[str, dict[str, Any], str, bool]:
         raise FileError(f"{path} does not say which run it holds: give a file that atmosbox run has written.")
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
-    return scene, settings, str(made.get("engine", "exact")), made.get("save_molecules") is True
+    return Asked(scene, settings, str(made.get("engine", "exact")), made.get("save_molecules") is True)
 
 
-def _agreed(scene: str | None, named: str | None, option: str, path: str, error: type[AtmosboxError]) -> str | None:
+def _agreed(scene: str, named: str, option: str, path: str, error: type[AtmosboxError]) -> str:
     """Return the scene that the command line and a file agree on.
 
     A file never makes atmosbox run a program: the path of a scene must be typed.
     """
-    if named is None:
+    if not named:
         return scene
-    if scene is None:
+    if not scene:
         if is_path(named):
             again = f"atmosbox run {shlex.quote(named)} {option} {shlex.quote(path)}"
             raise error(f"{path} is for the scene in the file {named}, which must be typed: {again}.")
         return named
     if not (is_path(scene) or is_path(named)) and scene.replace("_", "-") != named.replace("_", "-"):
-        raise error(f"{path} is for the scene {named}, not for {scene}: leave the one or the other out.")
+        raise error(f"{path} is for the scene {named}, not for {scene}: leave one of them out.")
     return scene
 
 
 def _over(settings: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return settings with others laid over them, however their names are spelled."""
-    laid = {name.strip().replace("-", "_") for name in values}
-    kept = {name: value for name, value in settings.items() if name.strip().replace("-", "_") not in laid}
-    return {**kept, **values}
+    """Return settings with those replaced that have a new value, however their names are spelled."""
+    from atmosbox.scene.spelling import field_name
+
+    new = {field_name(name) for name in values}
+    return {**{name: value for name, value in settings.items() if field_name(name) not in new}, **values}

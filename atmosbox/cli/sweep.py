@@ -82,7 +82,7 @@ def sweep(
     Every run is saved as it ends. What was stopped, by Ctrl-C or by anything else, goes on where it was when the
     same is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws it.
     """
-    from atmosbox.cli.config import parse_set
+    from atmosbox.scene.spelling import assignments
     from atmosbox.sweep import SweepInterrupted, plan
     from atmosbox.sweep import sweep as run
 
@@ -90,7 +90,7 @@ def sweep(
         grid = plan(
             scene,
             vary or (),
-            settings=parse_set(values or ()),
+            settings=assignments(values or ()),
             members=_whole("members", members, 1),
             seed=None if seed is None else _whole("seed", seed, 0, 2**63 - 1),
             engine=engine,
@@ -122,10 +122,10 @@ def sweep(
 
 def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
     """Return a whole number that stood behind an option."""
-    from atmosbox.scene.quantity import parse_whole
+    from atmosbox.scene.parameter import Parameter
 
     try:
-        return parse_whole(text, "1", option, low=low, high=high, example="8")
+        return int(Parameter(option, "1", 8, low, high, kind="int").parse(text))
     except SettingError as error:
         fix = error.fix.replace(f"--set {option}=", f"--{option} ")
         raise type(error)(error.setting, error.value, error.problem, fix) from None

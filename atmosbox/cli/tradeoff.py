@@ -49,16 +49,16 @@ def tradeoff(
     Every way of running is run again and again, with other seeds, while the budget lasts. Ctrl-C ends it
     early and keeps what was measured.
     """
-    from atmosbox.cli.config import parse_set
     from atmosbox.file.netcdf import write
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
-    from atmosbox.scene.quantity import parse_quantity, parse_whole
+    from atmosbox.scene.parameter import Parameter
+    from atmosbox.scene.spelling import assignments
     from atmosbox.trade.tradeoff import measure
 
     try:
-        seconds = parse_quantity(budget, "s", "budget", low=1.0, high=1e6, example="60s")
-        first = parse_whole(seed or "1", "1", "seed", low=0, high=2**62, example="1")
+        seconds = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(budget))
+        first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int").parse(seed or "1"))
     except SettingError as error:
         fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
         raise type(error)(error.setting, error.value, error.problem, fix) from None
@@ -69,7 +69,7 @@ def tradeoff(
     with progress(scene, quiet=quiet) as show:
         found = measure(
             scene,
-            settings=parse_set(values or ()),
+            settings=assignments(values or ()),
             budget=seconds,
             seed=first,
             progress=show,

@@ -11,7 +11,6 @@ from typing import Any
 from atmosbox.errors import SettingError
 from atmosbox.scene.knob import Knob
 from atmosbox.scene.parameter import Parameter, Value
-from atmosbox.scene.quantity import parse_quantity
 
 __all__ = ["COLLISIONS", "Control", "controls", "in_words", "number_between"]
 
@@ -62,9 +61,6 @@ class Control:
         """
         if isinstance(value, float) and not math.isfinite(value):
             value = str(value)
-        if self.parameter.kind == "float":
-            wanted = self.parameter
-            return parse_quantity(value, wanted.unit, wanted.name, low=wanted.low, high=wanted.high)
         return self.parameter.parse(value)
 
     def record(self) -> dict[str, Any]:

@@ -1,8 +1,8 @@
-"""What the class may turn while a box runs: a name, a range, and what the box then does.
+"""What may be changed while a box runs: its name, its range, and what changes in the box.
 
 A scene lists its knobs in its `Setup`, beside its instruments; ``atmosbox live`` makes a slider of each. Every other
-setting of the scene has a slider too, but the box begins anew with it. A knob of one's own is a `Knob` with a
-function; those that most boxes need are made by the functions below.
+setting of the scene has a slider too, but the box starts again when it is moved. A knob of your own is a `Knob` with a
+function; the functions below make those that most boxes need.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ class Knob:
     Parameters
     ----------
     name
-        Its name; that of a setting if it stands for one, which then no longer makes the box begin anew.
+        Its name; that of a setting if it stands for one, which is then changed without a new start.
     help
         What it is, in one line.
     unit
-        The unit in which it is turned, as settings spell it.
+        The unit of its values, as settings spell it.
     low, high
         The lowest and the highest value, in `unit`.
     value
-        Where it stands when the box begins, in `unit`.
+        Its value at the start, in `unit`.
     turn
-        Told the new value in SI units; may raise `atmosbox.engine.RefusedError`.
+        Called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
 
     Raises
     ------
@@ -69,7 +69,7 @@ class Knob:
             raise ValueError(f"the knob {self.name} stands at {self.value}, outside {self.low} to {self.high}")
 
     def set(self, value: float) -> None:
-        """Turn it to a value in its unit."""
+        """Set it to a value in its unit."""
         self.turn(value if self.unit in ("", "1") else to_si(value, self.unit))
 
 
@@ -83,18 +83,18 @@ def wall_temperature(
     name: str = "temperature",
     wall: int | None = None,
 ) -> Knob:
-    """Return the knob that keeps the heat baths of a box at another temperature.
+    """Return the knob that sets the temperature of the heat baths of a box.
 
     Parameters
     ----------
     parcel, scale, settings
-        The box, its scale and the settings that it was made of.
+        The box, its scale and its settings.
     low, high
-        The range, in the unit of the setting; made wide enough for where the knob stands.
+        The range, in the unit of the setting; widened to include the value at the start.
     name
-        The setting with which the box begins.
+        The setting that is the value at the start.
     wall
-        Which wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if none is named.
+        The number of the wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if None.
 
     Examples
     --------
@@ -131,18 +131,18 @@ def gravity(
 
 
 def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:
-    """Return the knob that leads a parcel up and down by hand, at the pace of its planned ascent.
+    """Return the knob that moves a parcel up and down by hand, at the speed of its planned ascent.
 
     Parameters
     ----------
     parcel, driver
-        The box, and what moves its piston.
+        The box, and the driver of its piston.
     height
-        Height [m] when a share of the way, 0 to 1, has been made; rising.
+        Height [m] after a fraction of the way, 0 to 1; increasing.
 
     Examples
     --------
-    Left alone it makes for the top:
+    Without a hand on it the parcel rises to the top:
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("lifting-dry", {"molecules": 100}))
@@ -156,11 +156,11 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
         _lead(parcel, driver, float(np.interp(metres, heights, shares)))
 
     low, high = (from_si(float(h), "km") for h in (heights[0], heights[-1]))
-    return Knob("altitude", "height that the parcel makes for", "km", low, high, high, turn)
+    return Knob("altitude", "height to which the parcel moves", "km", low, high, high, turn)
 
 
 def way(parcel: Parcel, driver: FollowPressure) -> Knob:
-    """Return the knob that leads a parcel back and forth by hand along a way that goes up and down.
+    """Return the knob that moves a parcel back and forth by hand along a way that goes up and down.
 
     Examples
     --------
@@ -172,11 +172,11 @@ def way(parcel: Parcel, driver: FollowPressure) -> Knob:
     def turn(share: float) -> None:
         _lead(parcel, driver, share)
 
-    return Knob("way", "place on its way that the parcel makes for", "percent", 0.0, 100.0, 100.0, turn)
+    return Knob("way", "place on its way to which the parcel moves", "percent", 0.0, 100.0, 100.0, turn)
 
 
 def _lead(parcel: Parcel, driver: FollowPressure, share: float) -> None:
-    """Let a parcel make for a place of its way."""
+    """Make a parcel move to a place of its way."""
     course = driver.course
     course.lead(parcel.time, min(max(share, 0.0), 1.0) * course.end)
 

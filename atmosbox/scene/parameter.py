@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from decimal import Decimal
+from typing import Literal, TypeVar
 
-from atmosbox.errors import SettingError
-from atmosbox.scene.quantity import parse_quantity, parse_whole, phrase, typed
-from atmosbox.scene.spelling import nearest, plain
+from pydantic import TypeAdapter, ValidationError
 
-__all__ = ["Kind", "Parameter", "Value"]
+from atmosbox.errors import SettingError, UnitError, UnknownSettingError, shown
+from atmosbox.scene.conversion import MEASURES, declared_unit
+from atmosbox.scene.quantity import converted, number_and_unit, phrase, typed
+from atmosbox.scene.spelling import field_name, nearest, plain
+
+__all__ = ["Kind", "Parameter", "Value", "by_name"]
 
 Value = bool | int | float | str
 Kind = Literal["int", "float", "bool", "str"]
+T = TypeVar("T")
 
-_SWITCH = {
-    "on": True,
-    "true": True,
-    "yes": True,
-    "1": True,
-    "off": False,
-    "false": False,
-    "no": False,
-    "0": False,
-}
+_SWITCH = TypeAdapter(bool)  # on and off, true and false, yes and no, 1 and 0
 
 
 @dataclass(frozen=True)
@@ -52,11 +49,11 @@ class Parameter:
     name: str
     unit: str
     default: Value
-    low: float | None
-    high: float | None
-    choices: tuple[str, ...] | None
-    help: str
-    kind: Kind
+    low: float | None = None
+    high: float | None = None
+    choices: tuple[str, ...] | None = None
+    help: str = ""
+    kind: Kind = "float"
 
     @property
     def allowed(self) -> str:
@@ -86,7 +83,13 @@ class Parameter:
         Parameters
         ----------
         value
-            A number, a switch or a text.
+            A number, a switch or a text; a number may come with a unit, as in "25 degC", "298.15 K" or "77F", and a
+            bare one is in the documented unit.
+
+        Returns
+        -------
+        bool, int, float or str
+            The value; a number that came in another unit is rounded to 12 digits.
 
         Raises
         ------
@@ -97,34 +100,106 @@ class Parameter:
 
         Examples
         --------
-        >>> Parameter("height", "km", 2.0, 0.0, 12.0, None, "of the box", "float").parse("500 m")
+        >>> height = Parameter("height", "km", 2.0, 0.0, 12.0)
+        >>> height.parse("500 m")
         0.5
+        >>> height.parse("5 hPa")
+        Traceback (most recent call last):
+        atmosbox.errors.UnitError: height = 5 hPa is a pressure, but a length from 0 km to 12 km is wanted:
+        give --set height=2km.
         """
         if self.kind == "bool":
             return self._switch(value)
-        if self.kind == "str":
-            return self._word(value)
-        parse = parse_whole if self.kind == "int" else parse_quantity
-        return parse(value, self.unit, self.name, low=self.low, high=self.high, example=self.typed())
+        return self._word(value) if self.kind == "str" else self._number(value)
 
     def _switch(self, value: object) -> bool:
-        if isinstance(value, str) and value.strip().casefold() in _SWITCH:
-            return _SWITCH[value.strip().casefold()]
-        if isinstance(value, int) and value in (0, 1):
-            return bool(value)
-        raise self._refusal(value, "is neither on nor off", self.typed())
+        try:
+            return _SWITCH.validate_python(value.strip() if isinstance(value, str) else value)
+        except ValidationError:
+            raise self._refusal(value, "is neither on nor off") from None
 
     def _word(self, value: object) -> str:
         text = value.strip() if isinstance(value, str) else ""
         if self.choices is None:
             if isinstance(value, str) and (text or not self.default):
                 return text
-            raise self._refusal(value, "is empty" if isinstance(value, str) else "is not a text", self.typed())
+            raise self._refusal(value, "is empty" if isinstance(value, str) else "is not a text")
         for choice in self.choices:
             if plain(choice) == plain(text):
                 return choice
-        example = nearest(text, self.choices) or self.typed()
-        raise self._refusal(value, f"is not one of {', '.join(self.choices)}", example)
+        raise self._refusal(value, f"is not one of {', '.join(self.choices)}", nearest(text, self.choices))
 
-    def _refusal(self, value: object, problem: str, example: str) -> SettingError:
-        return SettingError(self.name, value, problem, f"give --set {self.name}={example}")
+    def _number(self, value: object) -> float:
+        try:
+            number, unit = number_and_unit(value)
+            if unit not in ("", self.unit):
+                number = Decimal(repr(converted(float(number), unit, self.unit)))
+            if self.kind == "int" and number != number.to_integral_value():
+                raise ValueError("is not whole")
+        except ValueError as error:
+            problem = f"{error}, but {self._wanted} is wanted"
+            raise UnitError(self.name, value, problem, self._fix()) from None
+        below = self.low is not None and number < self.low
+        if below or (self.high is not None and number > self.high):
+            given = shown(value.strip() if isinstance(value, str) else value)
+            given = given if unit or self.unit == "1" else f"{given} {self.unit}"
+            side = "below the lowest" if below else "above the highest"
+            raise self._refusal(given, f"is {side} allowed, {self.allowed}")
+        return int(number) if self.kind == "int" else float(number)
+
+    @property
+    def _wanted(self) -> str:
+        """What would be right: "a temperature from -100 degC to 500 degC"."""
+        kind = "a percentage" if self.unit == "%" else MEASURES.get(declared_unit(self.unit).si, "a quantity")
+        if self.kind == "int":
+            kind = "a whole number" + ("" if self.unit == "1" else f" of {self.unit}")
+        limits = (self.low is not None) + (self.high is not None)
+        return f"{kind} {('in', 'of', 'from')[limits]} {self.allowed if limits else self.unit}".removesuffix(" in 1")
+
+    def _fix(self, example: str | None = None) -> str:
+        return f"give --set {self.name}={example or self.typed()}"
+
+    def _refusal(self, value: object, problem: str, example: str | None = None) -> SettingError:
+        return SettingError(self.name, value, problem, self._fix(example))
+
+
+def by_name(
+    given: Mapping[str, T], parameters: Mapping[str, Parameter], whose: str = "a setting of this scene"
+) -> dict[str, T]:
+    """Return values by the names of the settings they are for, however a user spelled these.
+
+    Parameters
+    ----------
+    given
+        The values; a name may be spelled with "-" for "_".
+    parameters
+        The settings by name.
+    whose
+        What these are, for the sentence of a refusal.
+
+    Raises
+    ------
+    UnknownSettingError
+        If there is no setting of a name; the sentence has the nearest.
+    SettingError
+        If one is given twice.
+
+    Examples
+    --------
+    >>> by_name({"box-height": "3 km"}, {"box_height": Parameter("box_height", "km", 2.0)})
+    {'box_height': '3 km'}
+    """
+    values: dict[str, T] = {}
+    for spelled, value in given.items():
+        name = field_name(spelled)
+        if name in values:
+            raise SettingError(name, value, "is given twice", f"give --set {name} once")
+        if name not in parameters:
+            near = nearest(name, parameters)
+            fix = f"give one of {', '.join(parameters)}"
+            if near is not None:
+                usable = isinstance(value, str) and shown(value) == value
+                fix = f"give --set {near}={shlex.quote(str(value)) if usable else parameters[near].typed()}"
+            raise UnknownSettingError(spelled, value, f"is not {whose}", fix)
+        values[name] = value
+    return values

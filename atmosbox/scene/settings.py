@@ -15,7 +15,6 @@ Values stay in the unit in which they are documented; ``settings.si`` has them i
 from __future__ import annotations
 
 import functools
-import shlex
 from collections.abc import Mapping
 from dataclasses import replace
 from types import SimpleNamespace
@@ -23,10 +22,9 @@ from typing import Any, Self, cast
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from atmosbox.errors import SettingError, UnknownSettingError, shown
+from atmosbox.errors import SettingError
 from atmosbox.scene.conversion import to_si
-from atmosbox.scene.parameter import Kind, Parameter, Value
-from atmosbox.scene.spelling import nearest
+from atmosbox.scene.parameter import Kind, Parameter, Value, by_name
 
 __all__ = ["SceneSettings", "setting"]
 
@@ -103,14 +101,7 @@ class SceneSettings(BaseModel):
 
     def __init__(self, /, **values: Any) -> None:
         parameters = _parameters(type(self))
-        given: dict[str, Any] = {}
-        for spelled, value in values.items():
-            name = spelled.strip().replace("-", "_")
-            if name not in parameters:
-                raise _unknown(spelled, value, parameters)
-            if name in given:
-                raise SettingError(name, value, "is given twice", f"give --set {name} once")
-            given[name] = value
+        given = by_name(values, parameters)
         super().__init__(**{name: p.parse(given.get(name, p.default)) for name, p in parameters.items()})
         self.check()
 
@@ -160,23 +151,39 @@ class SceneSettings(BaseModel):
         7
         """
         parameters = _parameters(cls)
-        for name, value in defaults.items():
-            if name not in parameters:
-                raise _unknown(name, value, parameters)
-        fields: dict[str, Any] = {
-            name: (
-                type(p.default),
-                setting(defaults[name], p.unit, p.help, low=p.low, high=p.high, choices=p.choices),
-            )
-            for name, p in parameters.items()
-            if name in defaults
-        }
+        fields: dict[str, Any] = {}
+        for name, value in by_name(defaults, parameters).items():
+            p = parameters[name]
+            same = setting(value, p.unit, p.help, low=p.low, high=p.high, choices=p.choices)
+            fields[name] = (cls.model_fields[name].annotation, same)
         return cast("type[Self]", create_model(cls.__name__, __base__=cls, **fields))
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return the same settings but for some values, checked as those of a user.
+
+        Parameters
+        ----------
+        update
+            The values that differ, as for :meth:`from_user`.
+        deep
+            Of no effect: there is nothing in settings that could change.
+
+        Raises
+        ------
+        SettingError
+            As :meth:`from_user` does.
+
+        Examples
+        --------
+        >>> SceneSettings(seed=7).model_copy(update={"seed": "8"}).seed
+        8
+        """
+        return type(self)(**{**self.as_dict(), **by_name(update or {}, _parameters(type(self)))})
 
     def check(self) -> None:
         """Raise SettingError where the settings do not fit together; a scene may override this."""
 
-    @property
+    @functools.cached_property
     def si(self) -> SimpleNamespace:
         """The same names with their values in SI units: degC in K, hPa in Pa, K/km in K m-1, % in 1."""
         return SimpleNamespace(
@@ -218,14 +225,3 @@ def _parameters(cls: type[SceneSettings]) -> dict[str, Parameter]:
         except SettingError as error:
             raise TypeError(f"{where} has a unit or a default that it does not allow: {error}") from error
     return parameters
-
-
-def _unknown(name: str, value: object, parameters: Mapping[str, Parameter]) -> UnknownSettingError:
-    """Return the error for a name that a scene does not have, with the nearest that it has."""
-    near = nearest(name, parameters)
-    if near is None:
-        fix = f"give one of {', '.join(parameters)}"
-    else:
-        usable = isinstance(value, str) and shown(value) == value
-        fix = f"give --set {near}={shlex.quote(str(value)) if usable else parameters[near].typed()}"
-    return UnknownSettingError(name, value, "is not a setting of this scene", fix)

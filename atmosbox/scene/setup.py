@@ -1,4 +1,4 @@
-"""What a scenario hands to the runner: a box ready to go, how to watch it, and what is worth comparing."""
+"""What a scenario builds: a box at its start, its scale, what is measured, and which runs are compared."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ class Setup:
     duration
         How long the run lasts [reduced time].
     frames
-        Into how many frames, each one point of the time series, the run is divided.
+        Number of frames, each one point of the time series.
     instruments
         What is measured.
     samples
-        How often the molecules are looked at within a frame.
+        Number of samples of the molecules in a frame.
     settle
-        How many frames pass before averages begin.
+        Number of frames before averages begin.
     time_unit
         Unit of the elapsed time in the file: ``s``, ``ns`` or ``ps``.
     facts
         Lines of the model card that depend on the settings: the scale, the noise to expect.
     knobs
-        What may be turned while the box runs, in ``atmosbox live``.
+        What may be changed while the box runs, in ``atmosbox live``.
     ends
-        Whether the run comes to an end of its own, as an ascent at its top; else it could go on for ever.
+        Whether the run has an end of its own, as an ascent at its top; others could go on for ever.
 
     Raises
     ------
@@ -79,27 +79,28 @@ class Setup:
         """Length of a frame [reduced time]."""
         return self.duration / self.frames
 
-    def moment(self, frame: int, look: int) -> float:
-        """Return when the molecules are looked at [reduced time]: the looks of a frame count from 1, frames from 0."""
-        return (frame + 1) * self.frame if look == self.samples else (frame + look / self.samples) * self.frame
+    def moment(self, frame: int, sample: int) -> float:
+        """Return the time of a sample [reduced time]: frames count from 0, the samples of a frame from 1."""
+        return (frame + 1) * self.frame if sample == self.samples else (frame + sample / self.samples) * self.frame
 
 
 @dataclass(frozen=True)
 class Series:
-    """A row of runs that differ in one thing, for the measurement of speed against accuracy.
+    """Runs that differ in one thing, for the measurement of speed against accuracy.
 
     Parameters
     ----------
     engine
-        What lets time pass in all of them, with its options.
+        The engine of all runs, with its options.
     vary
         What differs: an option of the engine, or a setting of the scene.
     values
-        Its values, from the cheapest run to the dearest.
+        Its values, from the cheapest run to the most expensive.
     settings
-        What all the runs have in common and differs from the scene's defaults.
+        The settings of all runs that differ from the scene's defaults.
     order
-        For a headline, by name, the power of the varied value with which its error grows, where a law is known.
+        The power of the varied value with which the error of a headline grows, by the name of the headline, where a
+        law is known.
 
     Raises
     ------

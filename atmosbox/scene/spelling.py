@@ -1,11 +1,29 @@
-"""Names as users spell them, and the one that was probably meant."""
+"""Names and assignments as users spell them, and the name that was probably meant."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["nearest", "plain"]
+from atmosbox.errors import SettingError, shown
+
+__all__ = ["assignments", "field_name", "nearest", "plain"]
+
+
+def field_name(name: str) -> str:
+    """Return the name of a setting in Python, of one that a user may spell with "-" for "_".
+
+    Parameters
+    ----------
+    name
+        What was typed.
+
+    Examples
+    --------
+    >>> field_name(" pressure-top")
+    'pressure_top'
+    """
+    return name.strip().replace("-", "_")
 
 
 def plain(name: str) -> str:
@@ -21,7 +39,7 @@ def plain(name: str) -> str:
     >>> plain(" Pressure-Top")
     'pressure_top'
     """
-    return name.strip().casefold().replace("-", "_")
+    return field_name(name).casefold()
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
@@ -47,3 +65,37 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     begun = [candidate for candidate in known if len(wanted) > 2 and candidate.startswith(wanted)]
     close = begun if len(begun) == 1 else difflib.get_close_matches(wanted, known, n=1)
     return known[close[0]] if close else None
+
+
+def assignments(items: Iterable[str]) -> dict[str, str]:
+    """Return the values of ``name=value``, as they stand after each ``--set``, by name.
+
+    Parameters
+    ----------
+    items
+        The texts after each ``--set``; a value may stand in quotes.
+
+    Raises
+    ------
+    SettingError
+        If a text is not a name, "=" and a value, or names a setting again.
+
+    Examples
+    --------
+    >>> assignments(["temperature=25 degC", "pressure-top=300hPa"])
+    {'temperature': '25 degC', 'pressure_top': '300hPa'}
+    """
+    values: dict[str, str] = {}
+    for item in items:
+        name, equals, value = (part.strip() for part in item.partition("="))
+        name = field_name(name)
+        if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
+            value = value[1:-1].strip()
+        if not (name and equals and value):
+            lacks = "name" if equals and not name else "value" if equals else '"=" between name and value'
+            known = name if name.isascii() and name.isidentifier() else "name"
+            raise SettingError(f"--set {item}", None, f"has no {lacks}", f"give --set {known}=value")
+        if name in values:
+            raise SettingError(name, value, "is given twice", f"give --set {shown(name)} once")
+        values[name] = value
+    return values

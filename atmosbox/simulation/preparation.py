@@ -18,13 +18,14 @@ from atmosbox.scene.engines import EXACT, EngineChoice, choose
 from atmosbox.scene.parameter import Parameter
 from atmosbox.scene.settings import SceneSettings
 from atmosbox.scene.setup import Setup
+from atmosbox.scene.spelling import field_name
 from atmosbox.simulation import accuracy as accuracies
 from atmosbox.simulation.accuracy import Expectation
 from atmosbox.version import __version__
 
 __all__ = ["Card", "Prepared", "build", "card", "prepare"]
 
-_MEMORY = 8e9
+_MEMORY = 8e9  # bytes that saved molecules may need
 
 
 @dataclass(frozen=True)
@@ -79,12 +80,12 @@ def prepare(
     settings
         Values by name, numbers in the documented unit or texts with a unit.
     engine
-        What lets time pass, with its options: ``stepped:delta=0.02``; ``exact`` if nothing is said.
+        The engine with its options: ``stepped:delta=0.02``; ``exact`` if None.
     accuracy
         A wish that picks the engine and the settings that trade accuracy for time, as
         `atmosbox.simulation.accuracy.parse` reads it; what is in `settings` stays as it is.
     save_molecules
-        Whether places and speeds of all molecules are kept in every frame.
+        Whether position and speed of all molecules are saved in every frame.
 
     Returns
     -------
@@ -109,11 +110,11 @@ def prepare(
         if engine is not None:
             raise SettingError("accuracy", accuracy, "picks the engine itself", f"leave it out, or the engine {engine}")
         picked = accuracies.choose(name, accuracy, checked.changed())
-        own = {setting.strip().replace("-", "_"): value for setting, value in settings.items()}
-        checked = module.Settings.from_user({**picked.sets, **own})
+        given = {field_name(setting) for setting in settings}
+        checked = checked.model_copy(update={n: value for n, value in picked.sets.items() if n not in given})
         engine = picked.way.engine
     chosen = choose(EXACT if engine is None else engine)
-    if chosen != EXACT and "engine" not in inspect.signature(module.build).parameters:
+    if chosen != EXACT and not _takes_engine(module):
         raise SettingError(
             "engine", str(chosen), f"is not for the scene {os.fspath(scene)}, whose build takes no engine",
             f"give --engine {EXACT}, or let its build take one: build(settings, engine)",
@@ -140,11 +141,22 @@ def card(prepared: Prepared) -> Card:
     return Card(prepared.scene, title, story, tuple(setup.facts.items()), tuple(prepared.settings.describe()))
 
 
+def _takes_engine(module: ModuleType) -> bool:
+    """Return whether a scene can run on another engine than the exact one."""
+    return "engine" in inspect.signature(module.build).parameters
+
+
 def build(prepared: Prepared) -> Setup:
-    """Build the box, in the words of a user where it cannot be built."""
+    """Return the box of a scenario at its start.
+
+    Raises
+    ------
+    AtmosboxError
+        If it cannot be built; the sentence says so in the words of a user.
+    """
     try:
-        with_engine = "engine" in inspect.signature(prepared.module.build).parameters
-        setup: Setup = prepared.module.build(prepared.settings, *([prepared.engine] if with_engine else []))
+        engine = [prepared.engine] if _takes_engine(prepared.module) else []
+        setup: Setup = prepared.module.build(prepared.settings, *engine)
         if isinstance(setup.parcel, MarchingParcel):
             setup.parcel.divide(setup.frame / setup.samples)
     except EnginePackingError as error:

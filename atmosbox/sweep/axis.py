@@ -12,6 +12,7 @@ from atmosbox.errors import SettingError, UnitError
 from atmosbox.scene.conversion import from_si, to_si
 from atmosbox.scene.parameter import Parameter, Value
 from atmosbox.scene.quantity import typed
+from atmosbox.scene.spelling import field_name
 
 __all__ = ["LONGEST", "Axis", "parse_vary"]
 
@@ -34,7 +35,7 @@ class Axis:
 
     Examples
     --------
-    >>> warm = Parameter("temperature", "degC", 20.0, -60.0, 95.0, None, "temperature of the walls", "float")
+    >>> warm = Parameter("temperature", "degC", 20.0, -60.0, 95.0)
     >>> Axis(warm, (0.0, 10.0)).si
     (273.15, 283.15)
     """
@@ -88,8 +89,8 @@ def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tup
     Examples
     --------
     >>> settings = {
-    ...     "molecules": Parameter("molecules", "1", 4000, 50, 10**6, None, "number of molecules", "int"),
-    ...     "start": Parameter("start", "", "equal", None, None, ("equal", "maxwell"), "first speeds", "str"),
+    ...     "molecules": Parameter("molecules", "1", 4000, 50, 10**6, kind="int"),
+    ...     "start": Parameter("start", "", "equal", choices=("equal", "maxwell"), kind="str"),
     ... }
     >>> grid = parse_vary(["molecules=100:10000:3log", "start=equal,maxwell"], settings)
     >>> [axis.values for axis in grid]
@@ -98,12 +99,11 @@ def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tup
     axes: list[Axis] = []
     for item in items:
         name, equals, text = (part.strip() for part in item.partition("="))
-        name = name.replace("-", "_")
-        problem = "" if equals else 'has no "=" between name and values'
-        problem = problem or ("" if name else "has no name") or ("" if text else "has no values")
-        if problem:
+        name = field_name(name)
+        if not (name and equals and text):
+            lacks = "name" if equals and not name else "values" if equals else '"=" between name and values'
             fix = f"give --vary {name}={_example(parameters[name])}" if name in parameters else _USUAL
-            raise SettingError(f"--vary {item}", None, problem, fix)
+            raise SettingError(f"--vary {item}", None, f"has no {lacks}", fix)
         if name == "seed":
             raise SettingError("--vary seed", None, "is what the members vary already", "give --members 8 instead")
         if name in (axis.name for axis in axes):
@@ -139,59 +139,39 @@ def _example(parameter: Parameter) -> str:
 
 def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
     """Return the values that a text stands for; numbers in ascending order."""
-    if parameter.kind in ("bool", "str"):
-        words = tuple(_word(parameter, part) for part in text.split(","))
-        _check_different(text, words, parameter)
-        return words
-    if ":" in text:
+    numeric = parameter.kind in ("int", "float")
+    if numeric and ":" in text:
         return _row(text, parameter)
-    numbers = tuple(sorted(_number(parameter, part) for part in text.split(",")))
-    _check_different(text, numbers, parameter)
-    return numbers
-
-
-def _word(parameter: Parameter, text: str) -> Value:
-    return parameter.parse(text.strip())
-
-
-def _number(parameter: Parameter, text: str) -> float:
-    value = parameter.parse(text.strip())
-    assert isinstance(value, int | float)
-    return value
-
-
-def _check_different(text: str, values: tuple[Value, ...], parameter: Parameter) -> None:
+    values = [parameter.parse(part.strip()) for part in text.split(",")]
     if len(set(values)) < len(values):
         raise SettingError(parameter.name, text, "names a value twice", "")
     if len(values) > LONGEST:
         raise SettingError(parameter.name, text, f"has {len(values)} values, more than {LONGEST}", "")
+    return tuple(sorted(values, key=float) if numeric else values)
 
 
 def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
-    """Return n values from a to b, as a:b:n says it."""
+    """Return n values from a to b, as a:b:n asks for."""
     parts = text.split(":")
     count = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
     if count is None:
         raise UnitError(parameter.name, text, "is neither a:b:n, a:b:nlog nor x,y,z", "")
-    # The ends may be fractions also of what is counted: it is the values between that are rounded.
-    first, last = (_number(parameter, part) for part in parts[:2])
+    low, high = sorted((parameter.parse(part.strip()) for part in parts[:2]), key=float)
     n = int(count[1])
     if not 2 <= n <= LONGEST:
-        problem = f"asks for {n} values, and from 2 to {LONGEST} can be had"
-        raise SettingError(parameter.name, text, problem, "")
-    low, high = sorted((first, last))
+        raise SettingError(parameter.name, text, f"asks for {n} values, and from 2 to {LONGEST} are possible", "")
     if low == high:
         raise SettingError(parameter.name, text, "begins where it ends", "")
-    inner: Iterable[float] = np.linspace(low, high, n)[1:-1].tolist()
+    ends = float(low), float(high)
     if count[2] == "log":
-        start, end = to_si(low, parameter.unit), to_si(high, parameter.unit)
+        start, end = (to_si(limit, parameter.unit) for limit in ends)
         if start <= 0.0:
             raise SettingError(parameter.name, text, "begins at or below zero, where no ratios are even", "")
         inner = [from_si(value, parameter.unit) for value in np.geomspace(start, end, n)[1:-1].tolist()]
-    if parameter.kind == "int":
-        values: tuple[Value, ...] = (low, *(round(value) for value in inner), high)
     else:
-        values = (low, *(float(f"{value:.12g}") for value in inner), high)
+        inner = np.linspace(*ends, n)[1:-1].tolist()
+    whole = parameter.kind == "int"
+    values = (low, *(round(value) if whole else float(f"{value:.12g}") for value in inner), high)
     if len(set(values)) < n:
         raise SettingError(parameter.name, text, f"has only {len(set(values))} different values, not {n}", "")
     return values

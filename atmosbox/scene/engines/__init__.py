@@ -1,6 +1,6 @@
-"""Which engine lets time pass, and with which options: declared once, checked once.
+"""Which engine advances the molecules, and with which options.
 
-An engine is asked for by its name, and where it has options by their values behind a colon, as in
+An engine is chosen by its name, and its options by their values after a colon, as in
 ``stepped:delta=0.02,motion=euler``. The same words stand on the command line, in a settings file and in
 the output.
 """

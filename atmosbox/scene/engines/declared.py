@@ -27,15 +27,15 @@ class Engine:
     summary
         What it does, in one line.
     parcel
-        What returns the class of its parcels; nothing of the engine is loaded before.
+        Returns the class of its parcels; nothing of the engine is imported before.
     parameters
         Its options.
     ideal
-        Whether its molecules take no room from each other: the pressure is n kT, without Z.
+        Whether the pressure is n kT, without Z: its molecules have no excluded volume.
     reference
-        What its method is described in, if anywhere but here.
+        Where its method is published.
     moist
-        What returns the class of its parcels with a liquid in them, if it has one.
+        Returns the class of its parcels with a liquid in them, if it has one.
     """
 
     name: str
@@ -78,7 +78,7 @@ def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
     from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
 
     if isinstance(liquid, Drops):
-        raise SettingError("engine", "dsmc", "knows no drops that can be seen", "give --engine exact, or a mist")
+        raise SettingError("engine", "dsmc", "has no drops with a size of their own", "give --engine exact, or a mist")
     return MoistDsmcParcel
 
 
@@ -104,7 +104,7 @@ def _switch(name: str, default: bool, help: str) -> Parameter:
     return Parameter(name, "", default, None, None, None, help, "bool")
 
 
-_COLLISIONS = _switch("collisions", True, "whether molecules meet each other, and not walls alone")
+_COLLISIONS = _switch("collisions", True, "whether molecules collide with each other, or with walls alone")
 _DELTA = "time step, as the share of its diameter that a molecule moves in it at thermal speed"
 
 ENGINES: Mapping[str, Engine] = MappingProxyType(
@@ -138,7 +138,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
             ),
             Engine(
                 "dsmc",
-                "equal steps: in each cell molecules collide with whom chance chooses; for a hundred thousand and more",
+                "equal steps: in each cell partners of collisions are drawn at random; for a hundred thousand and more",
                 _dsmc,
                 (
                     _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
@@ -158,7 +158,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 (
                     _number("delta", 0.1, 1e-6, 1e3, _DELTA),
                     _word("scheme", ("spheres", "lookahead", "strips"), "which scheme, if not what suits the box"),
-                    _switch("closing_only", True, "whether pairs that are already parting are let go"),
+                    _switch("closing_only", True, "whether only pairs that approach collide"),
                     _COLLISIONS,
                 ),
             ),

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.errors import SettingError, UnknownSettingError
+from atmosbox.errors import SettingError
 from atmosbox.scene.engines.declared import ENGINES, Engine
-from atmosbox.scene.parameter import Value
-from atmosbox.scene.spelling import nearest
+from atmosbox.scene.parameter import Value, by_name
+from atmosbox.scene.spelling import assignments, nearest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,7 +43,8 @@ class EngineChoice:
 
     def __str__(self) -> str:
         """Return the words that ask for it."""
-        options = ",".join(f"{name}={_typed(value)}" for name, value in self.options.items())
+        known = {parameter.name: parameter for parameter in self.engine.parameters}
+        options = ",".join(f"{name}={known[name].typed(value)}" for name, value in self.options.items())
         return self.engine.name + (f":{options}" if options else "")
 
     @property
@@ -53,7 +54,7 @@ class EngineChoice:
 
     @property
     def ideal(self) -> bool:
-        """Whether the molecules of the engine take no room from each other, as those that never meet."""
+        """Whether the pressure is n kT, without Z: the molecules of the engine have no excluded volume."""
         return self.engine.ideal or self.options.get("collisions") is False
 
     def make(self, position: ArrayLike, velocity: ArrayLike, **box: Any) -> Parcel:
@@ -116,22 +117,12 @@ def choose(text: str | EngineChoice) -> EngineChoice:
     if colon and not rest.strip():
         raise SettingError("engine", text, "ends in a colon without options", f"give --engine {name}")
     parameters = {parameter.name: parameter for parameter in engine.parameters}
-    options: dict[str, Value] = {}
-    for piece in rest.split(",") if rest else ():
-        key, equals, value = piece.partition("=")
-        key = key.strip().replace("-", "_")
-        if key not in parameters:
-            raise UnknownSettingError(key or piece, value, f"is no option of the engine {name}", _fix(engine, key))
-        if not equals:
-            raise SettingError(key, "", "has no value", _fix(engine, key))
-        if key in options:
-            raise SettingError(key, value, "is given twice", _fix(engine, key))
-        try:
-            options[key] = parameters[key].parse(value.strip())
-        except SettingError as error:
-            fix = error.fix.replace("--set ", f"--engine {name}:")
-            raise type(error)(error.setting, error.value, error.problem, fix) from None
-    return EngineChoice(engine, options)
+    try:
+        given = by_name(assignments(rest.split(",") if rest else ()), parameters, f"an option of the engine {name}")
+        return EngineChoice(engine, {option: parameters[option].parse(value) for option, value in given.items()})
+    except SettingError as error:
+        setting, fix = (part.replace("--set ", f"--engine {name}:") for part in (error.setting, error.fix))
+        raise type(error)(setting, error.value, error.problem, fix) from None
 
 
 def used(dataset: xr.Dataset) -> EngineChoice:
@@ -148,19 +139,3 @@ def used(dataset: xr.Dataset) -> EngineChoice:
 
 EXACT = EngineChoice(ENGINES["exact"])
 """The engine that every scene runs on unless another is asked for."""
-
-
-def _typed(value: Value) -> str:
-    """Return a value as it is typed."""
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
-
-
-def _fix(engine: Engine, key: str) -> str:
-    """Return what to type in place of an option that does not exist."""
-    known = {parameter.name: parameter for parameter in engine.parameters}
-    if not known:
-        return f"give --engine {engine.name}, which has no options"
-    near = known[nearest(key, known) or next(iter(known))]
-    return f"give --engine {engine.name}:{near.name}={near.typed()}"
