@@ -23,7 +23,7 @@ UNITS = [
 WARM = Parameter("temperature", "degC", 25.0, -100.0, 500.0)
 MOLECULES = Parameter("molecules", "1", 4000, 1, 10_000_000, kind="int")
 
-finite = st.floats(allow_nan=False, allow_infinity=False)
+finite = st.floats(-1e300, 1e300)
 
 
 def parse(value, unit):
@@ -135,6 +135,13 @@ def test_whole_numbers_may_be_spelled_as_numbers_are(value):
 
 
 # Refusing
+
+
+@given(low=finite, span=st.floats(0.0, 1e6))
+def test_the_limits_themselves_are_allowed_as_they_are_typed(low, span):
+    low, high = (float(f"{limit:.12g}") for limit in (low, low + span))
+    within = Parameter("x", "hPa", low, low, high)
+    assert [within.parse(typed(limit, "hPa")) for limit in (low, high)] == [low, high]
 
 
 def test_a_value_out_of_range_is_refused_with_the_range():

@@ -131,21 +131,22 @@ class Parameter:
 
     def _number(self, value: object) -> float:
         try:
-            number, unit = number_and_unit(value)
+            exact, unit = number_and_unit(value)
             if unit not in ("", self.unit):
-                number = Decimal(repr(converted(float(number), unit, self.unit)))
-            if self.kind == "int" and number != number.to_integral_value():
+                exact = Decimal(repr(converted(float(exact), unit, self.unit)))
+            if self.kind == "int" and exact != exact.to_integral_value():
                 raise ValueError("is not whole")
         except ValueError as error:
             problem = f"{error}, but {self._wanted} is wanted"
             raise UnitError(self.name, value, problem, self._fix()) from None
+        number = int(exact) if self.kind == "int" else float(exact)
         below = self.low is not None and number < self.low
         if below or (self.high is not None and number > self.high):
             given = shown(value.strip() if isinstance(value, str) else value)
             given = given if unit or self.unit == "1" else f"{given} {self.unit}"
             side = "below the lowest" if below else "above the highest"
             raise self._refusal(given, f"is {side} allowed, {self.allowed}")
-        return int(number) if self.kind == "int" else float(number)
+        return number
 
     @property
     def _wanted(self) -> str:
