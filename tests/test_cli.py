@@ -22,7 +22,7 @@ from atmosbox import scenarios, version
 from atmosbox.cli import app, check, progress, report, table, terminal
 from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.output_name import FIGURES
-from atmosbox.cli.request import Request
+from atmosbox.cli.request import gather
 from atmosbox.errors import EngineError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
@@ -326,7 +326,7 @@ def test_an_earlier_run_is_repeated_bit_for_bit(folder, finished):
 
 def test_an_earlier_run_that_saved_its_molecules_does_so_again(folder):
     atmosbox_in_process(*SHORT, "--save-molecules")
-    assert Request(None, source=f"{SCENE}.nc").gather()[3] is True
+    assert gather(None, source=f"{SCENE}.nc").save_molecules is True
 
 
 def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):

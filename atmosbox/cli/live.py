@@ -27,7 +27,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.request import Request
+from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, tell
 from atmosbox.errors import SettingError
 
@@ -75,15 +75,9 @@ def live(
 
     from atmosbox.simulation import runner
 
-    asked = Request(scene, values or (), config, source, seed, save_molecules, engine, accuracy).gather()
+    asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
     with prints_to_stderr():
-        prepared = runner.prepare(
-            asked.scene,
-            asked.settings,
-            engine=asked.engine,
-            accuracy=asked.accuracy,
-            save_molecules=asked.molecules,
-        )
+        prepared = runner.prepare(**asked._asdict())
     folder, name = _place(out, prepared.scene, force=force)
 
     from atmosbox.live import Session

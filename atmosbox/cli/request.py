@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.cli.terminal import tell
@@ -15,74 +14,70 @@ if TYPE_CHECKING:
     from atmosbox.cli.config import Asked
 
 
-@dataclass(frozen=True)
-class Request:
-    """A run as it was asked for, before anything of it is checked.
+def gather(
+    scene: str | None,
+    values: Sequence[str] = (),
+    config: str | None = None,
+    source: str | None = None,
+    seed: str | None = None,
+    save_molecules: bool = False,
+    engine: str | None = None,
+    accuracy: str | None = None,
+) -> Asked:
+    """Return a run as all of the command line asks for it, before anything of it is checked.
+
+    Of two values for one setting that of the later counts: ``--from``, ``--config``, ``--set``, ``--seed``.
 
     Parameters
     ----------
     scene
-        The name of a scene, or the path of one; None where a file says it.
+        The name of a scene, or the path of one; None where a file names it.
     values
-        What stood behind each ``--set``.
+        The texts after each ``--set``.
     config, source
-        The files behind ``--config`` and ``--from``.
-    seed
-        What stood behind ``--seed``.
+        The files after ``--config`` and ``--from``.
+    seed, engine, accuracy
+        The texts after the options of these names.
     save_molecules
         Whether the molecules are saved.
-    engine
-        What stood behind ``--engine``.
-    accuracy
-        What stood behind ``--accuracy``.
+
+    Raises
+    ------
+    AtmosboxError
+        If a file or a text cannot be understood, two of them name different scenes, or an accuracy is wished of
+        a run whose engine is given.
+
+    Examples
+    --------
+    >>> gather("lifting-dry", ["temperature=25degC"], seed="7").settings
+    {'temperature': '25degC', 'seed': '7'}
     """
+    from atmosbox.cli.config import Asked, load_config
+    from atmosbox.scene.spelling import assignments
 
-    scene: str | None
-    values: Sequence[str] = ()
-    config: str | None = None
-    source: str | None = None
-    seed: str | None = None
-    save_molecules: bool = False
-    engine: str | None = None
-    accuracy: str | None = None
-
-    def gather(self) -> Asked:
-        """Return what the files, ``--set`` and ``--seed`` ask for together; of two values the later one counts.
-
-        Raises
-        ------
-        AtmosboxError
-            If a file or a text cannot be understood, two of them name different scenes, or an accuracy is wished of
-            a run whose engine is given.
-        """
-        from atmosbox.cli.config import Asked, load_config
-        from atmosbox.scene.spelling import assignments
-
-        scene = self.scene or ""
-        settings: dict[str, Any] = {}
-        engine = None
-        molecules = self.save_molecules
-        accuracy = self.accuracy
-        if self.source is not None:
-            run = _earlier(self.source)
-            scene = _agreed(scene, run.scene, "--from", self.source, FileError)
-            settings, engine, molecules = run.settings, run.engine, molecules or run.save_molecules
-        if self.config is not None:
-            asked = load_config(self.config)
-            scene = _agreed(scene, asked.scene, "--config", self.config, ConfigError)
-            settings, engine = _over(settings, asked.settings), asked.engine or engine
-            accuracy = accuracy or asked.accuracy
-        settings = _over(settings, assignments(self.values))
-        if self.seed is not None:
-            settings = _over(settings, {"seed": self.seed})
-        if not scene:
-            raise UnknownSceneError(
-                "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
-            )
-        if accuracy is not None and self.source is not None:
-            problem = f"picks engine and settings, and so does --from {shlex.quote(self.source)}"
-            raise SettingError("accuracy", accuracy, problem, "leave one of them out")
-        return Asked(scene, settings, self.engine or engine, molecules, accuracy)
+    scene = scene or ""
+    settings: dict[str, Any] = {}
+    of_file: str | None = None
+    if source is not None:
+        run = _earlier(source)
+        scene = _agreed(scene, run.scene, "--from", source, FileError)
+        settings, of_file, save_molecules = run.settings, run.engine, save_molecules or run.save_molecules
+    if config is not None:
+        asked = load_config(config)
+        scene = _agreed(scene, asked.scene, "--config", config, ConfigError)
+        settings, of_file = _over(settings, asked.settings), asked.engine or of_file
+        accuracy = accuracy or asked.accuracy
+    settings = _over(settings, assignments(values))
+    if seed is not None:
+        settings = _over(settings, {"seed": seed})
+    if not scene:
+        raise UnknownSceneError(
+            "No scene is given: name one, such as atmosbox run lifting-dry; `atmosbox list` shows all."
+        )
+    if accuracy is not None and source is not None:
+        problem = f"picks engine and settings, and so does --from {shlex.quote(source)}"
+        raise SettingError("accuracy", accuracy, problem, "leave one of them out")
+    return Asked(scene, settings, engine or of_file, save_molecules, accuracy)
 
 
 def is_path(scene: str) -> bool:

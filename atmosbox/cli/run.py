@@ -28,7 +28,7 @@ from atmosbox.cli.option import (
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.progress import progress
-from atmosbox.cli.request import Request
+from atmosbox.cli.request import gather
 from atmosbox.cli.table import table
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError
@@ -77,15 +77,9 @@ def run(
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.simulation import runner
 
-    asked = Request(scene, values or (), config, source, seed, save_molecules, engine, accuracy).gather()
+    asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
     with prints_to_stderr():
-        prepared = runner.prepare(
-            asked.scene,
-            asked.settings,
-            engine=asked.engine,
-            accuracy=asked.accuracy,
-            save_molecules=asked.molecules,
-        )
+        prepared = runner.prepare(**asked._asdict())
     path = netcdf_name(out, for_scene(prepared.scene))
     checkpoint = Checkpoint(path, force=force)
     if dry_run or verbose:

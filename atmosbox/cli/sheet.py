@@ -12,7 +12,7 @@ from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Engine, Force, SceneName, Seed, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import for_scene
 from atmosbox.cli.progress import progress
-from atmosbox.cli.request import Request
+from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import guarded, prints_to_stderr, say, tell
 
 
@@ -65,7 +65,7 @@ def sheet(
     """
     from atmosbox import sheet as sheets
 
-    asked = Request(scene, values or (), seed=seed, engine=engine).gather()
+    asked = gather(scene, values or (), seed=seed, engine=engine)
     kind = "pdf" if format is None else format.value
     path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{kind}") if out is None else Path(out)
     path = sheets.check(path, format and format.value, paper=paper.value, force=force)

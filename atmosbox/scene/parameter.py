@@ -11,7 +11,7 @@ from typing import Literal, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from atmosbox.errors import SettingError, UnitError, UnknownSettingError, shown
-from atmosbox.scene.conversion import MEASURES, declared_unit
+from atmosbox.scene.conversion import MEASURES, declared_unit, slashed
 from atmosbox.scene.quantity import converted, number_and_unit, phrase, typed
 from atmosbox.scene.spelling import field_name, nearest, plain
 
@@ -132,7 +132,7 @@ class Parameter:
     def _number(self, value: object) -> float:
         try:
             exact, unit = number_and_unit(value)
-            if unit not in ("", self.unit):
+            if unit not in ("", self.unit, slashed(self.unit)):
                 exact = Decimal(repr(converted(float(exact), unit, self.unit)))
             if self.kind == "int" and exact != exact.to_integral_value():
                 raise ValueError("is not whole")
