@@ -278,7 +278,7 @@ def test_an_accuracy_and_an_earlier_run_exclude_each_other(tmp_path):
     file = output.write(earlier, tmp_path / "short.nc")
     result = command("run", "--from", str(file), "--accuracy", "sketch", "--dry-run")
     assert result.exit_code == 2
-    assert "leave the one or the other out" in result.stderr
+    assert "leave one of them out" in result.stderr
 
 
 @pytest.mark.parametrize("wish", ["sketch", "reference"])
