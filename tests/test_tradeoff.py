@@ -3,7 +3,7 @@
 import csv
 import json
 import math
-import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -12,17 +12,29 @@ from typer.testing import CliRunner
 from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli import tradeoff as command
+from atmosbox.engine import CoarseStepWarning
 from atmosbox.errors import SettingError, UnknownSettingError
 from atmosbox.file.netcdf import read, write
 from atmosbox.plot import save
 from atmosbox.scene.setup import Series
-from atmosbox.trade.tradeoff import Rung, measure, rungs, timed_run
+from atmosbox.trade.tradeoff import Rung, budgeted_runs, measure, rungs, timed_run
+from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns
 from atmosbox.trade.tradeoff.measured_trade import _summary
 
 QUICK = (
     Series("exact", "ascent", (20, 40), {"molecules": 100}, {"temperature_at_700_hpa": -1.0}),
     Series("stepped", "delta", (0.4,), {"molecules": 100, "ascent": 20}),
 )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled():
+    """Compile the engines, which would count, before any budget begins."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CoarseStepWarning)
+        for rung in rungs(QUICK, {}):
+            timed_run.warm_up("lifting-dry", rung)
+    timed_run.warm_up("elastic-collisions", Rung("exact", {}, 0, 0.0))
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +106,7 @@ def test_a_measurement_has_errors_beside_costs(found):
 
 
 def test_the_same_seeds_give_the_same_errors(monkeypatch):
-    monkeypatch.setattr(sys.modules["atmosbox.trade.tradeoff.measured_trade"], "MOST_MEMBERS", 1)
+    monkeypatch.setattr(budgeted_runs, "MOST_RUNS", 1)
     first, second = (measure("lifting-dry", ladder=rungs(QUICK, {})[:1], budget=10.0) for _ in range(2))
     assert first.members.values.tolist() == [1]
     assert np.array_equal(first.bias.values, second.bias.values, equal_nan=True)
@@ -130,6 +142,59 @@ def test_what_an_engine_cannot_do_is_said_and_not_measured():
     found = measure("lifting-dry", ladder=ladder, budget=8.0)
     assert found.members.values[1] == 0
     assert "classic" in found.left_out.values[1]
+
+
+class Clock:
+    """A clock that stands still but for what is done, and the runs that are done by it.
+
+    ``compiling``, ``building`` and ``running`` are seconds by way; a run calls its watch a hundred times.
+    """
+
+    def __init__(self, budget, compiling, building, running):
+        self.now, self.log, self.compiling, self.building, self.running = 0.0, [], compiling, building, running
+        labels = [str(k) for k in range(len(running))]
+        self.runs = BudgetedRuns(budget, labels, self.compile, self.run, lambda *words: None, lambda: self.now)
+        self.runs.run()
+
+    def compile(self, k):
+        self.now += self.compiling[k]
+
+    def run(self, k, done, watch):
+        self.log.append(k)
+        watch(0.0, "compiling the engine, once")
+        self.now += self.building[k]
+        for share in np.linspace(0.0, 1.0, 101):
+            watch(share, "running")
+            self.now += self.running[k] / 100.0
+        return self.now
+
+    @property
+    def counts(self):
+        return [len(done) for done in self.runs.results]
+
+
+def test_the_budget_is_kept_with_all_that_is_compiled_built_and_run():
+    watched = Clock(60.0, [30.0, 20.0, 5.0, 40.0], [0.5, 2.0, 0.1, 0.0], [1.0, 3.0, 200.0, 1.0])
+    assert watched.now <= 60.0 + 40.0  # the compiler that is under way at the end cannot be stopped
+    assert Clock(60.0, [0.0] * 4, [0.5, 2.0, 0.1, 0.0], [1.0, 3.0, 200.0, 1.0]).now <= 60.0
+    assert Clock(60.0, [55.0, 50.0], [0.0, 0.0], [1.0, 1.0]).counts[1] == 0
+
+
+def test_what_fits_is_not_left_out_for_being_long_or_slow_to_build():
+    # the second takes more than its share at first, the third is built for longer than it runs
+    watched = Clock(60.0, [0.0] * 4, [0.0, 0.0, 5.0, 0.0], [1.0, 30.0, 0.5, 500.0])
+    assert watched.counts[1] == 1
+    assert watched.counts[0] >= 1 <= watched.counts[2]
+    assert watched.runs.left_out[:3] == ["", "", ""]
+    assert "500 s" in watched.runs.left_out[3]
+    assert watched.counts[3] == 0
+
+
+def test_those_with_the_fewest_runs_come_first():
+    watched = Clock(60.0, [0.0] * 3, [0.0] * 3, [2.0, 1.0, 4.0])
+    assert max(watched.counts) - min(watched.counts) <= 4
+    assert watched.log[:3] == [0, 1, 2]
+    assert sum(n * t for n, t in zip(watched.counts, (2.0, 1.0, 4.0), strict=True)) > 50.0
 
 
 @pytest.mark.parametrize("budget", [0.0, -1.0, math.nan, math.inf, 1e9])

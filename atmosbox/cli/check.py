@@ -183,6 +183,7 @@ def _as_json(one: Finding, engine: str) -> dict[str, Any]:
         "value": verdict.value,
         "expected": verdict.expected,
         "tolerance": verdict.tolerance,
+        "off": None if verdict.value is None else verdict.off,
     }
 
 
@@ -193,5 +194,5 @@ def _row(found: Sequence[Finding]) -> list[str]:
         for one in found
         if len(found) == 1 or one.verdict.outcome != "right"
     ]
-    cells = [one.verdict.outcome if one.verdict.passed else "WRONG" for one in found]
+    cells = [str(one.verdict) if one.verdict.passed else "WRONG" for one in found]
     return [found[0].extreme.name, *cells, "; ".join(said) or found[0].verdict.told]

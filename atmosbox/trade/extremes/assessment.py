@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from atmosbox.engine import RefusedError, StalledError
-from atmosbox.trade.extremes.catalogue import EXTREMES
-from atmosbox.trade.extremes.extreme import Extreme
-from atmosbox.trade.extremes.guarded_run import Candidate, Trial, UnlawfulError
-from atmosbox.trade.extremes.verdict import Verdict, wrong
+from atmosbox.errors import SettingError
+from atmosbox.trade.extremes.extreme import EXTREMES, Extreme
+from atmosbox.trade.extremes.guarded_run import Candidate, GuardedRun, UnlawfulError
+from atmosbox.trade.extremes.verdict import Verdict, compared, judged, stored, wrong
 
 __all__ = ["Finding", "assess", "examine"]
 
@@ -37,7 +37,7 @@ def assess(
     *,
     long: bool = False,
 ) -> Iterator[Finding]:
-    """Put engines through extremes, one after the other.
+    """Put engines through extremes, one after the other, and compare with the stored outcomes.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def assess(
     Examples
     --------
     >>> from atmosbox.scene.engines import EXACT
-    >>> [str(found.verdict) for found in assess([EXACT], ["three-walls-at-once"])]
-    ['right: 3, expected 3 ± 0']
+    >>> [found.verdict.told for found in assess([EXACT], ["count-of-pi"])]
+    ['hits of walls and contacts: 3141, expected 3141 ± 0']
     """
     chosen = [EXTREMES[name] for name in names] if names is not None else list(EXTREMES.values())
     chosen = [each for each in chosen if long or names is not None or not each.long]
@@ -72,12 +72,19 @@ def assess(
     for k, (each, engine) in enumerate((each, engine) for each in chosen for engine in engines):
         if progress is not None:
             progress(k / total, f"{each.name} on {engine.name}")
-        yield examine(each, engine)
+        yield examine(each, engine, stored().get(each.name, {}).get(str(engine)))
     if progress is not None:
         progress(1.0, "done")
 
 
-def examine(each: Extreme, engine: Candidate, *, limit: float | None = None, patience: float = PATIENCE) -> Finding:
+def examine(
+    each: Extreme,
+    engine: Candidate,
+    before: Verdict | None = None,
+    *,
+    limit: float | None = None,
+    patience: float = PATIENCE,
+) -> Finding:
     """Put one engine through one extreme.
 
     Parameters
@@ -86,6 +93,8 @@ def examine(each: Extreme, engine: Candidate, *, limit: float | None = None, pat
         The extreme.
     engine
         The engine.
+    before
+        The stored outcome, with which to compare.
     limit
         For how long it may run before it counts as a hang, of the processor's time [s].
     patience
@@ -98,32 +107,29 @@ def examine(each: Extreme, engine: Candidate, *, limit: float | None = None, pat
         What came out. An engine that does not come back is left behind in its thread.
     """
     limit = (LONG_LIMIT if each.long else LIMIT) if limit is None else limit
-    trial = Trial(engine, limit)
+    run = GuardedRun(engine, limit)
     verdicts: list[Verdict] = []
     began = time.monotonic()
-    worker = threading.Thread(target=lambda: verdicts.append(_verdict(each, trial)), daemon=True, name=each.name)
+    worker = threading.Thread(target=lambda: verdicts.append(_verdict(each, run)), daemon=True, name=each.name)
     worker.start()
     try:
         worker.join(limit + patience)
     finally:
-        trial.stopped.set()
+        run.stopped.set()
     if worker.is_alive():
         worker.join(1.0)
     verdict = verdicts[0] if verdicts else wrong(f"hangs: it has not come back after {limit + patience:g} s")
-    return Finding(engine.name, each, verdict, time.monotonic() - began)
+    return Finding(engine.name, each, compared(verdict, before), time.monotonic() - began)
 
 
-def _verdict(each: Extreme, trial: Trial) -> Verdict:
+def _verdict(each: Extreme, run: GuardedRun) -> Verdict:
     """Return what came out, whatever is raised."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an engine may well warn of what it is asked to do here
-            return each.examine(trial)
-    except (RefusedError, StalledError) as refusal:
-        sentence = " ".join(str(refusal).split())
-        if trial.engine in each.may_refuse:
-            return Verdict("refused", sentence)
-        return wrong(f"refused, though it should be able to: {sentence}")
+            return judged(each.probe(run))
+    except (RefusedError, StalledError, SettingError) as refusal:
+        return Verdict("refused", " ".join(str(refusal).split()))
     except UnlawfulError as fault:
         return wrong(str(fault))
     except Exception as bug:

@@ -5,27 +5,25 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping
+import weakref
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine import Parcel, Periodic, RefusedError, Specular, Wall, maxwell_velocities, random_positions
+from atmosbox.engine import Parcel, Periodic, Specular, Wall, maxwell_velocities, random_positions
 from atmosbox.engine.core.marching import MarchingParcel
+from atmosbox.engine.liquid.moist_account import MoistAccount
 from atmosbox.scene.engines import EngineChoice
-from atmosbox.trade.extremes.verdict import Verdict, wrong
 
-__all__ = ["Candidate", "Trial", "UnlawfulError"]
+__all__ = ["Candidate", "GuardedRun", "UnlawfulError", "deepest_overlap", "step_of"]
 
 APPROXIMATE = ("stepped", "dsmc", "classic")
-
-_LEDGER = 1e-10
-_OUTSIDE = 1e-9
-_OVERLAP = 1e-9
-
-Array = NDArray[np.float64]
+CLOSES, OUTSIDE, OVERLAP = 1e-10, 1e-9, 1e-9
+"""What rounding may do: to the energy ledger, to a place in the box [sides], to a pair in contact [diameters]."""
+MEMORY, MEMORY_OF_ONE = 10_000_000, 400
+"""Bytes that a box may take, and for each molecule besides."""
 
 
 class Candidate(Protocol):
@@ -43,11 +41,11 @@ class UnlawfulError(Exception):
     """A state or a behaviour that no engine may have."""
 
 
-class Trial:
-    """An engine on the bench.
+class GuardedRun:
+    """An engine under guard.
 
-    Boxes are made by `box` and advanced by `run`, which stops what hangs and looks, after every run, whether
-    the state is still lawful: all molecules there and inside, every number finite, the ledger closed.
+    Boxes are made by `box` and advanced by `advance`, which stops what hangs and checks, after every run, whether
+    the state is still lawful: all molecules there and inside, every number finite, energy and water conserved.
 
     Parameters
     ----------
@@ -59,21 +57,20 @@ class Trial:
 
     def __init__(self, candidate: Candidate, limit: float = 60.0) -> None:
         self.engine = candidate.name
+        self.exact = candidate.name not in APPROXIMATE
         self.limit = limit
         self.stopped = threading.Event()
-        self.exact = candidate.name not in APPROXIMATE
         self._candidate = candidate
         self._spent = 0.0
-
-    # ------------------------------------------------------------------ boxes
+        self._waters: weakref.WeakKeyDictionary[Parcel, int] = weakref.WeakKeyDictionary()
 
     def box(self, position: Any, velocity: Any, *, options: Mapping[str, Any] | None = None, **box: Any) -> Parcel:
-        """Return a parcel of the engine; the arguments are those of `Parcel`, and options of the engine."""
-        candidate = self._candidate
-        if isinstance(candidate, EngineChoice):
-            candidate = replace(candidate, options={**candidate.options, **(options or {})})
+        """Return a parcel of the engine; the arguments are those of `Parcel`, and options by engine."""
+        candidate, own = self._candidate, (options or {}).get(self.engine, {})
+        if own and isinstance(candidate, EngineChoice):
+            candidate = replace(candidate, options={**candidate.options, **own})
         parcel = candidate.make(position, velocity, **box)
-        self._look(parcel)
+        self._check(parcel)
         return parcel
 
     def gas(
@@ -83,25 +80,21 @@ class Trial:
         *,
         seed: int = 1,
         kT: float = 1.0,
-        diameter: ArrayLike = 1.0,
-        mass: ArrayLike = 1.0,
+        diameter: Any = 1.0,
+        mass: Any = 1.0,
         walls: tuple[Wall, ...] = (Specular(),) * 6,
         top: float | None = None,
         **box: Any,
     ) -> Parcel:
         """Return a box of molecules at random places with Maxwell's velocities, their energy that of kT."""
         rng = np.random.default_rng(seed)
-        sizes = np.broadcast_to(np.asarray(diameter, np.float64), number)
-        masses = np.broadcast_to(np.asarray(mass, np.float64), number)
-        open_axes = tuple(isinstance(wall, Periodic) for wall in walls[::2])
-        periodic = (open_axes[0], open_axes[1], open_axes[2])
-        x = random_positions(length, sizes, rng, periodic=periodic, top=top)
+        sizes, masses = (np.broadcast_to(np.asarray(each, np.float64), number) for each in (diameter, mass))
+        x_open, y_open, z_open = (isinstance(wall, Periodic) for wall in walls[::2])
+        x = random_positions(length, sizes, rng, periodic=(x_open, y_open, z_open), top=top)
         v = maxwell_velocities(kT, masses, rng, exact=True)
         return self.box(x, v, length=length, diameter=sizes, mass=masses, walls=walls, seed=seed, **box)
 
-    # ------------------------------------------------------------------ time
-
-    def run(self, parcel: Parcel, until: float) -> Parcel:
+    def advance(self, parcel: Parcel, until: float) -> Parcel:
         """Let time pass, under guard; return the parcel."""
         began: list[float] = []  # the time of the processor counts, which others may have slowed down
 
@@ -115,38 +108,23 @@ class Trial:
             parcel.advance(until, watch)
         finally:
             self._spent += time.thread_time() - began[0] if began else 0.0
-            self._look(parcel)
-        late = parcel.time - until
-        step = parcel.time_step if isinstance(parcel, MarchingParcel) else 0.0
+            self._check(parcel)
+        step = step_of(parcel)
         slack = 1e-9 * max(abs(until), step)
-        if not -step - slack <= late <= slack:
+        if not -step - slack <= parcel.time - until <= slack:
             raise UnlawfulError(f"asked to advance to t = {until:.9g}, it stands at {parcel.time:.9g}")
         return parcel
 
-    def refused(self, doing: Callable[[], object], word: str) -> Verdict:
-        """Return the verdict on something that must be refused, in a sentence that names a word."""
-        try:
-            doing()
-        except RefusedError as refusal:
-            sentence = " ".join(str(refusal).split())
-            if word in sentence:
-                return Verdict("refused", sentence)
-            return wrong(f'refused without a word on "{word}": {sentence}')
-        return wrong(f"{word}: accepted, though no box can have it")
-
-    # ------------------------------------------------------------------ laws
-
-    def _look(self, parcel: Parcel) -> None:
-        """Refuse a state that no engine may have."""
-        here = parcel.snapshot()
-        shape = (parcel.number, 3)
-        if here.position.shape != shape or here.velocity.shape != shape:
-            raise UnlawfulError(f"of {parcel.number} molecules {len(here.position)} are left")
-        tallies: dict[str, Any] = {
+    def _check(self, parcel: Parcel) -> None:
+        """Raise `UnlawfulError` at a state that no engine may have."""
+        here, number = parcel.snapshot(), parcel.number
+        if here.position.shape != (number, 3) or here.velocity.shape != (number, 3):
+            raise UnlawfulError(f"of {number} molecules {len(here.position)} are left")
+        numbers: dict[str, Any] = {
             "position": here.position,
             "velocity": here.velocity,
             "rotational energy": here.rotational_energy,
-            "energy": parcel.energy(),
+            "energy": (*parcel.energy(), parcel.condensed_energy),
             "impulse of a wall": parcel.wall_impulse,
             "heat of a wall": parcel.wall_heat,
             "work": parcel.work,
@@ -154,30 +132,28 @@ class Trial:
             "time": parcel.time,
             "height of the ceiling": parcel.ceiling,
         }
-        for name, values in tallies.items():
-            if not np.isfinite(values).all():
-                raise UnlawfulError(f"{name} is not finite at t = {parcel.time:.6g}")
+        faults = [f"{name} is not finite" for name, values in numbers.items() if not np.isfinite(values).all()]
         if (here.rotational_energy < 0.0).any():
-            raise UnlawfulError(f"a rotational energy is negative at t = {parcel.time:.6g}")
-        if (out := outermost(parcel)) > _OUTSIDE:
-            raise UnlawfulError(f"a molecule is {out:.3g} of the box outside of it at t = {parcel.time:.6g}")
-        if not (off := misfit(parcel)) <= _LEDGER:
-            raise UnlawfulError(f"the energy ledger is off by {off:.3g} at t = {parcel.time:.6g}")
-        if self.exact and parcel.number <= 500 and (deep := deepest_overlap(parcel)) > _OVERLAP:
-            raise UnlawfulError(f"molecules overlap by {deep:.3g} of their diameter at t = {parcel.time:.6g}")
+            faults.append("a rotational energy is negative")
+        if (out := outermost(parcel)) > OUTSIDE:
+            faults.append(f"a molecule is {out:.3g} of the box outside of it")
+        if not (off := parcel.ledger()) <= CLOSES:
+            faults.append(f"the energy ledger is off by {off:.3g}")
+        if self.exact and number <= 500 and (deep := deepest_overlap(parcel)) > OVERLAP:
+            faults.append(f"molecules overlap by {deep:.3g} of their diameter")
+        if (memory := parcel.memory()) > MEMORY + MEMORY_OF_ONE * number:
+            faults.append(f"{number} molecules take {memory} bytes")
+        if isinstance(parcel, MoistAccount):
+            parts = (parcel.vapour, parcel.liquid, parcel.rained)
+            if min(parts) < 0 or sum(parts) != self._waters.setdefault(parcel, sum(parts)):
+                faults.append(f"of {self._waters[parcel]} molecules of water {parts} are vapour, liquid and rain")
+        if faults:
+            raise UnlawfulError(f"{faults[0]} at t = {parcel.time:.6g}")
 
 
-def misfit(parcel: Parcel) -> float:
-    """Return by how much the energy ledger fails to close, relative to all energy that there is or was exchanged.
-
-    `Parcel.ledger` relates it to what there is. Between walls a million times as hot as each other a
-    thousand times as much flows through in a while, and its rounding with it.
-    """
-    energy = sum(parcel.energy())
-    exchanged = float(np.abs(parcel.wall_heat).sum()) + abs(parcel.work)
-    start = parcel.internal_energy() - float(parcel.wall_heat.sum()) - parcel.work
-    scale = abs(energy) + exchanged
-    return parcel.ledger() * max(abs(energy), abs(start)) / scale if scale > 0.0 else 0.0
+def step_of(parcel: Parcel) -> float:
+    """Return the length of a step [time], 0 for an engine without."""
+    return parcel.time_step if isinstance(parcel, MarchingParcel) else 0.0
 
 
 def outermost(parcel: Parcel) -> float:

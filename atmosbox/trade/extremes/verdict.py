@@ -1,15 +1,35 @@
-"""What came out of an extreme: right, refused, degraded as stated, or wrong."""
+"""What came out of an extreme: right, refused, degraded by how much, or wrong."""
 
 from __future__ import annotations
 
+import json
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, get_args
+from functools import cache
+from pathlib import Path
+from typing import Literal, NamedTuple, get_args
 
-__all__ = ["OUTCOMES", "Outcome", "Verdict", "degraded", "judged", "wrong"]
+__all__ = ["OUTCOMES", "STORED", "Outcome", "Reading", "Verdict", "compared", "judged", "stored", "wrong"]
 
 Outcome = Literal["right", "refused", "degrades", "wrong"]
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
+
+STORED = Path(__file__).with_name("stored_outcomes.json")
+"""The outcomes that ``benchmarks/extremes.py`` has stored: by extreme and engine."""
+LOOSE = 0.05
+"""A number whose tolerance is a larger share of what is expected is not called right."""
+WORSE = 1.25
+"""By what factor an error may grow before the engine counts as worse than it was."""
+
+
+class Reading(NamedTuple):
+    """A number that was measured, what a right engine gives, and how far off chance and rounding may take it."""
+
+    what: str
+    value: float
+    expected: float = 0.0
+    tolerance: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -19,13 +39,13 @@ class Verdict:
     Parameters
     ----------
     outcome
-        "right": the number is that of mechanics or of kinetic theory. "refused": the engine said no, in a
-        sentence. "degrades": the number is off, and obeys the law or bound by which it is known to be.
-        "wrong": anything else.
+        "right": the number is that of mechanics or of kinetic theory, within a tolerance of 5 % at most. "degrades":
+        it is off, or known less well than that. "refused": the engine said no, in a sentence. "wrong": a law was
+        broken, the engine hung or crashed, or did worse than the stored outcome.
     sentence
         What was measured, or what the refusal says.
     value, expected, tolerance
-        The number, what it should be, and by how much it may be off; None where the outcome is no number.
+        The number, what a right engine gives, and four standard errors; None where the outcome is no number.
     """
 
     outcome: Outcome
@@ -40,13 +60,32 @@ class Verdict:
         return self.outcome != "wrong"
 
     @property
-    def figures(self) -> str:
-        """The number with what it should be; empty where the outcome is no number."""
+    def off(self) -> float:
+        """By how much the number is off, as a share of what is expected unless that is 0; 0 without a number."""
+        if self.value is None or self.expected is None:
+            return 0.0
+        return (self.value - self.expected) / (abs(self.expected) or 1.0)
+
+    @property
+    def error(self) -> str:
+        """By how much the number is off, in words; empty where the outcome is no number."""
         if self.value is None:
             return ""
-        if self.expected:
-            return f"{self.value:.6g}, expected {self.expected:.6g} ± {self.tolerance:.2g}"
-        return f"{self.value:.2g}, at most {self.tolerance:.2g}" if self.tolerance else f"{self.value:.6g}"
+        if not self.expected:
+            return f"by {self.value:.2g}"
+        percent = 100.0 * self.off
+        if abs(percent) >= 1000.0:
+            return f"by a factor of {self.value / self.expected:.3g}"
+        return f"by {percent:+.0f} %" if abs(percent) >= 10.0 else f"by {percent:+.2g} %"
+
+    @property
+    def figures(self) -> str:
+        """The number with what it should be; empty where the outcome is no number."""
+        if self.value is None or self.tolerance is None:
+            return ""
+        if self.expected and 0.0 < self.tolerance < 1e-6 and self.outcome == "right":
+            return f"{self.expected:g}, off by {self.off:.2g}, at most {self.tolerance:.2g}"
+        return f"{self.value:.6g}, expected {self.expected:.6g} ± {self.tolerance:.2g}"
 
     @property
     def told(self) -> str:
@@ -54,37 +93,57 @@ class Verdict:
         return f"{self.sentence}: {self.figures}" if self.figures else self.sentence
 
     def __str__(self) -> str:
-        """Return the outcome with its number."""
-        return f"{self.outcome}: {self.figures}" if self.figures else self.outcome
+        """Return the outcome in a few words."""
+        return f"degrades {self.error}" if self.outcome == "degrades" else self.outcome
 
 
-def judged(sentence: str, value: float, expected: float = 0.0, tolerance: float = 0.0) -> Verdict:
-    """Return "right" if a number is what it should be, else "wrong".
+def judged(reading: Reading) -> Verdict:
+    """Return "right" if a number is what it should be, "wrong" if it is none, else "degrades".
 
     Examples
     --------
-    >>> judged("hits", 31, 31).outcome, judged("hits", 30, 31).outcome, judged("hits", math.nan, 31, 99).outcome
-    ('right', 'wrong', 'wrong')
+    >>> print(judged(Reading("hits", 31, 31)), judged(Reading("hits", 30, 31)), judged(Reading("hits", math.nan)))
+    right degrades by -3.2 % wrong
     """
-    return _by_number("right", sentence, value, expected, tolerance)
+    what, value, expected, tolerance = reading
+    if not math.isfinite(value):
+        return Verdict("wrong", f"{what} is {value}")
+    tight = not expected or tolerance <= LOOSE * abs(expected)
+    outcome: Outcome = "right" if tight and abs(value - expected) <= tolerance else "degrades"
+    return Verdict(outcome, what, float(value), float(expected), float(tolerance))
 
 
-def degraded(sentence: str, value: float, expected: float = 0.0, tolerance: float = 0.0) -> Verdict:
-    """Return "degrades" if a number obeys the law of its degradation, else "wrong".
+def compared(now: Verdict, before: Verdict | None) -> Verdict:
+    """Return a verdict, or "wrong" if the engine did better before.
 
     Parameters
     ----------
-    sentence
-        What degrades, and by which law or bound.
-    value, expected, tolerance
-        The number, what the law gives (0 for a bound), and how far from it the number may be.
+    now
+        What came out.
+    before
+        The stored outcome; None if there is none, as of an engine with options.
 
     Examples
     --------
-    >>> degraded("energy error of a step of 0.1, at most its square", 0.009, 0.0, 0.01).outcome
+    >>> before = Verdict("degrades", "pressure", 7.14, 12.2, 0.2)
+    >>> compared(Verdict("degrades", "pressure", 7.3, 12.2, 0.2), before).outcome
     'degrades'
+    >>> print(compared(Verdict("degrades", "pressure", 4.5, 12.2, 0.2), before).sentence)
+    pressure is 4.5, expected 12.2 ± 0.2; it was 7.14, expected 12.2 ± 0.2
     """
-    return _by_number("degrades", sentence, value, expected, tolerance)
+    if before is None or now.outcome in ("right", "wrong"):
+        return now
+    if now.outcome == "refused":
+        if before.outcome == "refused":
+            return now
+        return wrong(f"refused, but the stored outcome is {before.outcome}: {now.sentence}")
+    if now.value is None or now.expected is None or now.tolerance is None:
+        return now
+    slack = 2.0 * now.tolerance / (abs(now.expected) or 1.0)
+    worse = before.outcome == "right" or abs(now.off) > WORSE * abs(before.off) + slack
+    if before.outcome == "refused" or not worse:
+        return now
+    return wrong(f"{now.sentence} is {now.figures}; it was {before.figures}")
 
 
 def wrong(sentence: str) -> Verdict:
@@ -92,8 +151,10 @@ def wrong(sentence: str) -> Verdict:
     return Verdict("wrong", sentence)
 
 
-def _by_number(outcome: Outcome, sentence: str, value: float, expected: float, tolerance: float) -> Verdict:
-    value, expected, tolerance = float(value), float(expected), float(tolerance)
-    off = abs(value - expected)
-    met = math.isfinite(off) and off <= tolerance
-    return Verdict(outcome if met else "wrong", sentence, value, expected, tolerance)
+@cache
+def stored() -> Mapping[str, Mapping[str, Verdict]]:
+    """Return the stored outcomes, by extreme and engine."""
+    if not STORED.exists():
+        return {}
+    kept = json.loads(STORED.read_text(encoding="utf-8"))
+    return {name: {who: Verdict(**one) for who, one in row.items()} for name, row in kept.items()}

@@ -1,6 +1,7 @@
 """Speed against accuracy, measured: the same scene through engines and settings, errors beside seconds.
 
 `rung`             one way of running a scene
+`budgeted_runs`    which run comes next, so that all fit into a budget of time
 `timed_run`        what one run came to
 `measured_trade`   all the ways of a scene, within a budget of time
 """

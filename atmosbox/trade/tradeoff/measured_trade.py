@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -18,20 +17,11 @@ from atmosbox.errors import AtmosboxError, SettingError
 from atmosbox.file.provenance import global_attributes
 from atmosbox.scene import engines
 from atmosbox.trade.tradeoff import timed_run
+from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns, Progress
 from atmosbox.trade.tradeoff.rung import Rung, rungs
 from atmosbox.trade.tradeoff.timed_run import Quantity, Trial
 
 __all__ = ["measure"]
-
-MOST_MEMBERS = 64
-_FIRST_SHARE = 0.25
-"""A run that would take more than this share of the budget is left out."""
-
-Progress = Callable[[float, str], None]
-
-
-class _TooLong(Exception):
-    """A run takes more of the budget than is its share."""
 
 
 def measure(
@@ -47,8 +37,9 @@ def measure(
     """Run a scene through engines and settings, and return errors beside costs.
 
     Every rung runs once, then again and again with other seeds while the budget lasts, those with the fewest
-    runs first. The bias is the mean misfit to theory; its standard error, and the noise of a single run, come
-    from the scatter of the seeds, or from the runs' own error bars where there are fewer than four.
+    runs first; compiling the engines counts, too. The bias is the mean misfit to theory; its standard error, and
+    the noise of a single run, come from the scatter of the seeds, or from the runs' own error bars where there are
+    fewer than four.
 
     Parameters
     ----------
@@ -57,7 +48,7 @@ def measure(
     settings
         Settings for all runs.
     budget
-        For how long to measure [s].
+        For how long to measure, with all that is compiled on the way [s].
     seed
         The first seed.
     ladder
@@ -87,63 +78,31 @@ def measure(
     ways = tuple(ladder) if ladder is not None else rungs(row, settings or {})
     tell = progress or (lambda share, word: None)
     first = _first_alike(ways, module.Settings)
-    trials: list[list[Trial]] = []
-    for k in range(len(ways)):
-        trials.append([] if first[k] == k else trials[first[k]])
-    refused = [""] * len(ways)
-    warmed: set[str] = set()
+    own = sorted(set(first))
+    compiled: set[str] = set()
+
+    def compile_way(k: int) -> None:
+        way = ways[own[k]]
+        if (name := engines.choose(way.engine).name) not in compiled:
+            tell(0.0, f"compiling the engine {name}, once")
+            timed_run.warm_up(scene, way)
+            compiled.add(name)
+
+    def run_way(k: int, done: int, watch: Progress) -> Trial:
+        return timed_run.run(scene, ways[own[k]], seed + done, watch)
+
+    status = "complete"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
-        for k, way in enumerate(ways):
-            if (name := engines.choose(way.engine).name) not in warmed:
-                tell(0.0, f"compiling the engine {name}, once")
-                try:
-                    timed_run.warm_up(scene, way)
-                    warmed.add(name)
-                except AtmosboxError as error:
-                    refused[k] = str(error)
-        began = time.perf_counter()
-
-        def spent() -> float:
-            return time.perf_counter() - began
-
-        def attempt(k: int, allowed: float) -> None:
-            start = time.perf_counter()
-
-            def watch(share: float, word: str) -> None:
-                took = time.perf_counter() - start
-                if took > allowed or (share > 0.02 and took / share > 1.5 * allowed):
-                    raise _TooLong
-                tell(min(spent() / budget, 1.0), ways[k].label)
-
-            try:
-                trials[k].append(timed_run.run(scene, ways[k], seed + len(trials[k]), watch))
-            except _TooLong:
-                refused[k] = "left out: one run takes too much of the budget"
-            except AtmosboxError as error:
-                refused[k] = str(error)
-
-        def rounds() -> None:
-            own = [k for k in range(len(ways)) if first[k] == k]
-            for k in own:
-                if not refused[k]:
-                    attempt(k, min(_FIRST_SHARE * budget, max(budget - spent(), 0.0) + 0.5))
-            while True:
-                left = budget - spent()
-                fit = [k for k in own if trials[k] and not refused[k] and len(trials[k]) < MOST_MEMBERS]
-                fit = [k for k in fit if trials[k][0].wall_seconds < 0.8 * left]
-                if not fit:
-                    return
-                attempt(min(fit, key=lambda k: (len(trials[k]), trials[k][0].wall_seconds)), left + 0.5)
-
-        status = "complete"
+        runs = BudgetedRuns(budget, [ways[k].label for k in own], compile_way, run_way, tell)
         try:
-            rounds()
+            runs.run()
         except KeyboardInterrupt:
-            if not any(trials):
+            if not any(runs.results):
                 raise
             status = "interrupted"
-    refused = [refused[k] for k in first]
+    trials = [runs.results[own.index(k)] for k in first]
+    refused = [runs.left_out[own.index(k)] for k in first]
     if not any(trials):
         why = next((reason for reason in refused if reason), "no run fits into it")
         raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")

@@ -1,0 +1,103 @@
+"""What is built for an extreme: each function returns how to make a box once an engine is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from atmosbox.engine import (
+    Drops,
+    HeatBath,
+    Liquid,
+    Mist,
+    Parcel,
+    Periodic,
+    Pool,
+    Specular,
+    lattice_positions,
+    maxwell_velocities,
+)
+from atmosbox.scene.moisture import moist_air, water
+from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+from atmosbox.trade.extremes.guarded_run import GuardedRun
+
+__all__ = ["BATHS", "OPEN", "SMOOTH", "Box", "at", "crystal", "gas", "moist"]
+
+Box = Callable[[GuardedRun], Parcel]
+STEADY = 1e7
+"""Heat capacity of nuclei [k] that keeps the liquid at its temperature, as a small one would not."""
+AT_REST = "at rest"
+OPEN, SMOOTH, BATHS = (Periodic(),) * 6, (Specular(),) * 6, (HeatBath(1.0),) * 6
+
+
+def at(position: Any, velocity: Any = AT_REST, length: Any = (10, 10, 10), **box: Any) -> Box:
+    """Return a box of molecules at given places, at rest unless velocities are given."""
+    speeds = np.zeros(np.shape(position)) if velocity is AT_REST else velocity
+    return lambda run: run.box(position, speeds, length=length, **box)
+
+
+def gas(number: int, *sides: float, few: int | None = None, **box: Any) -> Box:
+    """Return a box of molecules at random places with Maxwell's velocities; one side makes a cube.
+
+    ``few`` is their number for engines that go in steps, where these are short.
+    """
+    x, y, z = sides * 3 if len(sides) == 1 else sides
+    return lambda run: run.gas(number if run.exact or few is None else few, (x, y, z), **box)
+
+
+def crystal(number: int, side: float) -> Box:
+    """Return a periodic cube of molecules on a lattice with Maxwell's velocities."""
+    sites = lattice_positions((side,) * 3, np.ones(number), periodic=(True,) * 3)
+    return at(
+        sites, maxwell_velocities(1.0, np.ones(number), np.random.default_rng(2), exact=True), (side,) * 3, walls=OPEN
+    )
+
+
+def moist(
+    kind: type[Liquid], celsius: float, saturated: float, waters: int, *, vapour: int = 0, air: int = 20, **liquid: Any
+) -> Box:
+    """Return a box with real water between heat baths of its temperature.
+
+    Parameters
+    ----------
+    kind
+        Mist, pool or drops; the drops are two that touch.
+    celsius
+        The temperature [degC].
+    saturated
+        How many molecules of vapour are in balance with the liquid: the box is as large as they need.
+    waters, vapour, air
+        How many molecules of water there are, how many of them are vapour at the start, and how many of air.
+    liquid
+        What else the liquid is given.
+    """
+    scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * (celsius + 273.15))
+    substance, held = water(scale), waters - vapour
+    side = 1.0 + (saturated / substance.saturation_pressure(1.0)) ** (1.0 / 3.0)
+    middle, reach = 0.5 * side, (8.0 + 0.125 * 0.5 * held) ** (1.0 / 3.0)
+    shapes: dict[type[Liquid], dict[str, Any]] = {
+        Mist: {"area": 6.0 * side**2},
+        Pool: {},
+        Drops: {"position": ((middle - reach, middle, middle), (middle + reach, middle, middle)), "nucleus": 2.0},
+    }
+    walls = (*BATHS[:4], Specular() if kind is Pool else BATHS[4], BATHS[5])
+
+    def build(run: GuardedRun) -> Parcel:
+        start = moist_air(vapour + air, vapour, np.random.default_rng(1))
+        sizes = np.ones(vapour + air)
+        return run.box(
+            lattice_positions((side, side, 0.25 * side), sizes) if len(sizes) else np.zeros((0, 3)),
+            start.velocity,
+            length=(side,) * 3,
+            mass=start.mass,
+            rotation=start.rotation,
+            rotational_energy=start.rotational_energy,
+            walls=walls,
+            seed=1,
+            liquid=kind(substance, number=held, **{"nuclei": STEADY} | shapes[kind] | liquid),
+        )
+
+    return build

@@ -1,0 +1,389 @@
+r"""What is measured in an extreme: a few rules, each of which builds boxes, lets time pass and reads off one number.
+
+Each returns a function of a `GuardedRun`; boxes and numbers come from the table of extremes. What is expected is
+what mechanics or kinetic theory says of real molecules, whatever the engine: by how much it is off is the result.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from atmosbox import theory
+from atmosbox.engine import RefusedError, StalledError
+from atmosbox.engine.core.marching import MarchingParcel
+from atmosbox.engine.core.measure import layer_sample, temperature
+from atmosbox.scene.statistics import block_average
+from atmosbox.theory.constants import DRY_AIR
+from atmosbox.trade.extremes.extreme_box import Box
+from atmosbox.trade.extremes.guarded_run import GuardedRun, UnlawfulError, deepest_overlap, step_of
+from atmosbox.trade.extremes.verdict import Reading
+
+__all__ = [
+    "Probe",
+    "alike",
+    "comes_to",
+    "contacts",
+    "cooled",
+    "emptiness",
+    "energy",
+    "force",
+    "heat",
+    "hits",
+    "parted",
+    "pressure",
+    "refused",
+    "seen_share",
+    "stopped",
+    "swept",
+    "vapour",
+    "weight",
+]
+
+Probe = Callable[[GuardedRun], Reading]
+BLOCKS = 20
+
+
+# ------------------------------------------------------------------ mechanics
+
+
+def comes_to(
+    boxes: Sequence[Box],
+    until: float,
+    *,
+    position: Any = None,
+    velocity: Any = None,
+    per: Sequence[float] | None = None,
+    tolerance: float = 1e-12,
+) -> Probe:
+    """Compare where molecules are and how fast they are with what mechanics gives, box by box; ``per`` are units."""
+
+    def read(run: GuardedRun) -> Reading:
+        worst = 0.0
+        for k, new in enumerate(boxes):
+            box = run.advance(new(run), until)
+            here, off = box.snapshot(), 0.0
+            if velocity is not None:
+                off = float(np.abs(here.velocity - velocity[k]).max())
+            if position is not None:  # after the last whole step it is not yet there
+                moved = 0.0 if velocity is None else (box.time - until) * np.asarray(velocity[k], float)
+                off = max(off, float(np.abs(here.position - np.asarray(position[k]) - moved).max()))
+            worst = max(worst, off / per[k] if per else off)
+        return Reading("largest error of a position or a velocity", worst, 0.0, tolerance)
+
+    return read
+
+
+def hits(boxes: Sequence[Box], until: float, expected: Sequence[int]) -> Probe:
+    """Count hits of walls and contacts; of several boxes the last one counts if all others are as expected."""
+
+    def read(run: GuardedRun) -> Reading:
+        ran = [run.advance(new(run), until) for new in boxes]
+        counts = [box.contacts + int(box.wall_hits.sum()) for box in ran]
+        off = [k for k in range(len(counts)) if counts[k] != expected[k]] or [len(counts) - 1]
+        return Reading("hits of walls and contacts", counts[off[0]], expected[off[0]])
+
+    return read
+
+
+def energy(new: Box, until: float, *, pieces: int = 1, events: int = 0, tolerance: float = 1e-12) -> Probe:
+    """Compare the energy with that at the start."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = new(run)
+        before = sum(box.energy())
+        for k in range(1, pieces + 1):
+            run.advance(box, until * k / pieces)
+        if (met := box.contacts + int(box.wall_hits.sum())) < events:
+            raise UnlawfulError(f"only {met} contacts and hits of walls")
+        return Reading("energy over that at the start", sum(box.energy()) / before, 1.0, tolerance)
+
+    return read
+
+
+def cooled(new: Box, times: Sequence[float], word: str) -> Probe:
+    """Compare the kinetic energy that walls without heat leave with nothing; a refusal must say what to change."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = new(run)
+        before, refusal = box.energy()[0], None
+        for until in times:
+            try:
+                run.advance(box, until)
+            except StalledError as stalled:
+                refusal = stalled
+        if refusal is not None:
+            raise refusal if word in str(refusal) else UnlawfulError(f"refused without a word on {word}: {refusal}")
+        return Reading("kinetic energy over that at the start", box.energy()[0] / before, 0.0, 1e-12)
+
+    return read
+
+
+def alike(new: Box, other: Box, until: float, *, cuts: int = 0, later: float = 0.0) -> Probe:
+    """Compare two runs that must be the same: of two boxes, in one piece or cut, by a clock that is later."""
+
+    def read(run: GuardedRun) -> Reading:
+        one, two = new(run), other(run)
+        if later and isinstance(two, MarchingParcel):
+            two._step = round(later / two.time_step)
+            two._now = two._step * two.time_step
+        elif later:
+            two._walls.epoch[0] = 2.0 ** round(math.log2(later))
+        began = two.time
+        end = (math.floor(until / step_of(one)) * step_of(one)) if step_of(one) else until
+        for time in np.sort(np.random.default_rng(9).random(cuts)) * end:
+            run.advance(two, began + float(time))
+            two.energy()
+        run.advance(one, end), run.advance(two, began + end)
+        if one.contacts < 20:
+            raise UnlawfulError(f"only {one.contacts} contacts")
+        if later and one.ideal:  # whom chance brings together depends on the number of the step
+            ratio = two.contacts / one.contacts
+            return Reading("contacts over those by the other clock", ratio, 1.0, 4.0 * math.sqrt(2.0 / one.contacts))
+        off = float(np.abs(one.snapshot().position - two.snapshot().position).max())
+        off = max(off, float(np.abs(one.wall_heat - two.wall_heat).max()))
+        return Reading("difference between two runs", off, 0.0, 10.0 * float(np.spacing(later)) if later else 0.0)
+
+    return read
+
+
+def weight(new: Box, until: float) -> Probe:
+    """Compare what the floor carries with the weight, after the energy with that at the start."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = new(run)
+        before, falling = sum(box.energy()), float(box.snapshot().velocity[:, 2].sum())
+        run.advance(box, max(until, 100.0 * step_of(box)))
+        if box.wall_hits[4] < 100:
+            raise UnlawfulError(f"only {box.wall_hits[4]} hits of the floor")
+        if abs(sum(box.energy()) / before - 1.0) > 1e-9:
+            return Reading("energy over that at the start", sum(box.energy()) / before, 1.0, 1e-9)
+        pushed = float(box.wall_impulse[4] - box.wall_impulse[5])
+        weighed = float(box.mass.sum()) * box.gravity * box.time
+        gained = float(box.snapshot().velocity[:, 2].sum()) - falling
+        rounding = 1e-12 * max(1.0, abs(pushed) / weighed, abs(gained) / weighed)
+        return Reading("impulse of the floor over weight times time", (pushed - gained) / weighed, 1.0, rounding)
+
+    return read
+
+
+def swept(new: Box, speed: float) -> Probe:
+    """Compare the work of a piston on molecules at rest with their energy at twice its velocity."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = new(run)
+        where = box.snapshot().position[:, 2]
+        run.advance(box, 3.0 / speed)  # nobody who was hit can have come back from the floor
+        carried = 2.0 * speed**2 * int(np.sum(where > box.ceiling))
+        return Reading("work over the energy of the molecules swept up", box.work / carried, 1.0, 1e-9)
+
+    return read
+
+
+def emptiness(new: Box, until: float) -> Probe:
+    """Ask an empty box for its energy, temperature and layers."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = run.advance(new(run), until)
+        if not math.isnan(temperature(box, box.snapshot())) or layer_sample(box, box.snapshot(), 3).number.any():
+            raise UnlawfulError("an empty box has a temperature, or molecules in its layers")
+        return Reading("energy of an empty box", sum(box.energy()))
+
+    return read
+
+
+# ------------------------------------------------------------------ what must be refused
+
+
+def refused(boxes: Sequence[tuple[Box, str]]) -> Probe:
+    """Try boxes that must be refused, each in a sentence with a word in it."""
+
+    def read(run: GuardedRun) -> Reading:
+        last = None
+        for new, word in boxes:
+            try:
+                new(run)
+            except RefusedError as refusal:
+                last = refusal
+                if word not in str(refusal):
+                    raise UnlawfulError(f'refused without a word on "{word}": {refusal}') from None
+            else:
+                raise UnlawfulError(f"{word}: accepted, though no box can have it")
+        raise last or UnlawfulError("nothing was tried")
+
+    return read
+
+
+def parted(boxes: Sequence[Box], word: str) -> Probe:
+    """Start with pairs that overlap: they are refused in a sentence with a word in it, or come apart."""
+
+    def read(run: GuardedRun) -> Reading:
+        deep = 0.0
+        for new in boxes:
+            try:
+                box = new(run)
+            except RefusedError as refusal:
+                raise refusal if word in str(refusal) else UnlawfulError(f"refused without a word on {word}") from None
+            deep = max(deep, deepest_overlap(box))
+            if deepest_overlap(run.advance(box, 0.75)) > 0.0 and not box.ideal:
+                raise UnlawfulError("a pair that overlaps at the start does not come apart")
+        return Reading("largest overlap that is accepted, in diameters", deep)
+
+    return read
+
+
+def stopped(new: Box, until: float, word: str) -> Probe:
+    """Advance a box that must be stopped, in a sentence with a word in it."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = new(run)
+        try:
+            run.advance(box, until)
+        except StalledError as stalled:
+            if word in str(stalled) and box.time <= until:
+                raise
+            raise UnlawfulError(f"refused at t = {box.time:g} without a word on {word}: {stalled}") from None
+        raise UnlawfulError(f"the ceiling stands at {box.ceiling:g}, and nothing was said")
+
+    return read
+
+
+# ------------------------------------------------------------------ statistics
+
+
+def contacts(
+    new: Box, settle: float, until: float, *, slack: float = 0.02, distance: float = 1.0, coarsely: float = 0.0
+) -> Probe:
+    """Compare the number of contacts with kinetic theory, for one or two kinds of molecules.
+
+    ``slack`` is what theory may be off, ``distance`` that of the centres in most contacts [length]; ``coarsely`` is
+    for how long instead to advance engines that go in steps, where these are short [time].
+    """
+
+    def read(run: GuardedRun) -> Reading:
+        box = new(run)
+        step = step_of(box)
+        run.advance(box, max(settle, 20.0 * step))
+        before, time = box.contacts, box.time
+        run.advance(box, time + (max(coarsely or until, 1000.0 * step) if step else until))
+        kinds, members = np.unique(np.stack([box.diameter, box.mass]), axis=1, return_counts=True)
+        free = box.length - np.where(box.periodic, 0.0, kinds[0].max())
+        rate = np.asarray(theory.collision_rate_between(members / math.prod(free), kinds[0], kinds[1], 1.0))
+        if any(box.periodic):
+            rate = rate * (1.0 - np.eye(len(members)) / members)
+        else:
+            rate = rate * theory.contact_share(free, float(kinds[0].max()), box.number)
+        expected = 0.5 * float(np.sum(members[:, None] * rate)) * (box.time - time)
+        share = 1.0 if box.ideal else seen_share(step / distance)
+        law = f", of which steps of δ = {step / distance:.3g} are known to see {share:.3g}" if share < 0.999 else ""
+        # four standard errors of a count: 6 false alarms in 100 000
+        return Reading(
+            f"contacts over those of theory{law}",
+            (box.contacts - before) / expected,
+            1.0,
+            4.0 / math.sqrt(expected) + slack,
+        )
+
+    return read
+
+
+def seen_share(delta: float) -> float:
+    r"""Return which share of the contacts of a thin gas is seen by steps of a length.
+
+    A step sees a contact only if it ends where the two overlap and still approach. Of all pairs that would touch
+    within a step in which they come closer by :math:`x` diameters, at all impact parameters, that is the share
+    :math:`1 - x^2 / 3` for :math:`x \le 1` and :math:`2 / 3 x` beyond. This is its mean over the relative speeds u of
+    pairs that meet, :math:`u^3 \exp(-m u^2 / 4 k T)`: :math:`1 - \frac{8}{3}\delta^2` for short steps and
+    :math:`\sqrt{\pi}/6\delta` for long ones.
+
+    Parameters
+    ----------
+    delta
+        Length of a step, :math:`\Delta t \sqrt{kT/m} / \sigma`.
+
+    Examples
+    --------
+    >>> [round(seen_share(delta), 4) for delta in (0.0, 0.05, 1.0, 10.0)]
+    [1.0, 0.9933, 0.2922, 0.0295]
+    """
+    if delta == 0.0:
+        return 1.0
+    a = 0.5 / delta
+    fast = math.exp(-a * a)
+    slow = 1.0 - (1.0 + a * a) * fast - 8.0 / 3.0 * delta**2 * (1.0 - (1.0 + a * a + 0.5 * a**4) * fast)
+    return slow + (2.0 * fast / delta + 2.0 * math.sqrt(math.pi) * math.erfc(a)) / (12.0 * delta)
+
+
+def pressure(new: Box, expected: float, settle: float, block: float) -> Probe:
+    """Compare the compressibility factor of a gas without momentum, from the virial of its contacts."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = run.advance(new(run), settle)
+        factors = []
+        for _ in range(BLOCKS):
+            virial, time = float(box.virial.sum()), box.time
+            run.advance(box, time + block)
+            kinetic = box.energy()[0] * (box.number / (box.number - 1.0))
+            factors.append(1.0 + (float(box.virial.sum()) - virial) / (2.0 * kinetic * (box.time - time)))
+        mean, error = (float(each) for each in block_average(factors, BLOCKS))
+        return Reading("Z", mean, expected, 4.0 * error + 1.5 * (expected - 1.0) / box.number)
+
+    return read
+
+
+def force(new: Box, until: float, speed: float) -> Probe:
+    """Compare the force of one molecule on a wall with its speed and the length of its way, to one hit."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = run.advance(new(run), until)
+        expected = speed**2 / float(box.length[0] - 1.0)
+        return Reading("force on a wall", float(box.wall_impulse[1]) / box.time, expected, 2.0 * speed / box.time)
+
+    return read
+
+
+def heat(new: Box, hot: float, settle: float, until: float) -> Probe:
+    """Compare the heat that points carry from a hot wall to one of kT = 1 with a formula that is exact."""
+
+    def read(run: GuardedRun) -> Reading:
+        box = run.advance(new(run), settle)
+        given, met, time = box.wall_heat, box.wall_hits, box.time
+        run.advance(box, time + until)
+        given, met, time = box.wall_heat - given, box.wall_hits - met, box.time - time
+        expected = float(theory.free_molecular_slab(hot, 1.0, float(box.number), 1.0).heat_flux)
+        # Of the slow molecules that the cold wall emits some take all day: the mean square of the time that one takes
+        # for its way, 1 / v, grows with the logarithm of the run. The mean is sqrt(pi / 2), and the energy that it
+        # takes back has a relative variance of 1 / 2.
+        square = math.log(time) + 0.5 * (math.log(2.0) - 0.5772)
+        error = math.sqrt((square / (0.5 * math.pi) - 0.5) / met[1])
+        return Reading("heat flux over theory", 0.5 * (given[0] - given[1]) / time / expected, 1.0, 4.0 * error)
+
+    return read
+
+
+def vapour(new: Box, celsius: float, waters: int, crossings: float) -> Probe:
+    """Compare the mean number of molecules of vapour with the exact law for so much water.
+
+    ``crossings`` is how often a molecule of unit speed crosses the box meanwhile.
+    """
+
+    def read(run: GuardedRun) -> Reading:
+        box: Any = new(run)
+        side, means = float(box.length[0]), []
+        run.advance(box, 0.2 * crossings * side)
+        for _ in range(BLOCKS):
+            seen = []
+            for _ in range(100):
+                run.advance(box, box.time + 0.01 * crossings / BLOCKS * side)
+                seen.append(box.vapour)
+            means.append(np.mean(seen))
+        mean, error = (float(each) for each in block_average(means, BLOCKS))
+        volume = ((side - 1.0) * DRY_AIR.diameter) ** 3
+        expected = theory.isothermal_vapor_number(waters, celsius + 273.15, volume).mean
+        what = f"molecules of vapour; {box.condensed} condensed, {box.evaporated} evaporated"
+        return Reading(what, mean, expected, 4.0 * error + 0.01 * expected)
+
+    return read

@@ -1,0 +1,125 @@
+"""Which run comes next, so that all together take no longer than a budget of time."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from atmosbox.errors import AtmosboxError
+
+__all__ = ["BudgetedRuns", "Progress"]
+
+MOST_RUNS = 64
+FIRST_SHARE = 0.25
+"""A first run that would take more than this share of the budget waits until all others have had theirs."""
+TELLING = 0.02
+"""Share of a run after which the rest can be estimated."""
+
+Progress = Callable[[float, str], None]
+Result = TypeVar("Result")
+
+
+class _TooLong(Exception):
+    """A run takes more time than it may."""
+
+
+@dataclass
+class BudgetedRuns(Generic[Result]):
+    """Runs of several ways of doing something, each as often as a budget allows.
+
+    Every way is compiled and run once, then those that were too long for their share if they still fit, the shortest
+    first; then all again and again, those with the fewest runs first. All of it counts, compiling too: what has begun
+    when the budget ends is stopped, except for the compiler, which cannot be.
+
+    Parameters
+    ----------
+    budget
+        For how long in all [s].
+    labels
+        What each way is called.
+    compile_way
+        Called with the number of a way before its first run.
+    run_way
+        Called with the number of a way, how often it has run, and a function to be called with the share that is
+        done and "running" once it runs; returns the result.
+    tell
+        Called with the share of the budget that is spent and what is under way.
+    clock
+        Returns the time [s].
+    """
+
+    budget: float
+    labels: list[str]
+    compile_way: Callable[[int], None]
+    run_way: Callable[[int, int, Progress], Result]
+    tell: Progress
+    clock: Callable[[], float] = time.perf_counter
+    results: list[list[Result]] = field(init=False)
+    left_out: list[str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.results = [[] for _ in self.labels]
+        self.left_out = ["" for _ in self.labels]
+        self._seconds = [math.inf for _ in self.labels]
+        self._began = self.clock()
+
+    def left(self) -> float:
+        """Return what is left of the budget [s]."""
+        return self.budget - (self.clock() - self._began)
+
+    def run(self) -> None:
+        """Run all ways; ``results`` and ``left_out`` tell what came of it, also after an interruption."""
+        ways = range(len(self.labels))
+        for k in ways:
+            if self.left() <= 0.0:
+                self.left_out[k] = "left out: the budget was spent before its turn, and part of it on compiling"
+                continue
+            try:
+                self.compile_way(k)
+            except AtmosboxError as error:
+                self.left_out[k] = str(error)
+                continue
+            self._attempt(k, min(FIRST_SHARE * self.budget, self.left()))
+        waiting = [k for k in ways if not self.results[k] and not self.left_out[k]]
+        for k in sorted(waiting, key=lambda k: self._seconds[k]):
+            if self._seconds[k] <= self.left():
+                self._attempt(k, self.left())
+            if not self.results[k] and not self.left_out[k]:
+                about = f"about {max(self._seconds[k], 1.0):.0f} s" if math.isfinite(self._seconds[k]) else "too much"
+                self.left_out[k] = f"left out: one run takes {about} of the budget"
+        while fit := [
+            k for k in ways
+            if self.results[k] and len(self.results[k]) < MOST_RUNS and self._seconds[k] <= 0.9 * self.left()
+        ]:  # fmt: skip
+            self._attempt(min(fit, key=lambda k: (len(self.results[k]), self._seconds[k])), self.left())
+
+    def _attempt(self, k: int, allowed: float) -> None:
+        """Run a way once, if it takes no longer than it may [s]."""
+        start = self.clock()
+        begun: list[float] = []  # when it began to run, and at which share: before that it was built
+
+        def watch(share: float, word: str) -> None:
+            now = self.clock()
+            if word == "running" and not begun:
+                begun[:] = now, share
+            needed = now - start
+            if begun and share - begun[1] > TELLING:
+                needed += (now - begun[0]) * (1.0 - share) / (share - begun[1])
+                self._seconds[k] = needed
+            # an estimate may be wrong by a half, the time that has passed is not
+            if now - start > allowed or needed > 1.5 * allowed:
+                raise _TooLong
+            self.tell(min(1.0 - self.left() / self.budget, 1.0), self.labels[k])
+
+        try:
+            self.results[k].append(self.run_way(k, len(self.results[k]), watch))
+            self._seconds[k] = self.clock() - start
+        except _TooLong:
+            if self.results[k]:
+                self._seconds[k] = math.inf  # it fitted before: others have slowed it down
+        except AtmosboxError as error:
+            self.left_out[k] = str(error)
+            self._seconds[k] = math.inf
