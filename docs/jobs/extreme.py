@@ -12,9 +12,8 @@ from jobs.registry import Findings, job, rounded
 from atmosbox import theory
 from atmosbox.engine import Periodic, maxwell_velocities, random_positions
 from atmosbox.scene.engines import choose, names
-from atmosbox.trade.extremes import Finding, Verdict, assess
-from atmosbox.trade.extremes.catalogue import FAMILIES
-from atmosbox.trade.extremes.law import seen_share
+from atmosbox.trade.extremes import FAMILIES, Finding, Verdict, assess
+from atmosbox.trade.extremes.probe import seen_share
 
 Array = np.ndarray
 
@@ -24,13 +23,16 @@ def cell(verdict: Verdict) -> str:
     value, expected, tolerance = verdict.value, verdict.expected, verdict.tolerance
     if value is None or expected is None or tolerance is None:
         return verdict.outcome
+    if verdict.outcome == "degrades":
+        error = verdict.error.replace("-", "−")
+        return f"**degrades {error}**" + (
+            f": {rounded(value, 4)}, not {rounded(expected, 4)} ± {rounded(tolerance)}" if expected else ""
+        )
     if not expected:
-        return f"{verdict.outcome}: {rounded(value)}" + (f" (≤ {rounded(tolerance)})" if tolerance else "")
-    if not tolerance:
-        return f"{verdict.outcome}: {value:g} of {expected:g}"
-    if verdict.outcome == "right" and expected == 1.0 and tolerance < 1e-6:
-        return f"{verdict.outcome}: off by {rounded(value - 1.0)} (≤ {rounded(tolerance)})"
-    return f"{verdict.outcome}: {rounded(value, 4)} ({rounded(expected, 4)} ± {rounded(tolerance)})"
+        return f"right: {rounded(value)}" + (f" (≤ {rounded(tolerance)})" if tolerance else "")
+    if tolerance < 1e-6:
+        return f"right: off by {rounded(verdict.off)} (≤ {rounded(tolerance)})" if tolerance else f"right: {value:g}"
+    return f"right: {rounded(value, 4)} ({rounded(expected, 4)} ± {rounded(tolerance)})"
 
 
 @job("extremes")
@@ -42,7 +44,8 @@ def extremes(found: Findings) -> None:
         results.setdefault(each.extreme.name, []).append(each)
         if not each.verdict.passed:
             found.failures.append(f"{each.engine} in {each.extreme.name}: {each.verdict.told}")
-    rows, sentences = [], []
+    rows: list[list[str]] = []
+    sentences: list[list[str]] = []
     for family, members in FAMILIES.items():
         rows.append([f"**{family}**", *[""] * len(engines)])
         for each in members:

@@ -330,7 +330,7 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
             "Run for a million units of time: rounding makes no more error than a random walk.",
             energy(at(*THREE), 1e6, pieces=10, events=10_000, tolerance=3e-12)),
         Extreme("longer-run", "t = 10⁹",
-            "Run for a thousand million units of time (in steps, ten million): rounding makes no more error than a random walk.",
+            "Run for 10⁹ units of time (in steps, 10⁷): rounding makes no more error than a random walk.",
             lambda run: energy(at(*THREE), 1e9 if run.exact else 1e7, pieces=10, events=100_000, tolerance=1e-10)(run),
             long=True),
         Extreme("cut-into-pieces", "cut into 100 pieces",

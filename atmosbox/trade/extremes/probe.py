@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from atmosbox import theory
-from atmosbox.engine import RefusedError, StalledError
+from atmosbox.engine import Parcel, RefusedError, StalledError
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.measure import layer_sample, temperature
 from atmosbox.scene.statistics import block_average
@@ -99,9 +99,15 @@ def energy(new: Box, until: float, *, pieces: int = 1, events: int = 0, toleranc
             run.advance(box, until * k / pieces)
         if (met := box.contacts + int(box.wall_hits.sum())) < events:
             raise UnlawfulError(f"only {met} contacts and hits of walls")
-        return Reading("energy over that at the start", sum(box.energy()) / before, 1.0, tolerance)
+        return Reading(f"energy over that at the start{made(box)}", sum(box.energy()) / before, 1.0, tolerance)
 
     return read
+
+
+def made(box: Parcel) -> str:
+    """Return how much energy Euler's fall and a mirroring floor have made, over what they are known to make."""
+    law = float(box.mass.sum()) * box.gravity**2 * step_of(box) * box.time
+    return f"; the fall and the floor made {box.numerical_heat / law:.2g} N m g² Δt t" if box.numerical_heat else ""
 
 
 def cooled(new: Box, times: Sequence[float], word: str) -> Probe:
@@ -160,7 +166,7 @@ def weight(new: Box, until: float) -> Probe:
         if box.wall_hits[4] < 100:
             raise UnlawfulError(f"only {box.wall_hits[4]} hits of the floor")
         if abs(sum(box.energy()) / before - 1.0) > 1e-9:
-            return Reading("energy over that at the start", sum(box.energy()) / before, 1.0, 1e-9)
+            return Reading(f"energy over that at the start{made(box)}", sum(box.energy()) / before, 1.0, 1e-9)
         pushed = float(box.wall_impulse[4] - box.wall_impulse[5])
         weighed = float(box.mass.sum()) * box.gravity * box.time
         gained = float(box.snapshot().velocity[:, 2].sum()) - falling
