@@ -1,8 +1,10 @@
 """The stability assessment: what each engine makes of each extreme, and that an engine which fails is found out."""
 
+import importlib.util
 import json
 import threading
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -268,6 +270,21 @@ def test_the_assessment_goes_extreme_by_extreme_and_tells_how_far_it_is():
     ]
     assert [part for part, _ in told] == [0.0, 0.25, 0.5, 0.75, 1.0]
     assert told[1][1] == "no-molecules on other"
+
+
+def test_outcomes_are_stored_on_purpose_and_only_those_asked_for(tmp_path, monkeypatch):
+    path = Path(__file__).resolve().parents[1] / "benchmarks" / "extremes.py"
+    specification = importlib.util.spec_from_file_location("store_extremes", path)
+    script = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(script)
+    monkeypatch.setattr(script, "STORED", tmp_path / "stored.json")
+    asked = ["--engine", "exact", "--only", "cradle"]
+    script.main(asked)
+    assert not script.STORED.exists()
+    script.main([*asked, "--write"])
+    kept = json.loads(script.STORED.read_text(encoding="utf-8"))
+    assert list(kept) == ["cradle"]
+    assert Verdict(**kept["cradle"]["exact"]) == stored()["cradle"]["exact"]
 
 
 # The command

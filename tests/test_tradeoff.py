@@ -127,14 +127,14 @@ def test_two_series_that_cross_share_a_run(monkeypatch):
     assert {rung.label for rung in asked} == {ladder[0].label, ladder[2].label}
     for name in ("bias", "engine_seconds", "members"):
         assert np.array_equal(found[name].values[0], found[name].values[1])
-    assert found.members.values[0] > 1
+    assert found.members.values[0] >= 1
 
 
 def test_a_run_that_is_too_dear_is_left_out():
     ladder = (*rungs(QUICK, {})[:1], Rung("exact", {"ascent": 1e6, "molecules": 100}, 1, 1e6))
     found = measure("lifting-dry", ladder=ladder, budget=8.0)
     assert found.members.values.tolist()[1] == 0
-    assert "too much of the budget" in found.left_out.values[1]
+    assert "left out: one run takes about" in found.left_out.values[1]
 
 
 def test_what_an_engine_cannot_do_is_said_and_not_measured():
@@ -177,7 +177,9 @@ def test_the_budget_is_kept_with_all_that_is_compiled_built_and_run():
     watched = Clock(60.0, [30.0, 20.0, 5.0, 40.0], [0.5, 2.0, 0.1, 0.0], [1.0, 3.0, 200.0, 1.0])
     assert watched.now <= 60.0 + 40.0  # the compiler that is under way at the end cannot be stopped
     assert Clock(60.0, [0.0] * 4, [0.5, 2.0, 0.1, 0.0], [1.0, 3.0, 200.0, 1.0]).now <= 60.0
-    assert Clock(60.0, [55.0, 50.0], [0.0, 0.0], [1.0, 1.0]).counts[1] == 0
+    spent = Clock(60.0, [70.0, 50.0], [0.0, 0.0], [1.0, 1.0])
+    assert spent.counts == [0, 0]
+    assert "compiling took 70 s" in spent.runs.left_out[1]
 
 
 def test_what_fits_is_not_left_out_for_being_long_or_slow_to_build():

@@ -16,8 +16,10 @@ from atmosbox.engine import (
     Periodic,
     Pool,
     Specular,
+    Wall,
     lattice_positions,
     maxwell_velocities,
+    random_positions,
 )
 from atmosbox.scene.moisture import moist_air, water
 from atmosbox.scene.units import Scale
@@ -39,13 +41,31 @@ def at(position: Any, velocity: Any = AT_REST, length: Any = (10, 10, 10), **box
     return lambda run: run.box(position, speeds, length=length, **box)
 
 
-def gas(number: int, *sides: float, few: int | None = None, **box: Any) -> Box:
+def gas(
+    number: int,
+    *sides: float,
+    few: int | None = None,
+    kT: float = 1.0,
+    top: float | None = None,
+    walls: tuple[Wall, ...] = SMOOTH,
+    seed: int = 1,
+    **box: Any,
+) -> Box:
     """Return a box of molecules at random places with Maxwell's velocities; one side makes a cube.
 
-    ``few`` is their number for engines that go in steps, where these are short.
+    ``few`` is their number for engines that go in steps, where these are short; ``top`` is up to where they stand.
     """
     x, y, z = sides * 3 if len(sides) == 1 else sides
-    return lambda run: run.gas(number if run.exact or few is None else few, (x, y, z), **box)
+    facts: dict[str, Any] = {"mass": 1.0, "diameter": 1.0, **box, "length": (x, y, z), "walls": walls, "seed": seed}
+    periodic = (walls is OPEN,) * 3
+
+    def build(run: GuardedRun) -> Parcel:
+        n, rng = number if run.exact or few is None else few, np.random.default_rng(seed)
+        sizes, masses = (np.broadcast_to(np.asarray(facts[name], np.float64), n) for name in ("diameter", "mass"))
+        where = random_positions((x, y, z), sizes, rng, periodic=periodic, top=top)
+        return run.box(where, maxwell_velocities(kT, masses, rng, exact=True), **facts)
+
+    return build
 
 
 def crystal(number: int, side: float) -> Box:

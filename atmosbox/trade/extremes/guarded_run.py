@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from atmosbox.engine import Parcel, Periodic, Specular, Wall, maxwell_velocities, random_positions
+from atmosbox.engine import Parcel
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.liquid.moist_account import MoistAccount
 from atmosbox.scene.engines import EngineChoice
@@ -72,27 +72,6 @@ class GuardedRun:
         parcel = candidate.make(position, velocity, **box)
         self._check(parcel)
         return parcel
-
-    def gas(
-        self,
-        number: int,
-        length: tuple[float, float, float],
-        *,
-        seed: int = 1,
-        kT: float = 1.0,
-        diameter: Any = 1.0,
-        mass: Any = 1.0,
-        walls: tuple[Wall, ...] = (Specular(),) * 6,
-        top: float | None = None,
-        **box: Any,
-    ) -> Parcel:
-        """Return a box of molecules at random places with Maxwell's velocities, their energy that of kT."""
-        rng = np.random.default_rng(seed)
-        sizes, masses = (np.broadcast_to(np.asarray(each, np.float64), number) for each in (diameter, mass))
-        x_open, y_open, z_open = (isinstance(wall, Periodic) for wall in walls[::2])
-        x = random_positions(length, sizes, rng, periodic=(x_open, y_open, z_open), top=top)
-        v = maxwell_velocities(kT, masses, rng, exact=True)
-        return self.box(x, v, length=length, diameter=sizes, mass=masses, walls=walls, seed=seed, **box)
 
     def advance(self, parcel: Parcel, until: float) -> Parcel:
         """Let time pass, under guard; return the parcel."""

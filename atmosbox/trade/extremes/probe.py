@@ -22,27 +22,6 @@ from atmosbox.trade.extremes.extreme_box import Box
 from atmosbox.trade.extremes.guarded_run import GuardedRun, UnlawfulError, deepest_overlap, step_of
 from atmosbox.trade.extremes.verdict import Reading
 
-__all__ = [
-    "Probe",
-    "alike",
-    "comes_to",
-    "contacts",
-    "cooled",
-    "emptiness",
-    "energy",
-    "force",
-    "heat",
-    "hits",
-    "parted",
-    "pressure",
-    "refused",
-    "seen_share",
-    "stopped",
-    "swept",
-    "vapour",
-    "weight",
-]
-
 Probe = Callable[[GuardedRun], Reading]
 BLOCKS = 20
 

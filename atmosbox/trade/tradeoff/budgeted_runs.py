@@ -72,24 +72,32 @@ class BudgetedRuns(Generic[Result]):
 
     def run(self) -> None:
         """Run all ways; ``results`` and ``left_out`` tell what came of it, also after an interruption."""
-        ways = range(len(self.labels))
+        ways, compiling = range(len(self.labels)), 0.0
         for k in ways:
             if self.left() <= 0.0:
-                self.left_out[k] = "left out: the budget was spent before its turn, and part of it on compiling"
+                again = f"; compiling took {compiling:.0f} s of it, and takes none next time" if compiling > 1.0 else ""
+                self.left_out[k] = f"left out: the budget was spent before its turn{again}"
                 continue
+            before = self.clock()
             try:
                 self.compile_way(k)
             except AtmosboxError as error:
                 self.left_out[k] = str(error)
                 continue
+            compiling += self.clock() - before
             self._attempt(k, min(FIRST_SHARE * self.budget, self.left()))
         waiting = [k for k in ways if not self.results[k] and not self.left_out[k]]
         for k in sorted(waiting, key=lambda k: self._seconds[k]):
             if self._seconds[k] <= self.left():
                 self._attempt(k, self.left())
             if not self.results[k] and not self.left_out[k]:
-                about = f"about {max(self._seconds[k], 1.0):.0f} s" if math.isfinite(self._seconds[k]) else "too much"
-                self.left_out[k] = f"left out: one run takes {about} of the budget"
+                known = math.isfinite(self._seconds[k])
+                why = (
+                    f"one run takes about {max(self._seconds[k], 1.0):.0f} s"
+                    if known
+                    else "the budget ended while it ran"
+                )
+                self.left_out[k] = f"left out: {why}"
         while fit := [
             k for k in ways
             if self.results[k] and len(self.results[k]) < MOST_RUNS and self._seconds[k] <= 0.9 * self.left()
@@ -106,7 +114,7 @@ class BudgetedRuns(Generic[Result]):
             if word == "running" and not begun:
                 begun[:] = now, share
             needed = now - start
-            if begun and share - begun[1] > TELLING:
+            if begun and share > begun[1] and (share - begun[1] > TELLING or needed > allowed):
                 needed += (now - begun[0]) * (1.0 - share) / (share - begun[1])
                 self._seconds[k] = needed
             # an estimate may be wrong by a half, the time that has passed is not
