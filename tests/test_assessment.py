@@ -229,6 +229,12 @@ def test_worse_than_before_is_wrong(now, before, outcome):
     assert compared(verdict(*now), before and verdict(*before)).outcome == outcome
 
 
+def test_a_real_engine_with_coarser_steps_is_worse_than_its_stored_outcome():
+    each, before = EXTREMES["packing-0.58"], stored()["packing-0.58"]["stepped"]
+    assert examine(each, engines.choose("stepped:delta=0.05"), before).verdict.outcome == "degrades"
+    assert examine(each, engines.choose("stepped:delta=0.2"), before).verdict.outcome == "wrong"
+
+
 def test_right_is_only_what_is_known_to_a_twentieth():
     assert judged(Reading("a share", 1.01, 1.0, 0.05)).outcome == "right"
     assert judged(Reading("a share", 1.01, 1.0, 0.12)).outcome == "degrades"

@@ -75,7 +75,7 @@ class Verdict:
             return f"by {self.value:.2g}"
         percent = 100.0 * self.off
         if abs(percent) >= 1000.0:
-            return f"by a factor of {self.value / self.expected:.3g}"
+            return f"by a factor of {self.value / self.expected:.0f}"
         return f"by {percent:+.0f} %" if abs(percent) >= 10.0 else f"by {percent:+.2g} %"
 
     @property
