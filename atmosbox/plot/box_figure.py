@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
-from atmosbox.plot.caption import footer, headlines, number
+from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve, unit_of
 from atmosbox.plot.layout import Painter, explanation, panels_of
 from atmosbox.plot.place import blank, frame, put_panels, settle
@@ -121,12 +122,15 @@ def _put_boxes(
 
 def _said(dataset: xr.Dataset, held: Molecules, moment: int) -> str:
     """Return the time of a frame and, where a profile is measured on the way, its values there."""
+    time = instant(dataset, held, moment)
     for panel in panels_of(dataset):
-        line = next((line for line in panel.lines if line.role == "data" and not line.minus), None)
-        if panel.kind in ("profile", "skewt") and line is not None:
-            values = curve(dataset, panel, line)
-            if dataset[line.y].dims == dataset[line.x].dims == ("elapsed_time",) and values.x.size == len(held.time):
-                shown = zip((values.x, values.y), (unit_of(dataset, panel, axis) for axis in "xy"), strict=True)
-                state = ",  ".join(f"{number(float(f'{each[moment]:.3g}'))} {spelled(unit)}" for each, unit in shown)
-                return f"{instant(dataset, held, moment)}\n{state}"
-    return instant(dataset, held, moment)
+        for line in panel.lines:
+            in_time = all(name in dataset and dataset[name].dims == ("elapsed_time",) for name in (line.x, line.y))
+            if panel.kind not in ("profile", "skewt") or line.role != "data" or line.minus or not in_time:
+                continue
+            x, y, _ = curve(dataset, panel, line)
+            if x.size == len(held.time) and np.isfinite(x[moment] + y[moment]):
+                units = [spelled(unit_of(dataset, panel, axis)) for axis in "xy"]
+                state = [f"{value:.{int(abs(value) < 100.0)}f}" for value in (x[moment], y[moment])]
+                return f"{time}\n{state[0]} {units[0]},  {state[1]} {units[1]}".replace("-", "−")
+    return time
