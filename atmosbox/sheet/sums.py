@@ -24,6 +24,8 @@ from atmosbox.sheet.number_text import bare, measured
 __all__ = ["Facts", "Measured", "SetNumber", "check", "filled"]
 
 MOST_DIGITS = 12
+LONGEST = 4000
+"""How many characters a text may have."""
 
 
 @runtime_checkable
@@ -175,7 +177,9 @@ _SETTINGS = _TEXTS.overlay(finalize=_typed)
 
 
 def _syntax(text: str) -> None:
-    """Refuse what is more than texts and sums."""
+    """Refuse what is more than texts and sums, or longer than a sheet has space for."""
+    if len(text) > LONGEST:
+        raise SecurityError(f"a text of more than {LONGEST} characters")
     for node in _TEXTS.parse(text).find_all(nodes.Node):
         if not isinstance(node, _ALLOWED):
             raise SecurityError(f"a {type(node).__name__.lower()} is more than a sum")

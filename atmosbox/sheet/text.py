@@ -34,7 +34,7 @@ def _checked(text: str) -> str:
     return text
 
 
-Text = Annotated[str, Field(max_length=4000), AfterValidator(_checked)]
+Text = Annotated[str, AfterValidator(_checked)]
 Needed = Annotated[Text, Field(pattern=r"\S")]
 Lines = Annotated[StrictInt, Field(ge=0, le=12)]
 
