@@ -409,7 +409,7 @@ def test_a_sum_carries_its_error_and_knows_what_it_has_in_common_with_itself():
     assert filled("{{ A.x / A.y }}", names) == "0.75 ± 0.11"
     assert filled("{{ 2 * A.x }} {{ A.x ** 2 }}", names) == "6.00 ± 0.60 9.0 ± 1.8"
     assert filled("{{ A.x - A.x }} {{ (A.x + A.y) / A.x }}", names) == "0 2.33 ± 0.19"
-    assert filled("{{ exp(A.x) }}", names) == "20.1 ± 6.0"
+    assert filled("{{ exp(A.x) }} {{ abs(A.x - A.y) }} {{ -A.x }}", names) == "20.1 ± 6.0 1.00 ± 0.50 −3.00 ± 0.30"
     assert filled("{{ A.x.theory }} {{ round(A.x.sigmas, 1) }} {{ A.x.misfit }}", names) == "2 3.3 1.00 ± 0.30"
     assert filled("{{ last(A.s) }} {{ mean(A.s) }} {{ highest(A.s) }} {{ A.n }}", names) == "2 2 9 800"
     assert filled("{{ word(A.x - A.y, 'warmer', 'colder') }} {as it is}", names) == "colder {as it is}"

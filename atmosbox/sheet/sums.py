@@ -105,7 +105,7 @@ def _at(level: float, along: Any, series: Any) -> float:
 
 _FUNCTIONS = {
     "pi": math.pi,
-    "abs": abs,
+    "abs": lambda number: -number if nominal_value(number) < 0.0 else number,
     "sqrt": umath.sqrt,
     "exp": umath.exp,
     "ln": umath.log,
@@ -122,7 +122,7 @@ _FUNCTIONS = {
 }
 _ALLOWED = (
     nodes.Template, nodes.Output, nodes.TemplateData, nodes.Const, nodes.Name, nodes.Getattr, nodes.Call,
-    nodes.BinExpr, nodes.UnaryExpr, nodes.Concat, nodes.CondExpr,
+    nodes.Add, nodes.Sub, nodes.Mul, nodes.Div, nodes.Pow, nodes.Neg, nodes.Concat, nodes.CondExpr,
 )  # fmt: skip
 """All of Jinja's language that a text may hold: no statement, and nothing that could go on for long."""
 _NUMBERS = (bool, int, float, UFloat, np.ndarray)
