@@ -7,7 +7,7 @@ import re
 
 from uncertainties import ufloat
 
-__all__ = ["bare", "measured", "spelled", "theoretical"]
+__all__ = ["bare", "fixed", "measured", "spelled", "theoretical"]
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _UNITS = {"degC": "°C", "percent": "%", "um": "µm", "us": "µs"}
@@ -45,6 +45,17 @@ def bare(value: float, figures: int = 3) -> str:
     if not _easy(abs(value)):
         return f"{mantissa}·10{str(int(power)).translate(_RAISED)}".replace("-", "−")
     return f"{value:.{max(figures - 1 - int(power), 0) if value else 0}f}".replace("-", "−")
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, and never "-0".
+
+    Examples
+    --------
+    >>> fixed(-17.25, 1), fixed(-0.04, 1)
+    ('−17.2', '0.0')
+    """
+    return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
 
 
 def measured(value: float, error: float) -> str:

@@ -19,7 +19,7 @@ from jinja2.sandbox import SandboxedEnvironment
 from uncertainties import UFloat, Variable, nominal_value, std_dev, umath
 
 from atmosbox.errors import ConfigError, shown
-from atmosbox.sheet.number_text import bare, measured
+from atmosbox.sheet.number_text import bare, fixed, measured
 
 __all__ = ["Facts", "Measured", "SetNumber", "check", "filled"]
 
@@ -93,8 +93,7 @@ def _digits(number: float) -> int:
 
 def _round(number: Any, digits: float = 0) -> str:
     """Return a number with so many digits behind the point."""
-    places = _digits(digits)
-    return f"{round(nominal_value(number), places) + 0.0:.{places}f}".replace("-", "−")  # never "-0"
+    return fixed(float(nominal_value(number)), _digits(digits))
 
 
 def _at(level: float, along: Any, series: Any) -> float:

@@ -14,7 +14,7 @@ import jinja2
 from atmosbox.errors import ConfigError
 from atmosbox.scene.conversion import from_si
 from atmosbox.sheet.generic import WORDS, AnyScene, left_out
-from atmosbox.sheet.number_text import bare, measured, spelled, theoretical
+from atmosbox.sheet.number_text import bare, fixed, measured, spelled, theoretical
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, filled
 from atmosbox.sheet.text import SECTIONS, Change, SheetText, read, text_of
@@ -210,7 +210,7 @@ def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
     found = run.fact(name)
     theory = "–" if found.theory is None else theoretical(found.theory, found.s)
     known = found.theory is not None and found.s > 0.0
-    misfit = f"{(found.n - found.theory) / found.s:.1f}".replace("-", "−") if known else "–"
+    misfit = fixed((found.n - found.theory) / found.s, 1) if known else "–"
     return run.letter, measured(found.n, found.s), theory, misfit
 
 
