@@ -67,13 +67,10 @@ def test_a_settings_file_may_leave_things_out(tmp_path, content, result):
         ("accuracy = 0.5", ", line 1 has accuracy that is no text", 'such as accuracy = "0.5K"'),
         ("settings = 5", ", line 1 has settings that is no table", "write a line [settings]"),
         ("[[settings]]", ", line 1 has settings that is no table", "write a line [settings]"),
-        ("[settings]\n\na = [1]", ", line 3 has a as an array", "give one number"),
-        ("[settings]\n'a b' = {c = 1}", ", line 2 has a b as a table", "give one number"),
-        ("[settings.a]\nb = 1", ", line 1 has a as a table", "give one number"),
-        ("[settings]\na = 2020-01-01", ", line 2 has a as a date or a time", "give one number"),
-        ("[settings]\na = 07:32:00", ", line 2 has a as a date or a time", "give one number"),
-        ("[settings]\na = nan", ", line 2 has a as no finite number", "give one number"),
-        ("[settings]\na = -inf", ", line 2 has a as no finite number", "give one number"),
+        ("[settings]\n\na = [1]", ", line 3 has a that is no number", "give one number"),
+        ("[settings]\n'a b' = {c = 1}", ", line 2 has a b that is no number", "give one number"),
+        ("[settings.a]\nb = 1", ", line 1 has a that is no number", "give one number"),
+        ("[settings]\na = 07:32:00", ", line 2 has a that is no number", "give one number"),
     ],
 )  # fmt: skip
 def test_a_settings_file_that_says_something_else_is_refused_with_its_line(tmp_path, content, problem, fix):
