@@ -13,9 +13,9 @@ from atmosbox.errors import SettingError
 __all__ = ["Pace", "pace"]
 
 SECONDS = 12.0
-"""How long a film lasts if nobody says otherwise."""
+"""How long a film lasts if nothing is said."""
 SMOOTH, APART = 20.0, 10.0
-"""Pictures a second where the molecules are seen to move, and where each picture is a new arrangement."""
+"""Pictures a second where molecules are seen to move, and where they are elsewhere in each picture."""
 FASTEST, LONGEST = 50.0, 3600.0
 MOST = 5000
 """Pictures that a film may have."""
@@ -48,7 +48,7 @@ class Pace:
 
 
 def pace(frames: int, *, fps: float | None = None, seconds: float | None = None, smooth: bool = False) -> Pace:
-    """Choose evenly spaced frames of a run, the last among them, so that a film of them lasts as long as is wished.
+    """Choose evenly spaced frames of a run, the last one included, so that the film lasts as long as wanted.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def pace(frames: int, *, fps: float | None = None, seconds: float | None = None,
     seconds : float, optional
         How long the film is to last: 12 seconds if nothing is said, or as long as the frames reach.
     smooth : bool
-        Whether molecules move but little from one frame to the next.
+        Whether molecules move little from one frame to the next.
 
     Returns
     -------
@@ -77,9 +77,9 @@ def pace(frames: int, *, fps: float | None = None, seconds: float | None = None,
     (120, 4.0, 5.0)
     """
     if fps is not None and not 0.1 <= fps <= FASTEST:
-        raise SettingError("fps", fps, f"is no number of 0.1 to {FASTEST:g} pictures a second", "give --fps 10")
+        raise SettingError("fps", fps, f"is not between 0.1 and {FASTEST:g} pictures a second", "give --fps 10")
     if seconds is not None and not 0.1 <= seconds <= LONGEST:
-        raise SettingError("seconds", seconds, f"is no number of 0.1 to {LONGEST:g} seconds", "give --seconds 12")
+        raise SettingError("seconds", seconds, f"is not between 0.1 and {LONGEST:g} seconds", "give --seconds 12")
     rate = fps or (SMOOTH if smooth else APART)
     if seconds is not None and fps is None:
         rate = min(rate, max(frames / seconds, 0.1))

@@ -1,4 +1,4 @@
-"""What the molecules of a film have shown so far: their speeds, and their number and temperature in each layer."""
+"""Averages up to a frame, from the molecules themselves: speeds, and number and temperature in each layer."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Running:
     """Averages that a file holds for the whole run alone, from the molecules up to a frame.
 
     Histograms of speeds are those of the last frames, which are few enough to show that they change. Of layers, it is
-    the mean so far; number and temperature are scaled to what the run has measured in all, because it looked more often
-    than the file has frames.
+    the mean so far; number and temperature are scaled to what the run has measured in all, which took more samples than
+    the file has frames.
 
     Parameters
     ----------
