@@ -1,51 +1,52 @@
-"""The declarations of the variables."""
+"""The declarations of the variables: what a file says of one, and how it stores it.
 
+That every variable has a unit, words and a name that CF knows is checked by CF's own program in tests/test_output.py.
+"""
+
+import numpy as np
 import pytest
 
-from atmosbox.file.variables import VARIABLES, variable
+from atmosbox.file.declaration import SUFFIXES, Variable, derived
+from atmosbox.file.variables import variable
 
-DIMENSIONS = {"elapsed_time", "height", "speed", "energy", "wall", "molecule", "drop", "axis"}
-
-
-@pytest.mark.parametrize("name", VARIABLES)
-def test_every_declared_variable_has_words_and_a_unit(name):
-    declared = VARIABLES[name]
-    assert declared.name == name
-    assert declared.long_name
-    assert bool(declared.units) == (declared.dtype != "U" and not declared.flags)
+PATH = Variable("molecule_position", ("elapsed_time", "molecule", "axis"), "m", "position of the molecule", dtype="f4")
+HEIGHT = Variable("height", ("height",), "m", "height of the middle of the layer", "height", axis="Z", positive="up")
 
 
-@pytest.mark.parametrize("name", VARIABLES)
-def test_the_dimensions_of_every_variable_are_declared(name):
-    assert set(VARIABLES[name].dims) <= DIMENSIONS
+def test_attributes_that_are_not_set_are_left_out():
+    assert HEIGHT.attributes() == {
+        "standard_name": "height",
+        "long_name": "height of the middle of the layer",
+        "units": "m",
+        "axis": "Z",
+        "positive": "up",
+    }
 
 
-def test_every_standard_name_is_in_the_table_of_cf():
-    cf = pytest.importorskip("compliance_checker.cf.util")
-    table = cf.StandardNameTable()
-    used = {declared.standard_name for declared in VARIABLES.values()} - {None}
-    assert len(used) >= 5
-    for name in used:
-        assert name in table
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_companion_has_the_name_of_its_parent_with_the_suffix_and_its_dimensions(suffix):
+    companion = derived(HEIGHT, suffix)
+    assert companion.name == f"height{suffix}"
+    assert companion.dims == HEIGHT.dims
+    assert companion.positive == ("up" if suffix == "_theory" else None)
 
 
-def test_an_error_bar_has_the_standard_name_of_its_parent_with_the_modifier_of_cf():
-    assert variable("air_pressure_se").standard_name == "air_pressure standard_error"
-    assert variable("number_density_se").standard_name is None
+@pytest.mark.parametrize(
+    ("name", "standard_name", "unit"),
+    [
+        ("air_pressure_se", "air_pressure standard_error", "Pa"),
+        ("air_pressure_theory", "air_pressure", "Pa"),
+        ("air_pressure_tolerance", None, "Pa"),
+        ("air_pressure_count", "number_of_observations", "1"),
+        ("number_density_se", None, "m-3"),
+    ],
+)
+def test_a_companion_is_called_what_cf_calls_it(name, standard_name, unit):
+    assert variable(name).standard_name == standard_name
+    assert variable(name).units == unit
 
 
-def test_a_number_of_samples_is_what_cf_calls_the_number_of_observations():
-    assert variable("number_density_count").standard_name == "number_of_observations"
-    assert variable("number_density_count").units == "1"
-
-
-def test_an_answer_of_theory_is_the_same_quantity_and_a_tolerance_is_not():
-    assert variable("air_pressure_theory").standard_name == "air_pressure"
-    assert variable("air_pressure_tolerance").standard_name is None
-    assert variable("air_pressure_tolerance").units == "Pa"
-
-
-def test_no_companion_keeps_the_books_or_is_an_average():
+def test_no_companion_must_be_finite_or_is_an_average():
     for name in ("kinetic_energy_se", "air_pressure_theory"):
         assert not variable(name).ledger
         assert variable(name).cell_methods is None
@@ -70,3 +71,18 @@ def test_every_temperature_says_whether_it_is_a_difference(name, metadata):
 def test_an_error_bar_of_nothing_is_refused():
     with pytest.raises(KeyError, match="nothing_se"):
         variable("nothing_se")
+
+
+@pytest.mark.parametrize(
+    ("frames", "molecules", "chunks"),
+    [(1000, 800, (100, 800, 3)), (7, 800, (7, 800, 3)), (1000, 100_000, (100, 3333, 3)), (0, 0, (1, 1, 3))],
+)
+def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_megabytes(frames, molecules, chunks):
+    assert PATH.encoding((frames, molecules, 3)) == {
+        "dtype": "f4",
+        "_FillValue": pytest.approx(np.nan, nan_ok=True),
+        "zlib": True,
+        "complevel": 4,
+        "shuffle": True,
+        "chunksizes": chunks,
+    }
