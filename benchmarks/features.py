@@ -260,9 +260,9 @@ def scene(name: str, instrument: str, small: bool) -> tuple[Any, Callable[[bool]
             parcel.advance(parcel.time + setup.frame / setup.samples)
             snapshot = parcel.snapshot()
             for each in watching:
-                each.look(parcel, snapshot)
+                each.sample(parcel, snapshot)
         for each in watching:
-            each.close(parcel, snapshot)
+            each.end_frame(parcel, snapshot)
 
     return setup, frame
 

@@ -83,7 +83,7 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
 
 
 def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Return the values in their declared type, refused where they break the books."""
+    """Return the values in their declared type; refuse those of the state that are not finite."""
     array = np.asarray(values)
     if array.ndim != len(declared.dims):
         raise ValueError(f"{declared.name} has the shape {array.shape}, but the dimensions {declared.dims}")
@@ -91,7 +91,7 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
         return array.astype(str)
     if (declared.ledger or declared.dtype[0] == "i") and not np.isfinite(array).all():
         place = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
-        raise EngineError(f"{declared.name} is not finite at {place}: the books of the run do not close any more.")
+        raise EngineError(f"{declared.name} is not finite at {place}: the state of the run is damaged.")
     return array.astype(declared.dtype)
 
 

@@ -1,7 +1,7 @@
 """How a variable of a file is declared, and what a file says and stores of it.
 
-Values are SI throughout. A *ledger* variable keeps the books (energies, counts, positions), so a value that
-is not finite means that the run is broken. Any other may be NaN where there was nothing to measure, as in a
+Values are SI throughout. A *ledger* variable is one of the state (energies, counts, positions), so a value
+that is not finite means that the run is broken. Any other may be NaN where there was nothing to measure, as in a
 layer that no molecule visited. The variables themselves stand in :mod:`atmosbox.file.variables`.
 """
 
@@ -38,7 +38,7 @@ class Variable:
     dtype
         numpy's code of the type in the file: ``f8``, ``f4``, ``i8``, ``i1``, or ``U`` for labels.
     ledger
-        Whether the variable keeps books, so that all its values must be finite.
+        Whether the variable is of the state of the run, so that all its values must be finite.
     difference
         Whether a temperature is a difference of two, and not one on the scale of a thermometer.
     axis, positive
@@ -73,7 +73,7 @@ class Variable:
 
     @property
     def units_metadata(self) -> str | None:
-        """CF's word on a temperature: on the scale, or a difference, as every lapse rate is."""
+        """What CF asks of a temperature: whether it is on the scale or a difference, as every lapse rate is."""
         parts = self.units.split()
         if not any(part.startswith("K") and not part[1:].strip("-0123456789") for part in parts):
             return None

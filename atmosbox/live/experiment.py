@@ -111,7 +111,7 @@ class Experiment:
         return self._look == 1 and self.now == self.frame * self.setup.frame
 
     def recording(self, attributes: dict[str, Any] | None = None) -> Recording:
-        """Return instruments that begin to look now, between two frames.
+        """Return instruments that begin to measure now, between two frames.
 
         Parameters
         ----------
@@ -186,16 +186,16 @@ class Experiment:
         self.now = until
 
     def _measure(self, also: Sequence[Recording]) -> bool:
-        """Let the instruments look; return whether a frame is complete."""
+        """Let the instruments sample the box; return whether a frame is complete."""
         snapshot = self.setup.parcel.snapshot()
         watching = [*self.gauges, *(recording for recording in also if recording not in self.gauges)]
         for recording in watching:
-            recording.look(snapshot)
+            recording.sample(snapshot)
         self._look += 1
         if self._look <= self.setup.samples:
             return False
         for recording in watching:
-            recording.close(snapshot)
+            recording.end_frame(snapshot)
         self.frame += 1
         self._look = 1
         if not self.setup.ends:

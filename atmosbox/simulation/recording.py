@@ -1,4 +1,4 @@
-"""A run under way: its box advances from frame to frame, and its instruments look."""
+"""A run under way: its box advances from frame to frame, and its instruments measure."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ __all__ = ["Recording"]
 class Recording:
     """A run under way: its box, its instruments, and the times of its frames.
 
-    A recording may begin when some frames, `first` of them, have passed. Its instruments look once at that moment, so
-    that they count from there on, and what they then saw is left out.
+    A recording may begin when some frames, `first` of them, have passed. Its instruments are read
+    once at that moment, so that they count from there on, and that reading is left out.
     """
 
     prepared: Prepared
@@ -44,23 +44,23 @@ class Recording:
         self.instruments = (*(self.instruments or self.setup.instruments), *extra)
         if self.first:
             snapshot = self.setup.parcel.snapshot()
-            self.look(snapshot)
-            self.close(snapshot)
+            self.sample(snapshot)
+            self.end_frame(snapshot)
 
     @property
     def frames(self) -> int:
         """How many frames are complete."""
         return len(self.times) - 1 - bool(self.first)
 
-    def look(self, snapshot: Snapshot) -> None:
-        """Let the instruments look at the molecules as they are now."""
+    def sample(self, snapshot: Snapshot) -> None:
+        """Let the instruments sample the molecules as they are now."""
         for instrument in self.instruments:
-            instrument.look(self.setup.parcel, snapshot)
+            instrument.sample(self.setup.parcel, snapshot)
 
-    def close(self, snapshot: Snapshot) -> None:
-        """Close a frame."""
+    def end_frame(self, snapshot: Snapshot) -> None:
+        """Let the instruments finish a frame."""
         for instrument in self.instruments:
-            instrument.close(self.setup.parcel, snapshot)
+            instrument.end_frame(self.setup.parcel, snapshot)
         self.times.append(self.setup.parcel.time)
 
     def advance(self, watch: Callable[[float], None]) -> None:
@@ -72,8 +72,8 @@ class Recording:
             parcel.advance(max(self.setup.moment(frame, sample), parcel.time), watch)
             self.busy += time.process_time() - busy
             snapshot = parcel.snapshot()
-            self.look(snapshot)
-        self.close(snapshot)
+            self.sample(snapshot)
+        self.end_frame(snapshot)
 
     def dataset(
         self, status: str, *, settle: int | None = None, judged: bool = True

@@ -1,4 +1,4 @@
-"""A run looked at again: whether its books balance, and whether it agrees with theory."""
+"""A run checked: whether its energy ledger closes, and whether it agrees with theory."""
 
 from __future__ import annotations
 
@@ -139,6 +139,6 @@ def _balance(dataset: xr.Dataset) -> Check:
     return Check(
         "balance",
         worst <= LEDGER_LIMIT,
-        f"energy less heat{', what the scheme made' if np.any(made) else ''} and work is the same in all frames to "
+        f"energy minus heat{', what the scheme made' if np.any(made) else ''} and work is the same in all frames to "
         f"{worst:.1e}",
     )

@@ -124,8 +124,8 @@ def test_discs_in_gravity_stand_as_high_and_press_as_their_equation_of_state_say
     instrument = Layers(10)
     for _ in range(4050):
         box.advance(box.time + 10.0)
-        instrument.look(box, box.snapshot())
-        instrument.close(box, box.snapshot())
+        instrument.sample(box, box.snapshot())
+        instrument.end_frame(box, box.snapshot())
     assert box.contacts > 500_000
     found = instrument.readings(Scale(1.0, 1.0, 1.0 * BOLTZMANN), settle=50)
     edges = np.append(found["height_bnds"][:, 0], height)

@@ -1,8 +1,8 @@
-"""Instruments: what a scene measures, each one a class that looks at the molecules and remembers.
+"""Instruments: what a scene measures, each one a class that samples the molecules and keeps the readings.
 
-A scene carries only the instruments that it needs. Each is shown the box at every sample (``look``) and
-at the end of every frame (``close``); asked at any time (``readings``), it gives what it has, in SI
-units, by the names that `diagnostics` declares.
+A scene carries only the instruments that it needs. Each is shown the box several times a frame (``sample``) and
+at the end of every frame (``end_frame``); asked at any time (``readings``), it gives what it has, in SI
+units, by the names that `atmosbox.file.variables` declares.
 """
 
 from atmosbox.scene.instruments.air import Air

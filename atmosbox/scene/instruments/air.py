@@ -56,11 +56,11 @@ class Air:
         self._time = 0.0
         self._rows: list[dict[str, Any]] = []
 
-    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the thermometer."""
         self._kT.append(temperature(parcel, snapshot))
 
-    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the barometer and the ledger."""
         area = open_faces(parcel)
         lasted = parcel.time - self._time

@@ -29,10 +29,10 @@ class Discs:
         self._diameter = np.zeros(0)
         self._length = np.zeros(3)
 
-    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Need no look between frames."""
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Need no sample between frames."""
 
-    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Remember all discs."""
         outward = parcel.wall_impulse
         self._given.append(np.array([outward[0] - outward[1], outward[2] - outward[3], outward[4] - outward[5]]))

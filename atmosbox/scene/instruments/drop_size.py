@@ -24,12 +24,12 @@ class DropSizes:
         self._area: list[float] = []
         self._rows: list[tuple[float, float, float]] = []
 
-    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Sum the areas."""
         reach = parcel.drops()[1] + 0.5 * float(parcel.diameter[0])
         self._area.append(4.0 * np.pi * float(np.sum(reach**2)))
 
-    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Count the drops."""
         radius = parcel.drops()[1]
         self._rows.append((float(np.mean(self._area)), float(radius.max()), float(len(radius))))

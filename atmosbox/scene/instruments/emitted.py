@@ -34,10 +34,10 @@ class Leaving:
         self._edges = np.array([0.0, 1.0])
         self._counts = np.zeros(1)
 
-    def look(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Need no look at single molecules."""
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Need no sample of single molecules."""
 
-    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read how many have left with which energy."""
         edges, counts = parcel.emitted_energy
         self._edges, self._counts = edges[:: self._merged], counts.reshape(-1, self._merged).sum(axis=1)

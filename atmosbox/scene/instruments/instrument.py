@@ -17,11 +17,11 @@ class Readings(dict[str, Any]):
 class Instrument(Protocol):
     """What every instrument does."""
 
-    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """See the molecules at a sample."""
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Read off what a frame takes its mean of."""
 
-    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Close a frame."""
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Read off what stands at the end of a frame, and finish its means."""
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return what has been measured; averages leave out the first ``settle`` frames."""

@@ -41,12 +41,12 @@ class Layers:
         self._mass = 1.0
         self._dimensions = 3.0
 
-    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules of each layer and the energy of their disordered motion."""
         self._sum += np.stack(layer_sample(parcel, snapshot, self._number))
         self._looks += 1
 
-    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close the sums of a frame."""
         lasted = parcel.time - self._time
         rate = (parcel.virial - self._virial) / lasted

@@ -84,10 +84,10 @@ class Lift:
         self._rows: list[tuple[float, ...]] = []
         self._freedom = 5.0
 
-    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Need no look at single molecules."""
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Need no sample of single molecules."""
 
-    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Read the state of the parcel at the end of a frame."""
         self._freedom = parcel.degrees_of_freedom
         kT = 2.0 * parcel.internal_energy() / (self._freedom * parcel.number)

@@ -56,11 +56,11 @@ class MoistLift:
         self._seen: list[list[tuple[float, float]]] = []
         self._rows: list[tuple[float, ...]] = []
 
-    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read temperature and pressure."""
         self._looks.append((gas_kT(parcel), self._driver.pressure(parcel)))
 
-    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read the state of the box at the end of a frame."""
         self._seen.append(self._looks)
         self._looks = []

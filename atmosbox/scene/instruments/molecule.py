@@ -62,10 +62,10 @@ class Molecules:
         self._laws: tuple[str, ...] = ()
         self._moist = False
 
-    def look(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Need no look between frames."""
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Need no sample between frames."""
 
-    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Remember all molecules, in single precision, the drops and how large the box is."""
         present = parcel.present
         position = np.full((present.size, 3), np.nan, np.float32)

@@ -32,12 +32,12 @@ class Speeds:
         self._seen = 0
         self._frames: list[Array] = []
 
-    def look(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count by speed."""
         self._counts += speed_counts(snapshot, self._edges)
         self._seen += parcel.number
 
-    def close(self, parcel: Parcel, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close the counts of a frame."""
         self._frames.append(self._counts / max(self._seen, 1) / np.diff(self._edges))
         self._counts = np.zeros_like(self._counts)

@@ -55,12 +55,12 @@ class Water:
         self._counts: list[tuple[int, int, int]] = []
         self._last = (0.0, 0, 0)
 
-    def look(self, parcel: Any, snapshot: Snapshot) -> None:
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read vapour pressure and temperatures."""
         kT = gas_kT(parcel)
         self._looks.append((kT, vapour_pressure(parcel, kT), parcel.liquid_kT))
 
-    def close(self, parcel: Any, snapshot: Snapshot) -> None:
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read the counters."""
         time, condensed, evaporated = self._last
         lasted = parcel.time - time
