@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import matplotlib
@@ -498,17 +498,6 @@ def test_a_short_label_stays_in_one_line_beside_a_low_axis(runs):
     assert first.get_ylabel() == "temperature (°C)"
 
 
-@pytest.mark.parametrize("theme", plot.THEMES)
-def test_legends_beside_each_other_have_equally_many_columns(drawings, theme):
-    for scene in ("lifting-dry", "atmosphere"):
-        legends = [axes.get_legend() for axes in drawings[scene, theme].axes]
-        rows: dict[int, set[int]] = {}
-        for legend in legends:
-            heights = {round(text.get_window_extent().y0) for text in legend.get_texts()}
-            rows.setdefault(len(legend.get_texts()), set()).add(len(heights))
-        assert all(len(each) == 1 for each in rows.values())
-
-
 def test_panels_over_each_other_share_the_axis_of_time(drawings):
     first, second = drawings["temperature", "notes"].axes[:2]
     assert first.get_xlim() == second.get_xlim()
@@ -619,9 +608,11 @@ def test_numbers_on_an_axis_have_equally_many_decimals():
     [(9e-4, 1.0, ["0.001", "0.01", "0.1", "1"]), (1e-5, 1e-2, ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²"])],
 )
 def test_powers_of_ten_are_written_alike_along_an_axis(low, high, numbers):
-    axis = Figure().add_subplot(xscale="log", xlim=(low, high)).xaxis
+    drawing = Figure()
+    axis = drawing.add_subplot(xscale="log", xlim=(low, high)).xaxis
     assert tick.put_ticks(axis, log=True, length=200.0, size=16.0) == 0
-    assert axis.get_major_formatter().format_ticks(axis.get_majorticklocs()) == numbers
+    drawing.draw_without_rendering()
+    assert [text.get_text() for text in tick_texts(axis)] == numbers
 
 
 def test_axes_that_run_backwards_do_so_together():
@@ -859,14 +850,22 @@ def test_a_difference_of_temperatures_in_celsius_is_in_kelvin():
     assert float(unit.convert(5.0, "ns", "ps")) == pytest.approx(5000.0)
 
 
-@pytest.mark.parametrize("decades", [0.05, 0.3, 1.0, 2.5, 8.0, 30.0])
-@pytest.mark.parametrize("low", [1e-20, 0.07, 3.0, 1e24])
-def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart(low, decades):
-    high = low * 10**decades
-    ticks = np.array(tick.log_ticks(low, high, 0.08))
-    assert 2 <= ticks.size <= 14
-    assert low * (1 - 1e-9) <= ticks.min() <= ticks.max() <= high * (1 + 1e-9)
-    assert np.diff(np.log10(ticks)).min() >= 0.03 * decades
+@pytest.mark.parametrize("decades", [0.05, 0.3, 0.7, 1.0, 2.5, 8.0, 30.0])
+@pytest.mark.parametrize("low", [1e-20, 0.07, 3.0, 300.0, 1e24])
+@pytest.mark.parametrize("length", [100.0, 300.0])
+def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart(low, decades, length):
+    limits, inch = (low, low * 10**decades), length / 72
+    drawing = Figure(figsize=(2 * inch, 2 * inch), dpi=72)
+    axes = drawing.add_axes((0.2, 0.2, 0.5, 0.5), xscale="log", xlim=limits, yscale="log", ylim=limits)
+    axes.tick_params(labelsize=8.0)
+    for axis, pressure in ((axes.xaxis, False), (axes.yaxis, True)):
+        tick.put_ticks(axis, log=True, length=length, size=8.0, pressure=pressure)
+    drawing.draw_without_rendering()
+    for axis, ends in ((axes.xaxis, ("x0", "x1")), (axes.yaxis, ("y0", "y1"))):
+        boxes = [text.get_window_extent() for text in tick_texts(axis)]
+        assert 2 <= len(boxes) <= 18
+        places = sorted(tuple(getattr(box, end) for end in ends) for box in boxes)
+        assert all(left[1] < right[0] for left, right in pairwise(places))
 
 
 # The file

@@ -24,7 +24,7 @@ FRAMES = 80
 CURVES = (
     Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
     Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
-    Line("environment_temperature", "environment_pressure", "air around", "environment"),
+    Line("environment_temperature", "environment_pressure", "environment", "environment"),
     Line("environment_dew_point_temperature", "environment_pressure", "its dewpoint", "environment"),
 )
 SKEWT = Panel("skewt", "A storm", CURVES, "temperature", "pressure", headlines=("cape",), marks=("lcl", "lfc", "el"))
@@ -264,8 +264,8 @@ def test_without_an_lfc_nothing_is_shaded(lfc):
 @each_theme
 def test_levels_are_marked_at_their_pressure_and_named_apart(drawings, theme):
     axes = drawings[theme].axes[0]
-    marks = [each for each in axes.collections if isinstance(each, LineCollection)][-1]
-    assert sorted(segment[0, 1] for segment in marks.get_segments()) == pytest.approx([200.0, 820.0, 882.0])
+    marks = [each for each in axes.collections if isinstance(each, LineCollection)][-3:]
+    assert sorted(mark.get_segments()[0][0, 1] for mark in marks) == pytest.approx([200.0, 820.0, 882.0])
     heights = [box_of(text) for text in names_of_levels(axes)]
     assert [text.get_text() for text in names_of_levels(axes)] == ["LCL", "LFC", "EL"]
     assert all(lower.y1 <= upper.y0 + 1.0 for lower, upper in combinations(heights, 2))

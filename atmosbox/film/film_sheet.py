@@ -17,8 +17,8 @@ from atmosbox.film.running import Running
 from atmosbox.plot.box_picture import box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer
 from atmosbox.plot.layout import explanation, panels_of
+from atmosbox.plot.pen import Pen
 from atmosbox.plot.place import blank, put_panels, settle
-from atmosbox.plot.plate import Pen
 from atmosbox.plot.theme import FAINT, Theme
 from atmosbox.plot.unit import convert, spelled
 
@@ -114,7 +114,8 @@ class Sheet:
         engine = self.figure.get_layout_engine()
         if panels and isinstance(engine, ConstrainedLayoutEngine):
             engine.set(rect=(share, bottom, 1.0 - share, (1.0 if share else top) - bottom))
-            plates = put_panels(self.figure, panels, look, GraphPainter(dataset, look, running), [[] for _ in panels])
+            draw = GraphPainter(dataset, look, running).draw
+            plates = put_panels(self.figure, panels, look, dataset, draw, [[] for _ in panels])
             settle(pen, plates, replace(look, grows=False))
             self.graphs = [Graph(plate.axes, plate.panel, dataset, look, running) for plate in plates]
         self.figure.set_layout_engine("none")

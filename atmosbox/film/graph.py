@@ -16,7 +16,7 @@ from matplotlib.patches import Rectangle
 from atmosbox.film.running import Running
 from atmosbox.plot.curve import Curve, curve
 from atmosbox.plot.draw import Entry
-from atmosbox.plot.layout import Painter
+from atmosbox.plot.layout import painter
 from atmosbox.plot.skewt import SHADE_ORDER, slender
 from atmosbox.plot.stroke import draw_line, draw_steps
 from atmosbox.plot.theme import DARK, DATA_COLOURS, Theme
@@ -78,7 +78,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, mos
     return tuple(panel for panel in panels if panel in picked)
 
 
-class GraphPainter(Painter):
+class GraphPainter:
     """Draws what stands still in panels, within the limits of all that they will hold.
 
     Parameters
@@ -97,23 +97,23 @@ class GraphPainter(Painter):
     >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0, 3.0])}, coords={"elapsed_time": [0.0, 9.0]})
     >>> panel = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
     >>> drawing = Figure()
-    >>> painter = GraphPainter(dataset, THEMES["notes"], Running(dataset))
-    >>> axes, entries = painter.draw(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
+    >>> graphs = GraphPainter(dataset, THEMES["notes"], Running(dataset))
+    >>> axes, entries = graphs.draw(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
     >>> len(axes.lines), [label for _, label in entries]
     (0, ['air'])
     """
 
     def __init__(self, dataset: xr.Dataset, look: Theme, running: Running) -> None:
-        super().__init__(dataset, look)
-        self.running = running
+        self.dataset, self.look, self.running = dataset, look, running
 
     def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
         """Draw a panel at its place, along the abscissa of the one above if that is given."""
         scratch = Figure(figsize=tuple(drawing.get_size_inches()))
-        full, entries = super().draw(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
+        whole = painter(self.dataset, self.look)
+        full, entries = whole(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
         still = tuple(line for line in panel.lines if not _grows(self.dataset, line, self.running))
         if still:
-            axes, _ = Painter(self.dataset, self.look, still).draw(drawing, spot, panel, above)
+            axes, _ = painter(self.dataset, self.look, still)(drawing, spot, panel, above)
         else:
             axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
             axes.grid(visible=True)

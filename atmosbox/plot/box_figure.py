@@ -11,9 +11,9 @@ from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, instant, speed_bar
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve, unit_of
-from atmosbox.plot.layout import Painter, explanation, panels_of
+from atmosbox.plot.layout import explanation, painter, panels_of
+from atmosbox.plot.pen import Pen
 from atmosbox.plot.place import blank, frame, put_panels, settle
-from atmosbox.plot.plate import Pen
 from atmosbox.plot.theme import Theme, find, style
 from atmosbox.plot.unit import spelled
 
@@ -81,7 +81,7 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
                 0.5 * share,
             )
             pictures.append(box_picture(drawing.add_axes(spot), dataset, held, look))
-        plates = put_panels(drawing, panels, look, Painter(dataset, look), sentences)
+        plates = put_panels(drawing, panels, look, dataset, painter(dataset, look), sentences)
         words = " · ".join([footer(dataset), *pictures[0].legend()])
         frame(pen, words + explanation(dataset, panels), "", look)
         settle(pen, plates, look)

@@ -1,4 +1,4 @@
-"""What a figure says in numbers and in small type: misfits, and where it comes from."""
+"""What a figure says in numbers and in small type: misfits, quantities on the axes, and where it comes from."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.errors import FileError
-from atmosbox.plot.curve import read
+from atmosbox.plot.curve import read, unit_of
+from atmosbox.plot.plane import axis_names
 from atmosbox.plot.unit import convert, of_difference, power_of_ten, spelled
 from atmosbox.scene.panels import Panel
 
@@ -174,6 +175,35 @@ def footer(dataset: xr.Dataset) -> str:
         "" if status == "complete" else f"{status} run",
     ]
     return " · ".join(part for part in parts if part)
+
+
+def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Return what the two axes of a panel show, and in which units.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run.
+    panel : Panel
+        The panel; what it does not say is said by the variables of its first line.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.scene.panels import Line
+    >>> dataset = xr.Dataset({"p": ("z", [1e5], {"units": "Pa"})}, coords={"z": [0.0]})
+    >>> axis_labels(dataset, Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa"))
+    (('p', 'hPa'), ('z', '1'))
+    """
+    if panel.kind == "discs":
+        first, second = axis_names(dataset)
+        return (panel.x_label or first, panel.x_unit or "nm"), (panel.y_label or second, panel.x_unit or "nm")
+    line = panel.lines[0]
+    names = [read(dataset, name).attrs.get("long_name", name.replace("_", " ")) for name in (line.x, line.y)]
+    return (
+        (panel.x_label or str(names[0]), unit_of(dataset, panel, "x")),
+        (panel.y_label or str(names[1]), unit_of(dataset, panel, "y")),
+    )
 
 
 def _scalar(dataset: xr.Dataset, name: str) -> float:

@@ -16,12 +16,12 @@ from atmosbox.errors import FileError
 from atmosbox.plot.caption import footer
 from atmosbox.plot.curve import Curve, curve, unit_of
 from atmosbox.plot.draw import Entry, set_limits
-from atmosbox.plot.layout import Painter, explanation, panels_of
-from atmosbox.plot.place import blank, frame, put_panels, settle
-from atmosbox.plot.plate import Pen
-from atmosbox.plot.skewt import put_background, skewed_axes, slender
+from atmosbox.plot.layout import explanation, panels_of
+from atmosbox.plot.place import page
+from atmosbox.plot.skewt import levels, put_background, skewed_axes, slender
 from atmosbox.plot.stroke import draw_line, draw_steps, line_style
-from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find, style
+from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find
+from atmosbox.plot.tilt import put_levels
 from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
@@ -80,13 +80,9 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     """
     look = find(theme)
     panels = shared_panels(datasets)
-    with style(look):
-        drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
-        pen = Pen(drawing)
-        plates = put_panels(drawing, panels, look, _Painter(datasets, labels, look), [[] for _ in panels])
-        frame(pen, _small(datasets) + explanation(datasets[0], panels), title, look)
-        settle(pen, plates, look)
-    return drawing
+    draw = _Painter(datasets, labels, look).draw
+    small = _small(datasets) + explanation(datasets[0], panels)
+    return page(panels, look, datasets[0], draw, [[] for _ in panels], small, title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
@@ -155,22 +151,17 @@ class _Painter:
     def __init__(self, datasets: Sequence[xr.Dataset], labels: Sequence[str], look: Theme) -> None:
         self.datasets, self.names, self.look = tuple(datasets), tuple(labels), look
 
-    def labels(self, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Return what the two axes of a panel show, and in which units."""
-        return Painter(self.datasets[0], self.look).labels(panel)
-
-    def levels(self, panel: Panel) -> dict[str, float]:
-        """Return the pressures that a panel marks [hPa], where all runs agree about them."""
-        found = [Painter(dataset, self.look).levels(panel) for dataset in self.datasets]
-        alike = all(set(each) == set(found[0]) for each in found)
-        return found[0] if alike and all(np.allclose([*each.values()], [*found[0].values()]) for each in found) else {}
-
     def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
         """Draw a panel at its place, along the abscissa of the one above if that is given."""
         if panel.kind == "skewt":
             skewed, axes = skewed_axes(drawing, spot)
             entries, _ = self._draw_lines(axes, panel, slender(self.look))
             put_background(skewed, axes, self.look)
+            first, *rest = (levels(dataset, panel) for dataset in self.datasets)
+            if all(
+                set(each) == set(first) and np.allclose([each[k] for k in first], [*first.values()]) for each in rest
+            ):
+                put_levels(axes, first, self.look)
             return axes, entries
         axes = drawing.add_subplot(spot, sharex=above)
         axes.set_xscale(panel.x_scale)

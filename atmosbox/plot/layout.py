@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
@@ -11,14 +10,12 @@ from matplotlib.gridspec import SubplotSpec
 
 from atmosbox.errors import FileError
 from atmosbox.plot.caption import footer, headlines
-from atmosbox.plot.curve import curve, read, unit_of
+from atmosbox.plot.curve import curve
 from atmosbox.plot.draw import Entry, draw
-from atmosbox.plot.place import blank, frame, put_panels, settle
-from atmosbox.plot.plane import axis_names
-from atmosbox.plot.plate import Pen
-from atmosbox.plot.skewt import BACKGROUND, draw_skewt, levels
+from atmosbox.plot.place import Draw, page
+from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.stroke import hollow_points
-from atmosbox.plot.theme import Theme, find, style
+from atmosbox.plot.theme import Theme, find
 from atmosbox.scene.panels import Line, Panel, from_json
 
 if TYPE_CHECKING:
@@ -65,19 +62,13 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """
     look = find(theme)
     panels = panels_of(dataset)
-    with style(look):
-        drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
-        pen = Pen(drawing)
-        plates = put_panels(drawing, panels, look, Painter(dataset, look), headlines(dataset, panels))
-        heading = str(dataset.attrs.get("title", "")) if look.heading else ""
-        frame(pen, footer(dataset) + explanation(dataset, panels), heading, look)
-        settle(pen, plates, look)
-    return drawing
+    heading = str(dataset.attrs.get("title", "")) if look.heading else ""
+    small = footer(dataset) + explanation(dataset, panels)
+    return page(panels, look, dataset, painter(dataset, look), headlines(dataset, panels), small, heading)
 
 
-@dataclass(frozen=True)
-class Painter:
-    """Draws the panels of one run.
+def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = None) -> Draw:
+    """Return what draws a panel of a run at its place.
 
     Parameters
     ----------
@@ -91,29 +82,20 @@ class Painter:
     Examples
     --------
     >>> import xarray as xr
-    >>> dataset = xr.Dataset({"p": ("z", [1e5], {"units": "Pa"})}, coords={"z": [0.0]})
-    >>> Painter(dataset, find("notes")).labels(Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa"))
-    (('p', 'hPa'), ('z', '1'))
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> drawing, panel = Figure(), Panel("profile", "Air", (Line("p", "z", "air"),), x_unit="hPa")
+    >>> axes, _ = painter(dataset, find("notes"))(drawing, drawing.add_gridspec(1, 1)[0, 0], panel, None)
+    >>> axes.lines[0].get_xdata().tolist()
+    [1000.0, 900.0]
     """
 
-    dataset: xr.Dataset
-    look: Theme
-    only: tuple[Line, ...] | None = None
-
-    def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        """Draw a panel at its place, along the abscissa of the one above if that is given."""
+    def draw_panel(drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
         if panel.kind == "skewt":
-            return draw_skewt(drawing, spot, panel, self.dataset, self.look, self.only)
+            return draw_skewt(drawing, spot, panel, dataset, look, only)
         axes = drawing.add_subplot(spot, sharex=above)
-        return axes, draw(axes, panel, self.dataset, self.look, self.only)
+        return axes, draw(axes, panel, dataset, look, only)
 
-    def labels(self, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Return what the two axes of a panel show, and in which units."""
-        return _labels(self.dataset, panel)
-
-    def levels(self, panel: Panel) -> dict[str, float]:
-        """Return the pressures that a panel marks [hPa]."""
-        return levels(self.dataset, panel)
+    return draw_panel
 
 
 def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
@@ -173,16 +155,3 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     if not panels:
         raise FileError("The file has no figure: its scene names no panels.")
     return panels
-
-
-def _labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Return what the two axes show, and in which units."""
-    if panel.kind == "discs":
-        first, second = axis_names(dataset)
-        return (panel.x_label or first, panel.x_unit or "nm"), (panel.y_label or second, panel.x_unit or "nm")
-    line = panel.lines[0]
-    names = [read(dataset, name).attrs.get("long_name", name.replace("_", " ")) for name in (line.x, line.y)]
-    return (
-        (panel.x_label or str(names[0]), unit_of(dataset, panel, "x")),
-        (panel.y_label or str(names[1]), unit_of(dataset, panel, "y")),
-    )

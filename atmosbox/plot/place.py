@@ -1,40 +1,111 @@
-"""Where everything stands: panels in columns, a title over them and small type under them."""
+"""Where everything stands: panels in columns, each under its title, its numbers and its legend.
+
+The room for all of it is found by matplotlib's constrained layout. What this file adds is what matplotlib leaves to
+the user: lines that are broken where a panel ends, as many columns of a legend as fit, titles that stand equally high,
+and a page that grows with its text.
+"""
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from numpy.typing import NDArray
+from matplotlib.text import Annotation
+from matplotlib.transforms import offset_copy
 
+from atmosbox.plot.caption import axis_labels
 from atmosbox.plot.draw import Entry
-from atmosbox.plot.plate import Pen, Plate
-from atmosbox.plot.theme import FAINT, Theme
+from atmosbox.plot.pen import Pen
+from atmosbox.plot.theme import FAINT, Theme, style
+from atmosbox.plot.tick import put_ticks
+from atmosbox.plot.tilt import fit_skewt
+from atmosbox.plot.unit import labelled
 from atmosbox.scene.panels import Panel
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Draw", "Plate", "blank", "page", "put_panels", "settle"]
 
 _TALL = ("profile", "discs", "skewt")
 _WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0}
 _TEXT_LINES = 6  # over the axes, for which a page has room; it grows for more
-_ROUNDS = 6  # at most, of placing and measuring, until the texts and the axes agree about the room they have
-_AT_REST = 0.5  # by so much they may still move [pixel]
+_ROUNDS = 3  # of layout and text: what is written takes room, and the room decides where lines break
+# The lines of a legend and their distance from the words, in sizes of the type; and the gaps between legend and axes,
+# title and numbers.
+_HANDLE, _HANDLE_GAP, _GAP = 2.3, 0.5, 0.45
+
+Draw = Callable[[Figure, SubplotSpec, Panel, Axes | None], tuple[Axes, list[Entry]]]
+"""Draws a panel at its place, along the abscissa of the axes above if these are given."""
 
 
-class Draws(Protocol):
-    """What draws the panels of a page."""
+class Plate(NamedTuple):
+    """A panel on the page."""
 
-    def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        """Draw a panel at its place, along the abscissa of the one above if that is given."""
+    axes: Axes
+    """Its axes, with the curves drawn."""
+    panel: Panel
+    """What it shows."""
+    entries: list[Entry]
+    """The entries of its legend."""
+    sentences: list[str]
+    """The numbers under its title."""
+    note: Annotation
+    """Where these are written."""
+    labels: tuple[tuple[str, str], tuple[str, str]]
+    """What the two axes show, and in which units; empty for an axis that is labelled in the panel below."""
+    row: int
+    column: int
 
-    def labels(self, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Return what the two axes of a panel show, and in which units."""
 
-    def levels(self, panel: Panel) -> dict[str, float]:
-        """Return the pressures that a panel marks [hPa]."""
+def page(
+    panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, sentences: list[list[str]],
+    small: str, heading: str,
+) -> Figure:  # fmt: skip
+    """Return a page of panels, with small type below them and a heading over them.
+
+    Parameters
+    ----------
+    panels : tuple of Panel
+        What to draw.
+    look : Theme
+        How large.
+    dataset : xarray.Dataset
+        The run whose variables name the axes.
+    draw : callable
+        What draws a panel.
+    sentences : list of list of str
+        For each panel, the numbers that stand under its title.
+    small, heading : str
+        What is written under and over the panels; an empty heading takes no room.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from atmosbox.plot.theme import THEMES
+    >>> look = THEMES["notes"]
+    >>> [text.get_text() for text in page((), look, xr.Dataset(), None, [], "atmosbox", "").texts]
+    ['atmosbox']
+    """
+    with style(look):
+        drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
+        plates = put_panels(drawing, panels, look, dataset, draw, sentences) if panels else []
+        pen, width = Pen(drawing), 72 * drawing.get_figwidth()
+        left = look.text / 2 / width
+        # Type that is hinted for a screen may be narrower than in print.
+        small = pen.wrap(small, 0.98 * (width - look.text), look.small)
+        drawing.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
+        if heading:
+            size = 1.3 * look.title
+            heading = pen.wrap(heading, width - look.text, size, "bold")
+            drawing.suptitle(heading, x=left, ha="left", fontsize=size, weight="bold")
+        settle(drawing, plates, look)
+    return drawing
 
 
 def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, float, float] = (0, 0, 1, 1)) -> Figure:
@@ -63,41 +134,8 @@ def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, floa
     return drawing
 
 
-def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
-    """Write around the panels and move them, until texts and axes agree about the room they have.
-
-    Parameters
-    ----------
-    pen : Pen
-        The pen of the page.
-    plates : list of Plate
-        Its panels.
-    look : Theme
-        How large; a page that grows becomes higher where there is much to say.
-
-    Examples
-    --------
-    >>> from atmosbox.plot.theme import THEMES
-    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> axes = drawing.add_subplot(drawing.add_gridspec(1, 1)[0, 0])
-    >>> settle(Pen(drawing), [], THEMES["notes"])
-    >>> type(drawing.get_layout_engine()).__name__
-    'PlaceHolderLayoutEngine'
-    """
-    drawing = pen.figure
-    height, places = drawing.get_figheight(), _place(drawing)
-    for _ in range(_ROUNDS):
-        texts = _write(pen, plates)
-        if look.grows:
-            drawing.set_figheight(height + max(0.0, texts - _TEXT_LINES * look.text) / 72)
-        before, places = places, _place(drawing)
-        if np.allclose(places, before, rtol=0.0, atol=_AT_REST):
-            break
-    drawing.set_layout_engine("none")
-
-
 def put_panels(
-    drawing: Figure, panels: tuple[Panel, ...], look: Theme, painter: Draws, sentences: list[list[str]]
+    drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, sentences: list[list[str]]
 ) -> list[Plate]:
     """Draw every panel at its place.
 
@@ -109,25 +147,28 @@ def put_panels(
         What to draw.
     look : Theme
         How large.
-    painter : Draws
-        What draws them.
+    dataset : xarray.Dataset
+        The run whose variables name the axes.
+    draw : callable
+        What draws a panel.
     sentences : list of list of str
         For each panel, the numbers that stand under its title.
 
     Returns
     -------
     list of Plate
-        The panels on the page, which `settle` gives their final place.
+        The panels on the page, around which `settle` writes.
 
     Examples
     --------
     >>> import xarray as xr
-    >>> from atmosbox.scene.panels import Line
-    >>> from atmosbox.plot.layout import Painter
+    >>> from atmosbox.plot.layout import painter
     >>> from atmosbox.plot.theme import THEMES
+    >>> from atmosbox.scene.panels import Line
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
-    >>> plates = put_panels(blank((4.0, 3.0), look), (panel, panel), look, Painter(dataset, look), [[], []])
+    >>> page = blank((4.0, 3.0), look)
+    >>> plates = put_panels(page, (panel, panel), look, dataset, painter(dataset, look), [[], []])
     >>> [(plate.row, plate.column) for plate in plates]
     [(0, 0), (0, 1)]
     """
@@ -139,80 +180,111 @@ def put_panels(
         shared = len(column) > 1 and _same_abscissa(*(panels[index] for index in column))
         for row, index in enumerate(column):
             panel, spot = panels[index], grid[row if len(column) > 1 else slice(None), place]
-            axes, entries = painter.draw(drawing, spot, panel, plates[-1].axes if shared and row else None)
-            x, y = painter.labels(panel)
+            axes, entries = draw(drawing, spot, panel, plates[-1].axes if shared and row else None)
+            x, y = axis_labels(dataset, panel)
             labels = (("", x[1]) if shared and not row else x, y)
-            marked = painter.levels(panel)
-            plates.append(Plate(axes, panel, look, row, place, entries, sentences[index], labels, marked))
+            note = axes.annotate(
+                "", (0.0, 1.0), (0.0, 0.0), xycoords="axes fraction", textcoords="offset points", va="top",
+                size=look.text, linespacing=1.2, annotation_clip=False,
+            )  # fmt: skip
+            plates.append(Plate(axes, panel, entries, sentences[index], note, labels, row, place))
         drawing.align_ylabels([plate.axes for plate in plates if plate.column == place])
     return plates
 
 
-def frame(pen: Pen, small: str, heading: str, look: Theme) -> None:
-    """Write what stands over and under all panels.
+def settle(drawing: Figure, plates: list[Plate], look: Theme) -> None:
+    """Write titles, numbers, legends and labels around the panels, in lines that end where these end.
 
     Parameters
     ----------
-    pen : Pen
-        The pen of the page.
-    small, heading : str
-        What is written under and over the panels; an empty heading takes no room.
+    drawing : matplotlib.figure.Figure
+        The page.
+    plates : list of Plate
+        Its panels, from `put_panels`.
     look : Theme
-        How large.
+        How large; a page that grows becomes higher where there is much to say.
 
     Examples
     --------
     >>> from atmosbox.plot.theme import THEMES
     >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> frame(Pen(drawing), "atmosbox", "", THEMES["notes"])
-    >>> [text.get_text() for text in drawing.texts]
-    ['atmosbox']
+    >>> settle(drawing, [], THEMES["notes"])
+    >>> drawing.get_size_inches().tolist()
+    [4.0, 3.0]
     """
-    width = 72 * pen.figure.get_figwidth()
-    left = look.text / 2 / width
-    # Type that is hinted for a screen may be narrower than in print.
-    small = pen.wrap(small, 0.98 * (width - look.text), look.small)
-    pen.figure.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
-    if heading:
-        size = 1.3 * look.title
-        heading = pen.wrap(heading, width - look.text, size, "bold")
-        pen.figure.suptitle(heading, x=left, ha="left", fontsize=size, weight="bold")
-
-
-def _write(pen: Pen, plates: list[Plate]) -> float:
-    """Write around the axes, and return the height of all texts over them [pt].
-
-    The texts of a column begin together, the titles of a row stand equally high, and its legends of equally many
-    entries have equally many columns.
-    """
-    inks = [plate.label(pen) for plate in plates]
-    edges = {
-        column: min(ink for ink, plate in zip(inks, plates, strict=True) if plate.column == column)
-        for column in {plate.column for plate in plates}
-    }
-    for plate in plates:
-        plate.fit(pen, edges[plate.column])
-    for plate in plates:
-        alike = [o for o in plates if (o.row, len(o.entries)) == (plate.row, len(plate.entries))]
-        plate.columns = min(other.columns for other in alike)
-    heights = [plate.write(pen) for plate in plates]
-    tops = {
-        row: max(height for height, plate in zip(heights, plates, strict=True) if plate.row == row)
-        for row in {plate.row for plate in plates}
-    }
-    for plate in plates:
-        plate.crown(pen, tops[plate.row])
-    return sum(tops.values())
-
-
-def _place(drawing: Figure) -> NDArray[np.float64]:
-    """Give the axes the room that the texts leave, and return where they stand [pixel]."""
-    engine = drawing.get_layout_engine()
+    pen, engine, height = Pen(drawing), drawing.get_layout_engine(), drawing.get_figheight()
     assert engine is not None
-    engine.execute(drawing)
-    for axes in drawing.axes:
-        axes.apply_aspect()
-    return np.array([axes.get_window_extent().extents for axes in drawing.axes])
+    for _ in range(_ROUNDS):
+        for plate in plates:
+            plate.axes.apply_aspect()
+            _write_labels(pen, plate, look)
+        # The texts of a column begin together, and the titles of a row stand equally high.
+        ink = [plate.axes.yaxis.get_tightbbox().x0 for plate in plates]  # type: ignore[union-attr]
+        edge = {p.column: min(x for x, o in zip(ink, plates, strict=True) if o.column == p.column) for p in plates}
+        heights = [_write_legend(pen, plate, edge[plate.column], look) for plate in plates]
+        tops = {p.row: max(h for h, o in zip(heights, plates, strict=True) if o.row == p.row) for p in plates}
+        for plate in plates:
+            _write_title(pen, plate, edge[plate.column], tops[plate.row], look)
+        if look.grows:
+            drawing.set_figheight(height + max(0.0, sum(tops.values()) - _TEXT_LINES * look.text) / 72)
+        engine.execute(drawing)
+
+
+def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
+    """Write ticks and labels for the room that the axes have."""
+    axes, panel, size = plate.axes, plate.panel, look.text
+    frame, point = axes.get_window_extent(), pen.figure.dpi / 72
+    width, height = frame.width / point, frame.height / point
+    (x_label, x_unit), (y_label, y_unit) = plate.labels
+    power = 0
+    if panel.kind == "skewt":
+        fit_skewt(axes, width, height, size)
+    else:
+        log = panel.x_scale == "log"
+        power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
+    if x_label:
+        axes.set_xlabel(pen.wrap(labelled(x_label, x_unit, power), width, size))
+    else:
+        axes.tick_params(axis="x", labelbottom=False)
+    log = panel.y_scale == "log"
+    power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
+    # The label may reach over both ends of the axis into the gap that is there anyhow.
+    axes.set_ylabel(pen.wrap(labelled(y_label, y_unit, power), height + 0.8 * size, size))
+
+
+def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
+    """Put the legend on the axes and break the numbers into lines, and return how much room both need [pt]."""
+    axes, size = plate.axes, look.text
+    frame, point = axes.get_window_extent(), pen.figure.dpi / 72
+    room = (frame.x1 - edge) / point
+    height = _GAP * size
+    if len(plate.entries) > 1 or any(line.role != "data" for line in plate.panel.lines):
+        place = offset_copy(axes.transAxes, pen.figure, (edge - frame.x0) / point, height, units="points")
+        labels = [pen.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in plate.entries]
+        for columns in range(len(labels), 0, -1):
+            legend = axes.legend(
+                [artists if len(artists) > 1 else artists[0] for artists, _ in plate.entries], labels,
+                loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=columns, borderpad=0.0,
+                borderaxespad=0.0, handlelength=_HANDLE, handletextpad=_HANDLE_GAP, columnspacing=1.1,
+                labelspacing=0.25,
+            )  # fmt: skip
+            if legend.get_window_extent().width <= room * point:
+                break
+        for line in legend.get_lines():
+            line.set_linewidth(max(line.get_linewidth(), look.line))
+        height += pen.height(legend) + _GAP * size
+    said = [pen.wrap(line, room, size) for line in (plate.panel.note, *plate.sentences) if line]
+    plate.note.set_text("\n".join(said))
+    return height + (pen.height(plate.note) + _GAP * size if said else 0.0)
+
+
+def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme) -> None:
+    """Write the title at a height over the axes [pt], and under it the numbers."""
+    frame, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
+    title = pen.wrap(plate.panel.title, (frame.x1 - edge) / point, look.title, "bold")
+    left = (edge - frame.x0) / frame.width
+    plate.axes.set_title(title, loc="left", x=left, pad=height, fontsize=look.title, weight="bold")
+    plate.note.set_position(((edge - frame.x0) / point, height - _GAP * look.text))
 
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:

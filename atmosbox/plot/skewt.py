@@ -18,7 +18,7 @@ from atmosbox.plot.curve import read
 from atmosbox.plot.draw import Entry, draw_lines
 from atmosbox.plot.energy import shade_energy
 from atmosbox.plot.theme import PALE, Theme
-from atmosbox.plot.tilt import ROTATION
+from atmosbox.plot.tilt import ROTATION, put_levels
 from atmosbox.plot.unit import convert
 from atmosbox.scene.panels import Line, Panel
 
@@ -150,7 +150,9 @@ def draw_skewt(
     skewed, axes = skewed_axes(figure, spot)
     entries, _ = draw_lines(axes, panel, dataset, slender(theme), only)
     put_background(skewed, axes, theme)
-    return axes, entries + shade_energy(skewed, panel, dataset, levels(dataset, panel), SHADE_ORDER)
+    marks = levels(dataset, panel)
+    put_levels(axes, marks, theme)
+    return axes, entries + shade_energy(skewed, panel, dataset, marks, SHADE_ORDER)
 
 
 def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:

@@ -1,4 +1,4 @@
-"""Numbers on the axes: few enough to read, plain, and with a common power of ten in the label."""
+"""Numbers on the axes: matplotlib's locators, plain numbers, and a common power of ten for the label."""
 
 from __future__ import annotations
 
@@ -6,20 +6,30 @@ import math
 from itertools import pairwise
 
 from matplotlib.axis import Axis, XAxis
-from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
+from matplotlib.ticker import (
+    FixedLocator,
+    FuncFormatter,
+    Locator,
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    ScalarFormatter,
+)
 
 from atmosbox.plot.unit import power_of_ten
 
-# The levels that a meteorologist looks for, the most telling first.
-_PRESSURE_LEVELS = (1000.0, 500.0, 300.0, 700.0, 850.0, 400.0, 200.0, 100.0, 50.0, 20.0, 10.0, 250.0, 600.0, 150.0)
-# The digits that are written between two powers of ten, each group wholly or not at all.
-_DIGITS = ((1.0,), (2.0, 5.0), (3.0,), (7.0,), (1.5, 4.0, 6.0, 8.0))
-# An axis over so many times its low end shows powers of ten; just below 1000, lest rounding decide.
+__all__ = ["put_ticks"]
+
+# The mandatory levels of soundings [hPa], without 925, which there is seldom room for.
+_PRESSURE_LEVELS = (1000.0, 850.0, 700.0, 500.0, 400.0, 300.0, 250.0, 200.0, 150.0, 100.0, 70.0, 50.0, 30.0, 20.0, 10.0)
+# The digits that are written between two powers of ten, and the least ratio of two of them.
+_DIGITS = (((1.0, 2.0, 5.0), 2.0), ((1.0, 3.0), 3.0), ((1.0,), 10.0))
+# How much room a number takes beside the next one, across and upright, and the width of a digit and the gap between two
+# numbers across, all in sizes of the type.
+_ACROSS, _UPRIGHT, _DIGIT, _BETWEEN = 3.0, 1.5, 0.64, 0.7
+# On an axis over so many times its low end, powers of ten are written and not taken out; just below 1000, lest
+# rounding decide.
 _MANY = 999.0
-# On a longer logarithmic axis the small ticks between the powers of ten would run together.
-_MOST_DECADES = 6.0
-# Numbers beside each other: the width of a digit and the gap between two numbers, in sizes of the type.
-_DIGIT_WIDTH, _GAP = 0.64, 0.7
 
 
 def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bool = False) -> int:
@@ -34,7 +44,7 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
     length, size : float
         Length of the axis and size of its type [pt].
     pressure : bool
-        Whether it shows a pressure in hPa, and so the standard levels if it is logarithmic.
+        Whether it shows a pressure in hPa, and so the mandatory levels of soundings if it is logarithmic.
 
     Returns
     -------
@@ -50,159 +60,49 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
     >>> put_ticks(axes.yaxis, log=False, length=100.0, size=8.0)
     -15
     """
-    low, high = sorted(axis.get_view_interval())
+    low, high = sorted(map(float, axis.get_view_interval()))
+    across = isinstance(axis, XAxis)
     if log:
-        return _put_log_ticks(axis, low, high, length, size, pressure=pressure)
-    power = _power(low, high)
-    upright = not isinstance(axis, XAxis)
-    for intervals in range(max(2, min(7, int(length / (1.5 * size)))), 1, -1):
-        locator = MaxNLocator(nbins=intervals, steps=[1, 2, 2.5, 5, 10])
-        axis.set_major_locator(locator)
-        ticks = [float(value) for value in locator.tick_values(low, high) if low <= value <= high]
-        if power:
-            axis.set_major_formatter(_alike(ticks, power))
-        places = [(value - low) / (high - low) * length for value in ticks]
-        if upright or _fit(places, axis.get_major_formatter().format_ticks(ticks), size):
-            break
-    return power
-
-
-def log_ticks(low: float, high: float, room: float, *, pressure: bool = False) -> list[float]:
-    """Return the numbers to write on a logarithmic axis.
-
-    Parameters
-    ----------
-    low, high : float
-        Its ends, both above zero.
-    room : float
-        The least distance between two numbers, as a part of the length of the axis.
-    pressure : bool
-        Whether the standard levels of the atmosphere are preferred.
-
-    Returns
-    -------
-    list of float
-        Numbers in ascending order, round ones preferred.
-
-    Examples
-    --------
-    >>> log_ticks(290.0, 1030.0, room=0.05, pressure=True)
-    [300.0, 400.0, 500.0, 600.0, 700.0, 850.0, 1000.0]
-    >>> log_ticks(0.8, 120.0, room=0.1)
-    [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
-    """
-    least = room * math.log10(high / low)
-    if pressure and 9.0 < low < high < 1100.0:
-        classes = [[level] for level in _PRESSURE_LEVELS]
-    elif high / low < 3.0:
-        classes = []
+        plain = low >= 1e-3 and high < 1e5
+        power = 0 if plain or high >= _MANY * low else math.floor(math.log10(low))
+        locator = _log_locator(low, high, (_ACROSS if across else _UPRIGHT) * size / length, pressure=pressure)
+        axis.set_minor_locator(LogLocator(subs=range(1, 10)))
+        axis.set_minor_formatter(NullFormatter())
+        axis.set_major_formatter(FuncFormatter(lambda value, _: _written(value, power, plain=plain)))
     else:
-        decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-        digits = _DIGITS if _is_plain(low, high) or high / low < _MANY else _DIGITS[:1]
-        classes = [[digit * 10.0**decade for decade in decades for digit in each] for each in digits]
-    kept: list[float] = []
-    for candidates in classes:
-        fitting = [value for value in candidates if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
-        if not kept and _closest(fitting) < least:
-            fitting = fitting[:: math.ceil(least)]
-        if _closest(kept + fitting) >= least:
-            kept += fitting
-    if len(kept) < 2:
-        values = MaxNLocator(nbins=max(2, int(0.8 / room)), steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-        kept = [float(value) for value in values if low <= value <= high]
-    return sorted(kept)
-
-
-def small_ticks(low: float, high: float) -> list[float]:
-    """Return the ticks without a number that show that an axis is logarithmic.
-
-    Parameters
-    ----------
-    low, high : float
-        Its ends, both above zero.
-
-    Returns
-    -------
-    list of float
-        One to nine times the powers of ten; none where they would be one or none, or too many.
-
-    Examples
-    --------
-    >>> small_ticks(70.0, 300.0)
-    [70.0, 80.0, 90.0, 100.0, 200.0, 300.0]
-    >>> small_ticks(1.0, 1e20)
-    []
-    """
-    if math.log10(high / low) > _MOST_DECADES:
-        return []
-    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    every = (digit * 10.0**decade for decade in decades for digit in range(1, 10))
-    ticks = [value for value in every if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
-    return ticks if len(ticks) > 1 else []
-
-
-def _put_log_ticks(axis: Axis, low: float, high: float, length: float, size: float, *, pressure: bool) -> int:
-    power = 0 if high / low >= _MANY or _is_plain(low, high) else math.floor(math.log10(low))
-    room = 1.9 * size
-    while True:
-        ticks = log_ticks(low, high, room / length, pressure=pressure)
-        numbers = _written(ticks, power)
-        places = [math.log10(tick / low) / math.log10(high / low) * length for tick in ticks]
-        if not isinstance(axis, XAxis) or room > length / 2 or _fit(places, numbers, size):
+        largest, locator = max(abs(low), abs(high)), None
+        power = 0 if largest == 0.0 or 1e-2 <= largest < 1e5 else math.floor(math.log10(largest))
+        formatter = ScalarFormatter(useOffset=False)
+        formatter.set_powerlimits((power, power) if power else (-9, 9))
+        axis.set_major_formatter(formatter)
+        axis.offsetText.set_visible(False)
+    if locator is not None:
+        axis.set_major_locator(locator)
+        return power
+    for intervals in range(7, 1, -1):
+        axis.set_major_locator(MaxNLocator(intervals, steps=[1, 2, 2.5, 5, 10]))
+        ticks = axis.get_majorticklocs().tolist()
+        longest = max(map(len, axis.get_major_formatter().format_ticks(ticks)))
+        wide = (_DIGIT * longest + _BETWEEN) * size if across else _UPRIGHT * size
+        if wide * (high - low) <= length * (ticks[1] - ticks[0]):
             break
-        room += 0.2 * size
-    axis.set_major_locator(FixedLocator(ticks))
-    axis.set_major_formatter(FixedFormatter(numbers))
-    axis.set_minor_locator(FixedLocator(small_ticks(low, high)))
-    axis.set_minor_formatter(NullFormatter())
     return power
 
 
-def _written(ticks: list[float], power: int) -> list[str]:
-    """Return the numbers at ticks, all as powers of ten where one of them would be too long otherwise."""
-    exponents = [math.log10(tick) for tick in ticks]
-    decades = all(abs(exponent - round(exponent)) < 1e-9 for exponent in exponents)
-    if decades and not power and not _is_plain(1.001 * ticks[0], ticks[-1]):
-        return [power_of_ten(round(exponent)) for exponent in exponents]
-    return [_plain(tick / 10.0**power) for tick in ticks]
+def _log_locator(low: float, high: float, room: float, *, pressure: bool) -> Locator | None:
+    """Return what finds the numbers of a logarithmic axis; None where round ones are too few."""
+    decades = math.log10(high / low)
+    levels = [level for level in _PRESSURE_LEVELS if low <= level <= high]
+    closest = min((math.log10(lower / upper) for lower, upper in pairwise(levels)), default=0.0)
+    if pressure and len(levels) > 3 and high < 1100.0 and closest >= 0.8 * room * decades:
+        return FixedLocator(levels)
+    digits = next((each for each, ratio in _DIGITS if math.log10(ratio) >= room * decades), (1.0,))
+    return LogLocator(subs=digits) if high > 4.0 * low else None
 
 
-def _alike(ticks: list[float], power: int) -> FuncFormatter:
-    """Return what writes ticks at even distances with equally many decimals, in units of a power of ten."""
-    step = min((b - a for a, b in pairwise(ticks)), default=1.0) / 10.0**power
-    decimals = next((places for places in range(9) if abs(step * 10**places % 1.0 - 0.5) > 0.4999), 9)
-    return FuncFormatter(lambda value, _: f"{value / 10.0**power:.{decimals}f}".replace("-", "−"))
-
-
-def _fit(places: list[float], numbers: list[str], size: float) -> bool:
-    """Tell whether numbers that stand beside each other at these places [pt] keep apart."""
-    return all(
-        right - left >= size * (_DIGIT_WIDTH * (len(first) + len(second)) / 2 + _GAP)
-        for (left, first), (right, second) in pairwise(zip(places, numbers, strict=True))
-    )
-
-
-def _closest(values: list[float]) -> float:
-    """Return the least distance of two values on a logarithmic axis, in decades."""
-    ascending = sorted(values)
-    return min((math.log10(b / a) for a, b in pairwise(ascending)), default=math.inf)
-
-
-def _is_plain(low: float, high: float) -> bool:
-    """Tell whether both ends of a logarithmic axis can be written without an exponent."""
-    return low >= 1e-3 and high < 1e5
-
-
-def _power(low: float, high: float) -> int:
-    """Return the power of ten of a linear axis whose numbers would otherwise be long."""
-    largest = max(abs(low), abs(high))
-    return 0 if largest == 0 or 1e-2 <= largest < 1e5 else math.floor(math.log10(largest))
-
-
-def _plain(value: float) -> str:
-    """Return a number without exponent, or as a bare power of ten where it is one."""
-    if value and not 1e-4 <= abs(value) < 1e6:
-        exponent = math.log10(abs(value))
-        if abs(exponent - round(exponent)) < 1e-9:
-            return ("−" if value < 0 else "") + power_of_ten(round(exponent))
-    return f"{value:.6g}".replace("-", "−")
+def _written(value: float, power: int, *, plain: bool) -> str:
+    """Return a number of a logarithmic axis."""
+    if plain or power:
+        return f"{value / 10.0**power:.6g}"
+    exponent = math.log10(value)
+    return power_of_ten(round(exponent)) if abs(exponent - round(exponent)) < 1e-9 else f"{value:.6g}"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.text import Annotation
 from matplotlib.ticker import FixedFormatter, FixedLocator
 
-from atmosbox.plot.theme import DARK, FAINT
+from atmosbox.plot.theme import DARK, FAINT, Theme
 
 ROTATION = 30.0  # of isotherms from the upright [degree], as MetPy has it
 
@@ -18,10 +19,11 @@ _KELVINS_PER_DECADE = 60.0
 # The curves keep so far from the sides, in widths of the axes; and no diagram is narrower or wider [K].
 _MARGIN = 0.06
 _LEAST_WIDTH, _MOST_WIDTH = 40.0, 400.0
+_LEVEL = "level"  # by which the names of levels are found among the texts
 
 
-def fit_skewt(axes: Axes, marks: dict[str, float], width: float, height: float, size: float) -> list[Artist]:
-    """Choose the range of temperatures for the room that a skew-T has, and write its numbers and levels.
+def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
+    """Choose the range of temperatures for the room that a skew-T has, and move the names of its levels apart.
 
     Isotherms are inclined on the page, and so the room that a curve needs to the left and to the right depends on
     how high and how wide the page is.
@@ -30,17 +32,10 @@ def fit_skewt(axes: Axes, marks: dict[str, float], width: float, height: float, 
     ----------
     axes : matplotlib.axes.Axes
         The axes, from `skewt.draw_skewt`.
-    marks : dict of str to float
-        The levels, by what they are called [hPa].
     width, height : float
         Size of the axes [pt].
     size : float
         Size of the type [pt].
-
-    Returns
-    -------
-    list of matplotlib.artist.Artist
-        The marks, to be removed before the axes are fitted again.
 
     Examples
     --------
@@ -49,8 +44,7 @@ def fit_skewt(axes: Axes, marks: dict[str, float], width: float, height: float, 
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
     >>> _ = axes.plot([20.0, -60.0], [1000.0, 100.0])
-    >>> fit_skewt(axes, {}, 200.0, 200.0, 8.0)
-    []
+    >>> fit_skewt(axes, 200.0, 200.0, 8.0)
     >>> [round(float(limit)) for limit in axes.get_xlim()]
     [-33, 27]
     """
@@ -63,7 +57,10 @@ def fit_skewt(axes: Axes, marks: dict[str, float], width: float, height: float, 
     numbers = [f"{t:.0f}".replace("-", "−") if left <= t <= left + across else "" for t in isotherms]
     axes.xaxis.set_major_locator(FixedLocator(list(isotherms)))
     axes.xaxis.set_major_formatter(FixedFormatter(numbers))
-    return _write_marks(axes, {name: p for name, p in marks.items() if top <= p <= bottom}, height, size)
+    names = [text for text in axes.texts if isinstance(text, Annotation) and text.get_gid() == _LEVEL]
+    wanted = [height * math.log(bottom / text.xy[1]) / math.log(bottom / top) for text in names]
+    for text, place, moved in zip(names, wanted, _apart(wanted, 1.15 * size, height), strict=True):
+        text.set_position((0.8 * size, moved - place))
 
 
 def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[float, float]:
@@ -85,27 +82,37 @@ def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[
     return float(place.min() + place.max() - across) / 2, across
 
 
-def _write_marks(axes: Axes, marks: dict[str, float], height: float, size: float) -> list[Artist]:
-    """Mark levels across the diagram, and write their names to the right of it, apart from each other."""
-    if not marks:
-        return []
+def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
+    """Mark levels across a skew-T, with their names to the right of it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes, with their pressures set.
+    levels : dict of str to float
+        Pressures, by what they are called [hPa]; those outside the diagram are left out.
+    theme : Theme
+        How large.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
+    >>> put_levels(axes, {"EL": 200.0, "LCL": 900.0, "LFC": 50.0}, THEMES["notes"])
+    >>> [text.get_text() for text in axes.texts]
+    ['LCL', 'EL']
+    """
     bottom, top = axes.get_ylim()
-    order = sorted(marks, key=lambda name: -marks[name])
-    places = [height * math.log(bottom / marks[name]) / math.log(bottom / top) for name in order]
-    lines = axes.hlines(
-        [marks[name] for name in order], 0.0, 1.0, transform=axes.get_yaxis_transform(), colors=FAINT,
-        linewidths=0.06 * size, zorder=0.9,
-    )  # fmt: skip
-    written: list[Artist] = [lines]
-    for name, place, wanted in zip(order, _apart(places, 1.15 * size, height), places, strict=True):
-        label = axes.annotate(
-            name, (1.0, wanted / height), (0.8 * size, place - wanted), xycoords="axes fraction",
-            textcoords="offset points", ha="left", va="center", size=size, color=DARK, annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": FAINT, "linewidth": 0.06 * size, "shrinkA": 0.0, "shrinkB": 0.0,
-                        "relpos": (0.0, 0.5)},
-        )  # fmt: skip
-        written.append(label)
-    return written
+    line: dict[str, Any] = {"color": FAINT, "linewidth": 0.06 * theme.text}
+    for name, pressure in sorted(levels.items(), key=lambda level: -level[1]):
+        if top <= pressure <= bottom:
+            axes.hlines(pressure, 0.0, 1.0, transform=axes.get_yaxis_transform(), zorder=0.9, **line)
+            axes.annotate(
+                name, (1.0, pressure), (0.8 * theme.text, 0.0), xycoords=("axes fraction", "data"),
+                textcoords="offset points", va="center", size=theme.text, color=DARK, annotation_clip=False, gid=_LEVEL,
+                arrowprops={"arrowstyle": "-", "shrinkA": 0.0, "shrinkB": 0.0, "relpos": (0.0, 0.5), **line},
+            )  # fmt: skip
 
 
 def _apart(places: list[float], gap: float, height: float) -> list[float]:

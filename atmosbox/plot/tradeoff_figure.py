@@ -12,11 +12,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
-from atmosbox.plot.label import put_beside
 from atmosbox.plot.theme import DARK, DATA_COLOURS, FAINT, Theme, find, style
 
 if TYPE_CHECKING:
@@ -31,7 +29,6 @@ CLEAR = 6.0
 """From so many standard errors on, a law may be drawn through a bias."""
 
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
-_SYMBOLS = {"delta": "δ", "dt": "dt", "molecules": "N", "ascent": "n", "duration": "t"}
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
@@ -66,7 +63,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         axes = drawing.subplots(math.ceil(len(chosen) / columns), columns, sharex=True, squeeze=False).ravel()
         for each in axes[len(chosen) :]:
             each.remove()
-        words = [_draw(axes[place], dataset, name, look) for place, name in enumerate(chosen)]
+        for each, name in zip(axes, chosen, strict=False):
+            _draw(each, dataset, name, look)
         for place in range(len(chosen)):
             if place + columns >= len(chosen):
                 axes[place].set_xlabel("processor time of the engine in a run (s)")
@@ -81,8 +79,6 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
             labelspacing=0.3,
         )
         drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold")
-        for each, (labels, marks) in zip(axes, words, strict=False):
-            put_beside(drawing, each, labels, marks, 0.7 * look.marker)
     return drawing
 
 
@@ -94,10 +90,8 @@ def foremost(dataset: xr.Dataset) -> list[str]:
     return sorted(names, key=lambda name: name not in lawful)[:MOST_PANELS]
 
 
-def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> tuple[list[Annotation], NDArray[np.float64]]:
-    """Draw one quantity; return the names of its runs, to be put beside their marks, and where marks are."""
-    labels: list[Annotation] = []
-    marks = [np.empty((0, 2))]
+def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
+    """Draw one quantity."""
     one = dataset.sel(quantity=name)
     scale = 1.0 if str(one.unit.values) == "K" else 100.0
     unit = "K" if scale == 1.0 else "%"
@@ -130,9 +124,6 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> tuple[list
         )  # fmt: skip
         if row < len(rows):
             _law(axes, dataset, rows[row], name, here, seconds, np.where(seen, bias, np.nan), se, look)
-            height = np.where(seen, bias, SEEN * se)
-            labels += _name_ends(axes, dataset, rows[row], here, seconds, height, look, colour)
-            marks.append(np.column_stack([seconds, height])[here])
     _statistics(axes, dataset, seconds, noise, look)
     axes.set_title(_sentence(str(one.label.values)), loc="left", fontsize=look.text)
     axes.set_ylabel(f"error ({unit})")
@@ -142,7 +133,6 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> tuple[list
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(visible=True)
-    return labels, np.concatenate(marks)
 
 
 def _front(axes: Axes, seconds: NDArray[np.float64], total: NDArray[np.float64], look: Theme) -> None:
@@ -194,28 +184,6 @@ def _statistics(
     axes.plot(x, y, color=DARK, ls=(0, (2, 2)), lw=0.6 * look.line, zorder=1.5)
 
 
-def _name_ends(
-    axes: Axes,
-    dataset: xr.Dataset,
-    row: dict[str, Any],
-    here: NDArray[np.bool_],
-    seconds: NDArray[np.float64],
-    height: NDArray[np.float64],
-    look: Theme,
-    colour: str,
-) -> list[Annotation]:
-    """Write the value of what varies at the first and the last run of a series."""
-    places = np.flatnonzero(here)
-    symbol = _SYMBOLS.get(row["vary"], row["vary"])
-    return [
-        axes.annotate(
-            f"{symbol} = {dataset.value.values[k]:g}", (seconds[k], height[k]), (0, 0), textcoords="offset points",
-            fontsize=0.75 * look.small, color=colour,
-        )
-        for k in sorted({int(places[0]), int(places[-1])})
-    ]  # fmt: skip
-
-
 def _engine(dataset: xr.Dataset, row: int) -> str:
     """Return the name of a series' engine."""
     return str(dataset.engine.values[dataset.series.values == row][0]).partition(":")[0]
@@ -233,12 +201,15 @@ def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
     made = np.isfinite(dataset.engine_seconds.values)
     entries = []
     for row in sorted({int(k) for k in dataset.series.values[made]}):
+        row_is = (dataset.series.values == row) & made
+        values = dataset.value.values[row_is][np.argsort(dataset.engine_seconds.values[row_is])]
         vary = rows[row]["vary"] if row < len(rows) else "settings"
+        ends = " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1]) if np.isfinite(value)))
         own = rows[row]["settings"] if row < len(rows) else {}
         fixed = "".join(f", {name} {_plain(value)}" for name, value in own.items())
         entries.append(
             Line2D([], [], ls="", marker=_MARKERS[row % len(_MARKERS)], color=_colour(dataset, row),
-                   label=f"{_engine(dataset, row)}: {vary} varies{fixed}")
+                   label=f"{_engine(dataset, row)}: {vary} {ends}{fixed}")
         )  # fmt: skip
     plain: dict[str, Any] = {"ls": "", "marker": "o", "color": FAINT}
     entries += [

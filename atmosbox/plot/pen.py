@@ -1,0 +1,58 @@
+"""Text that is measured as it will be drawn, and broken into lines."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+
+__all__ = ["Pen"]
+
+_FIXED = "\u00a0"  # a space that no line breaks at
+
+
+@dataclass
+class Pen:
+    r"""Measures text, and breaks it into lines: matplotlib itself wraps at the edge of the figure alone.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure to write on, which has a canvas of Agg.
+
+    Examples
+    --------
+    >>> from matplotlib.backends.backend_agg import FigureCanvasAgg
+    >>> drawing = Figure()
+    >>> _ = FigureCanvasAgg(drawing)
+    >>> Pen(drawing).wrap("lapse rate = 9.8 ± 0.1 K km⁻¹ (of the parcel)", 90.0, 8.0).split("\n")
+    ['lapse rate', '= 9.8 ± 0.1 K km⁻¹ (of the parcel)']
+    """
+
+    figure: Figure
+
+    def width(self, text: str, size: float, weight: str = "normal") -> float:
+        """Return the width of a line of text [pt]."""
+        renderer = self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+        font = FontProperties(size=size, weight=weight)
+        width, _, _ = renderer.get_text_width_height_descent(text, font, ismath=False)
+        return float(width) * 72 / self.figure.dpi
+
+    def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
+        """Return text in lines of at most a width [pt]; neither a unit nor what follows "=" is torn apart."""
+        text = re.sub(r"\([^()]{1,24}\)|− |= .*", lambda part: part[0].replace(" ", _FIXED), text)
+        lines: list[str] = []
+        for word in text.split(" "):
+            longer = f"{lines[-1]} {word}" if lines else word
+            if lines and self.width(longer, size, weight) <= width:
+                lines[-1] = longer
+            else:
+                lines.append(word)
+        return "\n".join(lines).replace(_FIXED, " ")
+
+    def height(self, artist: Artist) -> float:
+        """Return the height of something drawn [pt]."""
+        return float(artist.get_window_extent().height) * 72 / self.figure.dpi
