@@ -3,7 +3,7 @@
 Three thousand molecules in a tall column with real gravity. Each falls freely between collisions, and yet
 the column neither falls down nor leaves: density and pressure decrease with height by the barometric law,
 by a factor e every 8.4 km, while the temperature is the same everywhere. The floor feels the blows of the
-molecules, and floor less ceiling is the weight of the air.
+molecules, and floor minus ceiling is the weight of the air.
 
 Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
 smooth, a smooth ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each
@@ -239,7 +239,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             "none: the model has no other error than chance",
             "Pa",
             "hPa",
-            "weight of the air, floor less ceiling",
+            "weight of the air, floor minus ceiling",
         ),
         Headline(
             "mean_temperature",
@@ -291,12 +291,12 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     light = Line("layer_pressure_barometric", "height", barometric, "reference")
     stirred = Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment")
     return (
-        against_height("The air thins", "number_density", smooth, thin, "number density", "", "log", "mean_height"),
+        against_height("Density falls with height", "number_density", smooth, thin, "number density", "", "log", "mean_height"),
         against_height(
-            "Its weight is the pressure", "layer_pressure", smooth, light, "pressure", "hPa", "log", "weight_of_the_air"
+            "Pressure falls with height", "layer_pressure", smooth, light, "pressure", "hPa", "log", "weight_of_the_air"
         ),
         against_height(
-            "Left alone, it is isothermal", "layer_temperature", "isothermal", stirred, "temperature", "K", "linear",
+            "At rest it is isothermal", "layer_temperature", "isothermal", stirred, "temperature", "K", "linear",
             "mean_temperature",
         ),
     )  # fmt: skip

@@ -236,7 +236,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     grown = history("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", parts=0)
     return (
         history(
-            "Vapour is used up until it just saturates",
+            "Vapour condenses until saturation",
             {"water_vapor_partial_pressure": "vapour"},
             "vapour pressure",
             "hPa",
@@ -245,7 +245,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             theory="saturation",
         ),
         history(
-            "It ends where two rates meet",
+            "In equilibrium both rates are equal",
             {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
             "molecules per time",
             "ns-1",
@@ -254,7 +254,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             theory="theory",
         ),
         history(
-            "Where the water is",
+            "Water: vapour and droplets",
             {"vapor_molecule_count": "vapour", "liquid_molecule_count": "droplets"},
             "molecules",
             parts=PARTS,

@@ -154,7 +154,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the table, the energies, and what was kept."""
     unlike = settings.mass_ratio > 1.0
     return (
-        Panel("discs", "The table at the end", x_unit="m"),
+        Panel("discs", "The discs at the end", x_unit="m"),
         Panel(
             "line",
             "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
@@ -170,7 +170,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "line",
-            "Energy and momentum are kept",
+            "Energy and momentum are conserved",
             (
                 Line("elapsed_time", "energy_change", "energy"),
                 Line("elapsed_time", "momentum_residual", "momentum, with walls"),

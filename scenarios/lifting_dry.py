@@ -66,7 +66,7 @@ class Settings(SceneSettings):
     )
     pressure: float = setting(1000.0, "hPa", "pressure at the ground", low=200.0, high=1100.0)
     top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=50.0, high=1000.0)
-    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
+    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rotation: bool = setting(True, "", "whether molecules rotate; without it gamma is 5/3")
     ascent: float = setting(1600.0, "1", "length of the ascent in mean free times at its start", low=5.0, high=1e6)
     diameter: float = setting(1.0, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
@@ -237,7 +237,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             (
                 Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
-                Line("environment_temperature", "environment_pressure", "air around", "environment"),
+                Line("environment_temperature", "environment_pressure", "environment", "environment"),
                 *others,
             ),
             x_label="temperature",
@@ -249,11 +249,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "profile",
-            f"{1000.0 * float(law.dry_lapse_rate(dof=5 if settings.rotation else 3)):.1f} K per kilometre",
+            "Temperature falls with height",
             (
                 Line(parcel, "parcel_height", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_height", adiabat, "theory"),
-                Line("environment_temperature", "parcel_height", "air around", "environment"),
+                Line("environment_temperature", "parcel_height", "environment", "environment"),
             ),
             x_label="temperature",
             y_label="height",

@@ -56,7 +56,7 @@ class Settings(SceneSettings):
     dewpoint: float = setting(17.0, "degC", "dewpoint of the parcel at the ground", low=-100.0, high=45.0)
     pressure: float = setting(1000.0, "hPa", "pressure at the ground", low=300.0, high=1100.0)
     top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=100.0, high=1000.0)
-    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
+    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(400.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)

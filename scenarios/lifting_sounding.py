@@ -241,8 +241,8 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             (
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
-                Line("environment_temperature", "environment_pressure", "air around", "environment"),
-                Line("environment_dew_point_temperature", "environment_pressure", "its dewpoint", "environment"),
+                Line("environment_temperature", "environment_pressure", "environment", "environment"),
+                Line("environment_dew_point_temperature", "environment_pressure", "dewpoint of the environment", "environment"),
             ),
             x_label="temperature",
             y_label="pressure",

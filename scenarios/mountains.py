@@ -43,7 +43,7 @@ class Settings(SceneSettings):
     first: float = setting(2.0, "km", "height of the first mountain", low=0.0, high=6.0)
     valley: float = setting(1.0, "km", "height of the valley between", low=0.0, high=6.0)
     second: float = setting(3.0, "km", "height of the second mountain", low=0.1, high=6.0)
-    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the air around", low=-5.0, high=20.0)
+    lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     travel: float = setting(500.0, "1", "length of the way in mean free times at its start", low=20.0, high=1e6)
@@ -165,7 +165,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the way, the temperature along it, and the water."""
     rain = (
-        Line("elapsed_time", "rain_mixing_ratio", "rain so far"),
+        Line("elapsed_time", "rain_mixing_ratio", "accumulated rain"),
         Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
     )
     return (
@@ -179,11 +179,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "profile",
-            "Cloudy up, clear down" if settings.rain else "As warm down as up",
+            "Saturated up, dry down" if settings.rain else "The same way up and down",
             (
                 Line("parcel_temperature", "parcel_height", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_height", "theory", "theory"),
-                Line("environment_temperature", "parcel_height", "air around", "environment"),
+                Line("environment_temperature", "parcel_height", "environment", "environment"),
             ),
             x_label="temperature",
             y_label="height",
@@ -193,7 +193,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "line",
-            "Where the water is",
+            "Vapour, cloud and rain",
             (
                 Line("elapsed_time", "humidity_mixing_ratio", "vapour"),
                 Line("elapsed_time", "cloud_liquid_water_mixing_ratio", "cloud"),
@@ -201,7 +201,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 *(rain if settings.rain else ()),
             ),
             x_label="time",
-            y_label="water per dry air",
+            y_label="mixing ratio",
             y_unit="g kg-1",
             headlines=("rain",) if settings.rain else (),
         ),

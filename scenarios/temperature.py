@@ -245,7 +245,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             (
                 Line("elapsed_time", "air_temperature", "molecules"),
                 Line(
-                    "elapsed_time", "air_temperature_theory", "walls ± noise", "theory", error="air_temperature_noise"
+                    "elapsed_time", "air_temperature_theory", "walls ± expected scatter", "theory", error="air_temperature_noise"
                 ),
             ),
             x_label="time",
@@ -256,7 +256,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "line",
-            "Their blows are the pressure",
+            "Their impacts are the pressure",
             (
                 Line("elapsed_time", "air_pressure", "six walls"),
                 Line("elapsed_time", "air_pressure_theory", "n k T Z", "theory"),
@@ -269,13 +269,13 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "histogram",
-            "The speeds are Maxwell's",
+            "Speeds follow Maxwell's law",
             (
                 Line("speed", "speed_probability_density", "molecules", error="speed_probability_density_se"),
                 Line("speed", "speed_probability_density_theory", "Maxwell", "theory"),
             ),
             x_label="speed",
-            y_label="share per speed",
+            y_label="probability density",
             headlines=("mean_speed",),
         ),
     )

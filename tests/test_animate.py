@@ -128,7 +128,7 @@ def test_curves_end_at_the_clock_and_theory_stands_from_the_start(runs):
         sheet.picture(4)
         axes = sheet.graphs[0].axes
         shown = [line for line in axes.lines if len(line.get_xdata()) > 2]  # not the cursor
-    assert whole > 1  # the adiabat, and the air around
+    assert whole > 1  # the adiabat, and the environment
     finite = [int(np.isfinite(np.asarray(line.get_ydata(), float)).sum()) for line in shown]
     assert sorted(set(finite)) == [5, dataset.sizes["elapsed_time"]]
 
@@ -151,9 +151,9 @@ def test_panels_of_two_kinds_are_filmed_and_no_misfits(runs):
         dataset = runs[scene][0]
         return [panel.title for panel in chosen(dataset, panels_of(dataset), Running(dataset))]
 
-    assert titles("temperature") == ["Cold molecules between warm walls", "The speeds are Maxwell's"]
-    assert titles("lifting-dry") == ["A rising parcel cools", "9.8 K per kilometre"]
-    assert titles("elastic-collisions") == ["Light and heavy: the same energy", "Energy and momentum are kept"]
+    assert titles("temperature") == ["Cold molecules between warm walls", "Speeds follow Maxwell's law"]
+    assert titles("lifting-dry") == ["A rising parcel cools", "Temperature falls with height"]
+    assert titles("elastic-collisions") == ["Light and heavy: the same energy", "Energy and momentum are conserved"]
 
 
 def test_a_run_of_one_frame_is_a_film_of_one_picture(runs, tmp_path):

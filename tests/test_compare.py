@@ -170,7 +170,7 @@ def test_theory_is_drawn_once_if_it_is_the_same_and_else_for_each(files):
         return sum(line.get_linestyle() == "--" for line in axes.lines if len(line.get_xdata()) > 1)
 
     once, each = adiabats("mild", "again"), adiabats("mild", "cold")
-    assert each == once + 2  # the adiabat, and the air around
+    assert each == once + 2  # the adiabat, and the environment
 
 
 def test_one_law_at_other_places_is_the_same_law():

@@ -1,4 +1,4 @@
-"""The energy of a parcel on the skew-T: areas between it and the air around, CAPE and CIN."""
+"""The energy of a parcel on the skew-T: areas between it and its environment, CAPE and CIN."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def shade_energy(
     skewed : metpy.plots.SkewT
         The diagram.
     panel : Panel
-        What it shows; its data are the parcel, its environment the air around.
+        What it shows; its data are the parcel, its environment the other curve.
     dataset : xarray.Dataset
         The run.
     marks : mapping

@@ -63,7 +63,7 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
     low, high = sorted(map(float, axis.get_view_interval()))
     across = isinstance(axis, XAxis)
     if log:
-        plain = low >= 1e-3 and high < 1e5
+        plain = low >= 5e-4 and high < 1e5
         power = 0 if plain or high >= _MANY * low else math.floor(math.log10(low))
         locator = _log_locator(low, high, (_ACROSS if across else _UPRIGHT) * size / length, pressure=pressure)
         axis.set_minor_locator(LogLocator(subs=range(1, 10)))

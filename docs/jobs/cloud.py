@@ -266,7 +266,7 @@ def draw_mountains(found: Findings, runs: dict[bool, Any]) -> None:
             tall.plot(running_mean(t, 3), ground, color=colour, marker=marker, markevery=6, markersize=5, label=label)
             warm.plot(way, own, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5)
             tall.plot(own, ground, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5, label="theory")
-        tall.plot(wet.environment_temperature - 273.15, ground, "-.", color=ENVIRONMENT_COLOURS[0], label="air around")
+        tall.plot(wet.environment_temperature - 273.15, ground, "-.", color=ENVIRONMENT_COLOURS[0], label="environment")
         warm.set(xlabel="share of the way (%)", ylabel="temperature (°C)", title="It arrives warmer than it left")
         tall.set(xlabel="temperature (°C)", ylabel="height (km)", title="5 K per kilometre up, 10 K down")
         warm.legend(loc="lower left")

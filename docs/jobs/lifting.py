@@ -146,7 +146,7 @@ def draw_finite_speed(
             yscale="log",
             title="A fast ascent ends too warm",
             xlabel="length n of the ascent in mean free times",
-            ylabel="parcel less adiabat at 300 hPa (K)",
+            ylabel="parcel minus adiabat at 300 hPa (K)",
         )
         axes.set_xticks(ascents, [f"{n:.0f}" for n in ascents], minor=False)
         axes.set_xticks([], minor=True)

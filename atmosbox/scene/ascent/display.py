@@ -25,7 +25,7 @@ BLOCK = 5
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
-    """Return temperature against pressure with its kink, the water on the way, and parcel less adiabat.
+    """Return temperature against pressure with its kink, vapour and liquid, and parcel minus adiabat.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", adiabat, "theory"),
                 Line("dry_air_adiabat_temperature", "parcel_pressure", "without condensation", "reference"),
-                Line("environment_temperature", "environment_pressure", "air around", "environment"),
+                Line("environment_temperature", "environment_pressure", "environment", "environment"),
                 *base,
             ),
             x_label="temperature",
@@ -57,14 +57,14 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
         ),
         Panel(
             "profile",
-            "The water on the way",
+            "Vapour becomes liquid",
             (
                 Line("cloud_liquid_water_mixing_ratio", "parcel_pressure", "liquid"),
                 Line("cloud_liquid_water_mixing_ratio_theory", "parcel_pressure", "liquid, theory", "theory"),
                 Line("humidity_mixing_ratio", "parcel_pressure", "vapour"),
                 Line("humidity_mixing_ratio_theory", "parcel_pressure", "vapour, theory", "theory"),
             ),
-            x_label="water per dry air",
+            x_label="mixing ratio",
             x_unit="g kg-1",
             y_label="pressure",
             y_unit="hPa",
@@ -76,7 +76,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
 
 
 def misfit_panel(adiabat: str, headlines: tuple[str, ...] = ()) -> Panel:
-    """Return temperature less that of the adiabat, with the error bar, against pressure.
+    """Return temperature minus that of the adiabat, with its error, against pressure.
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ def misfit_panel(adiabat: str, headlines: tuple[str, ...] = ()) -> Panel:
     parcel, theory = "parcel_temperature", "adiabat_temperature"
     return Panel(
         "profile",
-        "Parcel less adiabat",
+        "Parcel minus adiabat",
         (
             Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus=theory),
             Line(theory, "parcel_pressure", adiabat, "theory", minus=theory),
         ),
-        x_label="misfit",
+        x_label="temperature difference",
         x_unit="K",
         y_label="pressure",
         y_unit="hPa",

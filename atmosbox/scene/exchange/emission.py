@@ -59,6 +59,6 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
             "a pool of few molecules is warmer when it lets one go",
             "J",
             "zJ",
-            "energy of those that leave",
+            "energy of leaving molecules",
         ),
     )
