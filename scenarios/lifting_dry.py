@@ -249,7 +249,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "profile",
-            "Temperature falls with height",
+            "Cooling with height",
             (
                 Line(parcel, "parcel_height", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_height", adiabat, "theory"),

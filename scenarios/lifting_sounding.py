@@ -242,7 +242,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
                 Line("parcel_temperature", "parcel_pressure", "parcel", error="parcel_temperature_se"),
                 Line("adiabat_temperature", "parcel_pressure", "adiabat", "theory"),
                 Line("environment_temperature", "environment_pressure", "environment", "environment"),
-                Line("environment_dew_point_temperature", "environment_pressure", "dewpoint of the environment", "environment"),
+                Line("environment_dew_point_temperature", "environment_pressure", "dewpoint", "environment"),
             ),
             x_label="temperature",
             y_label="pressure",

@@ -165,7 +165,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the way, the temperature along it, and the water."""
     rain = (
-        Line("elapsed_time", "rain_mixing_ratio", "accumulated rain"),
+        Line("elapsed_time", "rain_mixing_ratio", "rain"),
         Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
     )
     return (

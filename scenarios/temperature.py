@@ -245,7 +245,11 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             (
                 Line("elapsed_time", "air_temperature", "molecules"),
                 Line(
-                    "elapsed_time", "air_temperature_theory", "walls ± expected scatter", "theory", error="air_temperature_noise"
+                    "elapsed_time",
+                    "air_temperature_theory",
+                    "walls ± expected scatter",
+                    "theory",
+                    error="air_temperature_noise",
                 ),
             ),
             x_label="time",

@@ -30,7 +30,7 @@ from atmosbox.scene.panels import Panel
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Draw", "Plate", "blank", "page", "put_panels", "settle"]
+__all__ = ["Draw", "Plate", "blank", "frame", "page", "put_panels", "settle"]
 
 _TALL = ("profile", "discs", "skewt")
 _WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0}
@@ -95,16 +95,8 @@ def page(
     with style(look):
         drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
         plates = put_panels(drawing, panels, look, dataset, draw, sentences) if panels else []
-        pen, width = Pen(drawing), 72 * drawing.get_figwidth()
-        left = look.text / 2 / width
-        # Type that is hinted for a screen may be narrower than in print.
-        small = pen.wrap(small, 0.98 * (width - look.text), look.small)
-        drawing.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
-        if heading:
-            size = 1.3 * look.title
-            heading = pen.wrap(heading, width - look.text, size, "bold")
-            drawing.suptitle(heading, x=left, ha="left", fontsize=size, weight="bold")
-        settle(drawing, plates, look)
+        frame(Pen(drawing), small, heading, look)
+        settle(Pen(drawing), plates, look)
     return drawing
 
 
@@ -192,13 +184,44 @@ def put_panels(
     return plates
 
 
-def settle(drawing: Figure, plates: list[Plate], look: Theme) -> None:
+def frame(pen: Pen, small: str, heading: str, look: Theme) -> None:
+    """Write what stands over and under all panels.
+
+    Parameters
+    ----------
+    pen : Pen
+        The pen of the page.
+    small, heading : str
+        What is written under and over the panels; an empty heading takes no room.
+    look : Theme
+        How large.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
+    >>> frame(Pen(drawing), "atmosbox", "", THEMES["notes"])
+    >>> [text.get_text() for text in drawing.texts]
+    ['atmosbox']
+    """
+    width = 72 * pen.figure.get_figwidth()
+    left = look.text / 2 / width
+    # Type that is hinted for a screen may be narrower than in print.
+    small = pen.wrap(small, 0.98 * (width - look.text), look.small)
+    pen.figure.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
+    if heading:
+        size = 1.3 * look.title
+        heading = pen.wrap(heading, width - look.text, size, "bold")
+        pen.figure.suptitle(heading, x=left, ha="left", fontsize=size, weight="bold")
+
+
+def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
     """Write titles, numbers, legends and labels around the panels, in lines that end where these end.
 
     Parameters
     ----------
-    drawing : matplotlib.figure.Figure
-        The page.
+    pen : Pen
+        The pen of the page.
     plates : list of Plate
         Its panels, from `put_panels`.
     look : Theme
@@ -208,33 +231,36 @@ def settle(drawing: Figure, plates: list[Plate], look: Theme) -> None:
     --------
     >>> from atmosbox.plot.theme import THEMES
     >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> settle(drawing, [], THEMES["notes"])
+    >>> settle(Pen(drawing), [], THEMES["notes"])
     >>> drawing.get_size_inches().tolist()
     [4.0, 3.0]
     """
-    pen, engine, height = Pen(drawing), drawing.get_layout_engine(), drawing.get_figheight()
+    drawing = pen.figure
+    engine, height = drawing.get_layout_engine(), drawing.get_figheight()
     assert engine is not None
+    columns: dict[tuple[int, int], int] = {}
     for _ in range(_ROUNDS):
+        engine.execute(drawing)
         for plate in plates:
             plate.axes.apply_aspect()
             _write_labels(pen, plate, look)
         # The texts of a column begin together, and the titles of a row stand equally high.
         ink = [plate.axes.yaxis.get_tightbbox().x0 for plate in plates]  # type: ignore[union-attr]
         edge = {p.column: min(x for x, o in zip(ink, plates, strict=True) if o.column == p.column) for p in plates}
-        heights = [_write_legend(pen, plate, edge[plate.column], look) for plate in plates]
+        heights = [_write_legend(pen, plate, edge[plate.column], look, columns) for plate in plates]
         tops = {p.row: max(h for h, o in zip(heights, plates, strict=True) if o.row == p.row) for p in plates}
         for plate in plates:
             _write_title(pen, plate, edge[plate.column], tops[plate.row], look)
         if look.grows:
             drawing.set_figheight(height + max(0.0, sum(tops.values()) - _TEXT_LINES * look.text) / 72)
-        engine.execute(drawing)
+    engine.execute(drawing)
 
 
 def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
     """Write ticks and labels for the room that the axes have."""
     axes, panel, size = plate.axes, plate.panel, look.text
-    frame, point = axes.get_window_extent(), pen.figure.dpi / 72
-    width, height = frame.width / point, frame.height / point
+    extent, point = axes.get_window_extent(), pen.figure.dpi / 72
+    width, height = extent.width / point, extent.height / point
     (x_label, x_unit), (y_label, y_unit) = plate.labels
     power = 0
     if panel.kind == "skewt":
@@ -252,24 +278,29 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
     axes.set_ylabel(pen.wrap(labelled(y_label, y_unit, power), height + 0.8 * size, size))
 
 
-def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
-    """Put the legend on the axes and break the numbers into lines, and return how much room both need [pt]."""
+def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dict[tuple[int, int], int]) -> float:
+    """Put the legend on the axes and break the numbers into lines, and return how much room both need [pt].
+
+    Legends of equally many entries in a row have equally many columns, which are kept by row and entries.
+    """
     axes, size = plate.axes, look.text
-    frame, point = axes.get_window_extent(), pen.figure.dpi / 72
-    room = (frame.x1 - edge) / point
+    extent, point = axes.get_window_extent(), pen.figure.dpi / 72
+    room = (extent.x1 - edge) / point
     height = _GAP * size
     if len(plate.entries) > 1 or any(line.role != "data" for line in plate.panel.lines):
-        place = offset_copy(axes.transAxes, pen.figure, (edge - frame.x0) / point, height, units="points")
+        place = offset_copy(axes.transAxes, pen.figure, (edge - extent.x0) / point, height, units="points")
         labels = [pen.wrap(label, room - (_HANDLE + _HANDLE_GAP) * size, size) for _, label in plate.entries]
-        for columns in range(len(labels), 0, -1):
+        alike = (plate.row, len(labels))
+        for number in range(columns.get(alike, len(labels)), 0, -1):
             legend = axes.legend(
                 [artists if len(artists) > 1 else artists[0] for artists, _ in plate.entries], labels,
-                loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=columns, borderpad=0.0,
+                loc="lower left", bbox_to_anchor=(0.0, 1.0), bbox_transform=place, ncols=number, borderpad=0.0,
                 borderaxespad=0.0, handlelength=_HANDLE, handletextpad=_HANDLE_GAP, columnspacing=1.1,
                 labelspacing=0.25,
             )  # fmt: skip
             if legend.get_window_extent().width <= room * point:
                 break
+        columns[alike] = number
         for line in legend.get_lines():
             line.set_linewidth(max(line.get_linewidth(), look.line))
         height += pen.height(legend) + _GAP * size
@@ -280,11 +311,11 @@ def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme) -> float:
 
 def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme) -> None:
     """Write the title at a height over the axes [pt], and under it the numbers."""
-    frame, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
-    title = pen.wrap(plate.panel.title, (frame.x1 - edge) / point, look.title, "bold")
-    left = (edge - frame.x0) / frame.width
+    extent, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
+    title = pen.wrap(plate.panel.title, (extent.x1 - edge) / point, look.title, "bold")
+    left = (edge - extent.x0) / extent.width
     plate.axes.set_title(title, loc="left", x=left, pad=height, fontsize=look.title, weight="bold")
-    plate.note.set_position(((edge - frame.x0) / point, height - _GAP * look.text))
+    plate.note.set_position(((edge - extent.x0) / point, height - _GAP * look.text))
 
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:

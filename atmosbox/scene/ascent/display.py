@@ -93,7 +93,7 @@ def misfit_panel(adiabat: str, headlines: tuple[str, ...] = ()) -> Panel:
             Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus=theory),
             Line(theory, "parcel_pressure", adiabat, "theory", minus=theory),
         ),
-        x_label="temperature difference",
+        x_label="difference",
         x_unit="K",
         y_label="pressure",
         y_unit="hPa",
