@@ -291,7 +291,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     light = Line("layer_pressure_barometric", "height", barometric, "reference")
     stirred = Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment")
     return (
-        against_height("Density falls with height", "number_density", smooth, thin, "number density", "", "log", "mean_height"),
+        against_height(
+            "Density falls with height", "number_density", smooth, thin, "number density", "", "log", "mean_height"
+        ),
         against_height(
             "Pressure falls with height", "layer_pressure", smooth, light, "pressure", "hPa", "log", "weight_of_the_air"
         ),
