@@ -87,10 +87,14 @@ def page(
     Examples
     --------
     >>> import xarray as xr
+    >>> from atmosbox.plot.layout import painter
     >>> from atmosbox.plot.theme import THEMES
-    >>> look = THEMES["notes"]
-    >>> [text.get_text() for text in page((), look, xr.Dataset(), None, [], "atmosbox", "").texts]
-    ['atmosbox']
+    >>> from atmosbox.scene.panels import Line
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
+    >>> drawing = page((panel,), look, dataset, painter(dataset, look), [[]], "atmosbox", "")
+    >>> [text.get_text() for text in drawing.texts], drawing.axes[0].get_title("left")
+    (['atmosbox'], 'Pressure')
     """
     with style(look):
         drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
@@ -229,11 +233,16 @@ def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
 
     Examples
     --------
+    >>> import xarray as xr
+    >>> from atmosbox.plot.layout import painter
     >>> from atmosbox.plot.theme import THEMES
-    >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> settle(Pen(drawing), [], THEMES["notes"])
-    >>> drawing.get_size_inches().tolist()
-    [4.0, 3.0]
+    >>> from atmosbox.scene.panels import Line
+    >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
+    >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),), y_label="height"), THEMES["notes"]
+    >>> drawing = blank((4.0, 3.0), look)
+    >>> settle(Pen(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look), [[]]), look)
+    >>> drawing.axes[0].get_ylabel()
+    'height'
     """
     drawing = pen.figure
     engine, height = drawing.get_layout_engine(), drawing.get_figheight()
