@@ -15,34 +15,6 @@ def _depth_in_scale_heights(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gr
     return as_floats(mass) * as_floats(gravity) * as_floats(depth) / as_floats(kT)
 
 
-def scale_height(kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
-    r"""Return the height over which an isothermal gas thins to 1/e, :math:`kT / mg`.
-
-    Parameters
-    ----------
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2], above zero.
-
-    Returns
-    -------
-    ndarray
-        Scale height [length].
-
-    Examples
-    --------
-    Air at 288.15 K, in metres:
-
-    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-    >>> round(float(scale_height(BOLTZMANN * 288.15, DRY_AIR.molecule_mass, 9.80665)))
-    8435
-    """
-    return as_floats(kT) / (as_floats(mass) * as_floats(gravity))
-
-
 def barometric_pressure(
     height: ArrayLike, surface_pressure: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike
 ) -> FloatArray:
@@ -105,33 +77,6 @@ def column_floor_ratio(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity
     return np.divide(a, -np.expm1(-a), out=np.ones_like(a), where=a != 0.0)
 
 
-def column_top_ratio(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
-    r"""Return the density at the ceiling of a column over that at its floor, :math:`e^{-a}`.
-
-    Parameters
-    ----------
-    depth
-        Depth H of the column [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2]; zero is allowed.
-
-    Returns
-    -------
-    ndarray
-        Density at the ceiling over density at the floor [1].
-
-    Examples
-    --------
-    >>> round(float(column_top_ratio(2.0, 1.0, 1.0, 1.0)), 4)
-    0.1353
-    """
-    return barometric_pressure(depth, 1.0, kT, mass, gravity)
-
-
 def column_mean_height(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
     r"""Return the mean height of the molecules of a closed column, :math:`H\, [1/a - 1/(e^a - 1)]`.
 
@@ -165,75 +110,6 @@ def column_mean_height(depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity
     closed = 1.0 / steep - np.exp(-steep) / -np.expm1(-steep)
     mean: FloatArray = as_floats(depth) * np.where(flat, series, closed)
     return mean
-
-
-def column_heat_capacity(
-    depth: ArrayLike, kT: ArrayLike, mass: ArrayLike, gravity: ArrayLike, dof: float = 3
-) -> FloatArray:
-    r"""Return the heat capacity per molecule of a closed column, in units of k.
-
-    Heat a column and its molecules also rise: :math:`C/Nk = f/2 + 1 - a^2 e^a / (e^a - 1)^2`, the derivative
-    of :math:`(f/2) kT + m g \langle z \rangle`. It goes from that of a box at constant volume, :math:`f/2`,
-    to that at constant pressure, :math:`f/2 + 1`.
-
-    Parameters
-    ----------
-    depth
-        Depth H of the column [length].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2]; zero is allowed.
-    dof
-        Degrees of freedom f of one molecule [1].
-
-    Returns
-    -------
-    ndarray
-        Heat capacity per molecule over k [1].
-
-    Examples
-    --------
-    >>> [round(float(c), 4) for c in column_heat_capacity([0.0, 2.0, 50.0], 1.0, 1.0, 1.0)]
-    [1.5, 1.7759, 2.5]
-    """
-    a = _depth_in_scale_heights(depth, kT, mass, gravity)
-    capacity: FloatArray = dof / 2.0 + 1.0 - column_floor_ratio(depth, kT, mass, gravity) ** 2 * np.exp(-a)
-    return capacity
-
-
-def column_weight(molecules_per_area: ArrayLike, mass: ArrayLike, gravity: ArrayLike) -> FloatArray:
-    r"""Return the weight of a column per area, :math:`N m g`.
-
-    The floor is pressed harder than the ceiling by just this: in every gas, dense or thin, in equilibrium or
-    in any steady state.
-
-    Parameters
-    ----------
-    molecules_per_area
-        Molecules above each unit of area [length^-2].
-    mass
-        Mass of a molecule [mass].
-    gravity
-        Acceleration of gravity [length time^-2].
-
-    Returns
-    -------
-    ndarray
-        Pressure on the floor less that on the ceiling [pressure].
-
-    Examples
-    --------
-    Above each square metre stand 2.15e29 molecules of air, ten tonnes:
-
-    >>> from atmosbox.theory.constants import DRY_AIR, STANDARD_GRAVITY
-    >>> weight = column_weight(2.15e29, DRY_AIR.molecule_mass, STANDARD_GRAVITY)
-    >>> print(f"{weight / 100.0:.0f} hPa")
-    1014 hPa
-    """
-    return as_floats(molecules_per_area) * as_floats(mass) * as_floats(gravity)
 
 
 def barometric_density(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.theory._water import checked_not_negative, checked_positive
+from atmosbox.theory._water import checked_positive
 from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
 
@@ -159,64 +159,3 @@ def cape_cin(
     end = None if top == levels.size - 1 and difference[top] > 0.0 else float(np.exp(levels[top]))
     cape, cin = float(np.sum(work[bottom:top])), min(0.0, float(np.sum(work[:bottom])))
     return Convection(cape, cin, float(np.exp(levels[bottom])), end)
-
-
-def cape_standard_error(
-    pressure: ArrayLike,
-    virtual_temperature: ArrayLike,
-    parcel_virtual_temperature: ArrayLike,
-    standard_error: ArrayLike,
-    correlation: float = 0.0,
-    lcl_pressure: float | None = None,
-) -> float:
-    r"""Return the standard error of CAPE that comes from those of a measured parcel.
-
-    To first order :math:`R_d \sqrt{\sum_{ij} w_i w_j \rho_{ij} \sigma_i \sigma_j}`, where :math:`w_i` is the part
-    of :math:`\ln p` between LFC and EL that level i stands for. Moved crossings add nothing, for there the
-    difference is zero.
-
-    Parameters
-    ----------
-    pressure, virtual_temperature, parcel_virtual_temperature, lcl_pressure
-        As in :func:`cape_cin`.
-    standard_error : (level,)
-        Standard error of the parcel's virtual temperature [K]: that of its temperature times :math:`T_v / T`.
-    correlation
-        Correlation :math:`\rho` between the errors of any two levels [1]: 0 if they are independent, 1 if all are
-        shifted together.
-
-    Returns
-    -------
-    float
-        Standard error of CAPE [J kg^-1]; 0.0 without an LFC.
-
-    Raises
-    ------
-    ValueError
-        If the sounding is not one that :func:`cape_cin` takes, an error is negative, or the correlation lies
-        outside 0 to 1.
-
-    Examples
-    --------
-    A tenth of a kelvin at each of three levels:
-
-    >>> sounding = [900e2, 500e2, 300e2], [290.0, 260.0, 240.0], [289.0, 263.0, 239.0]
-    >>> [round(cape_standard_error(*sounding, [0.1, 0.1, 0.1], rho), 1) for rho in (0.0, 1.0)]
-    [16.1, 23.7]
-    """
-    x, warmer, base = _sounding(pressure, virtual_temperature, parcel_virtual_temperature, lcl_pressure)
-    error = checked_not_negative(as_floats(standard_error), "standard_error")
-    if error.shape != x.shape:
-        raise ValueError("standard_error must have as many levels as pressure.")
-    if not 0.0 <= correlation <= 1.0:
-        raise ValueError(f"correlation = {correlation} must lie between 0 and 1.")
-    free = _free_layer(x, warmer, base)
-    if free is None:
-        return 0.0
-    levels, _, bottom, top = free
-    high, low = np.clip(x[:-1], levels[top], levels[bottom]), np.clip(x[1:], levels[top], levels[bottom])
-    upper = (high - low) * (x[:-1] - 0.5 * (high + low)) / (x[:-1] - x[1:])
-    weight = np.append(high - low - upper, 0.0) + np.append(0.0, upper)
-    shift = weight * error
-    variance = (1.0 - correlation) * np.sum(shift**2) + correlation * np.sum(shift) ** 2
-    return float(DRY_AIR_GAS_CONSTANT * np.sqrt(variance))

@@ -214,3 +214,52 @@ def gas_pressure_discs(
     density = as_floats(number_density)
     packing = packing_fraction_discs(density, diameter)
     return density * as_floats(kT) * compressibility_factor_discs(packing, form)
+
+
+def collision_rate_discs(
+    number_density: ArrayLike,
+    diameter: ArrayLike,
+    kT: ArrayLike,
+    mass: ArrayLike,
+    form: DiscForm = "henderson",
+) -> FloatArray:
+    r"""Return how often one disc is hit, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}`.
+
+    Parameters
+    ----------
+    number_density
+        Molecules per area [length^-2].
+    diameter
+        Diameter of a disc [length].
+    kT
+        Temperature as an energy [energy].
+    mass
+        Mass of a disc [mass].
+    form
+        Equation of state that gives the contact value, as in :func:`compressibility_factor_discs`.
+
+    Returns
+    -------
+    ndarray
+        Collisions per disc and time [time^-1]; N discs have half of N times this many.
+
+    Raises
+    ------
+    ValueError
+        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+
+    References
+    ----------
+    .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
+
+    Examples
+    --------
+    A thin gas of discs: the rate is that of points times the width of the strip a disc sweeps.
+
+    >>> round(float(collision_rate_discs(1e-6, 1.0, 1.0, 1.0) * 1e6), 4)
+    3.5449
+    """
+    contact = contact_value_discs(packing_fraction_discs(number_density, diameter), form)
+    sweep = 2.0 * as_floats(number_density) * as_floats(diameter)
+    rate: FloatArray = sweep * contact * np.sqrt(np.pi * as_floats(kT) / as_floats(mass))
+    return rate

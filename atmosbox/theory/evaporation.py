@@ -19,7 +19,6 @@ from atmosbox.theory._water import (
     checked_positive,
     checked_temperature,
 )
-from atmosbox.theory.constants import BOLTZMANN
 
 
 class EvaporationEquilibrium(NamedTuple):
@@ -189,48 +188,3 @@ def wet_bulb_temperature(pressure: ArrayLike, temperature: ArrayLike, dewpoint: 
 
     boiling = _water.dewpoint_of(p * (1.0 - 1e-9))
     return _water.root(excess, np.maximum(td, min(1.0, float(np.min(t)))), np.minimum(t, boiling))
-
-
-def condensation_equilibrium(
-    temperature: ArrayLike, volume: ArrayLike, water: ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    r"""Return how much of the water in a closed box at fixed temperature is vapour, and how much is liquid.
-
-    As much is vapour as saturates the box, :math:`N_v = e_s(T) V / kT`, or all of it. The air plays no part.
-
-    Parameters
-    ----------
-    temperature
-        Temperature of the walls, which are heat baths [K].
-    volume
-        Volume that is left to the gas V [m^3].
-    water
-        Molecules of water, vapour and liquid [1].
-
-    Returns
-    -------
-    vapor, liquid : ndarray
-        Molecules of vapour and of liquid [1].
-
-    Raises
-    ------
-    ValueError
-        If a temperature is not above 0 K or above 647.096 K, or a volume or a number is negative.
-
-    Notes
-    -----
-    This is where a large box ends; :func:`atmosbox.theory.isothermal_vapor_number` says how a small one scatters.
-
-    Examples
-    --------
-    Two thousand molecules of water in a cube of 150 nm, at 20 and at 0 degC:
-
-    >>> vapor, liquid = condensation_equilibrium([293.15, 273.15], (150e-9) ** 3, 2000)
-    >>> vapor.round(), liquid.round()
-    (array([1947.,  547.]), array([  53., 1453.]))
-    """
-    t = checked_positive(checked_temperature(as_floats(temperature)), "temperature")
-    room = checked_not_negative(as_floats(volume), "volume")
-    total = checked_not_negative(as_floats(water), "water")
-    vapor = np.minimum(_water.saturation(t) * room / (BOLTZMANN * t), total)
-    return vapor, total - vapor

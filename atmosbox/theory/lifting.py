@@ -5,7 +5,6 @@ A molecule with f degrees of freedom has the heat capacity :math:`(f/2) k` at co
 that do not rotate have 3, and cool faster.
 """
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
@@ -34,42 +33,6 @@ def adiabatic_index(dof: ArrayLike = 5) -> FloatArray:
     [2.0, 1.6667, 1.4]
     """
     return 1.0 + 2.0 / as_floats(dof)
-
-
-def adiabatic_temperature(volume: ArrayLike, temperature0: ArrayLike, volume0: ArrayLike, dof: float = 5) -> FloatArray:
-    r"""Return the temperature of an ideal gas whose volume is changed slowly and without heat.
-
-    :math:`T V^{\gamma - 1}` stays.
-
-    Parameters
-    ----------
-    volume, volume0
-        Volume now and at the start [length^3].
-    temperature0
-        Temperature at the start, in K or as an energy.
-    dof
-        Degrees of freedom f of one molecule [1].
-
-    Returns
-    -------
-    ndarray
-        Temperature, in the unit of the one at the start.
-
-    References
-    ----------
-    .. [1] Bellan, P. M. (2004), A microscopic, mechanical derivation for the adiabatic gas relation,
-       arXiv:physics/0310015: the same from molecules that bounce off a moving wall.
-
-    Examples
-    --------
-    Spheres in an eighth of the room are four times as hot:
-
-    >>> round(float(adiabatic_temperature(1.0, 300.0, 8.0, dof=3)), 6)
-    1200.0
-    """
-    ratio = as_floats(volume0) / as_floats(volume)
-    temperature: FloatArray = as_floats(temperature0) * ratio ** (2.0 / dof)
-    return temperature
 
 
 def dry_adiabat_temperature(
@@ -133,77 +96,3 @@ def dry_lapse_rate(
     9.76
     """
     return as_floats(gravity) / ((dof / 2.0 + 1.0) * as_floats(specific_gas_constant))
-
-
-def isothermal_work(molecules: ArrayLike, kT: ArrayLike, volume0: ArrayLike, volume: ArrayLike) -> FloatArray:
-    r"""Return the work that an ideal gas does while it expands slowly at constant temperature.
-
-    :math:`N k T \ln(V/V_0)`. All of it comes as heat through the walls.
-
-    Parameters
-    ----------
-    molecules
-        Number of molecules N [1].
-    kT
-        Temperature as an energy [energy].
-    volume0, volume
-        Volume at the start and at the end [length^3].
-
-    Returns
-    -------
-    ndarray
-        Work done by the gas, negative if it is compressed [energy].
-
-    Examples
-    --------
-    >>> round(float(isothermal_work(1000, 1.0, 1.0, 2.0)), 2)
-    693.15
-    """
-    work: FloatArray = as_floats(molecules) * as_floats(kT) * np.log(as_floats(volume) / as_floats(volume0))
-    return work
-
-
-def piston_pressure_ratio(piston_speed: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
-    r"""Return how much less a gas presses on a piston that recedes than on one at rest.
-
-    Fewer molecules reach it, and they hit it less hard. With :math:`s = u / \sqrt{2kT/m}` and the molecules
-    that arrive still distributed as Maxwell says,
-
-    .. math:: P/P_0 = (1 + 2 s^2)\, \mathrm{erfc}\, s - (2/\sqrt{\pi})\, s\, e^{-s^2}
-              = 1 - (4/\sqrt{\pi})\, s + O(s^2) .
-
-    So a gas that expands at a finite speed does less work than one that expands slowly, and one that is
-    compressed takes more.
-
-    Parameters
-    ----------
-    piston_speed
-        Speed u of the piston away from the gas, negative if it comes nearer [length time^-1].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-
-    Returns
-    -------
-    ndarray
-        Pressure on the moving piston over that on a piston at rest [1].
-
-    Notes
-    -----
-    The integral of :math:`2 m n (v - u)^2` over the velocities v > u of molecules that catch up with the
-    piston.
-
-    Examples
-    --------
-    One per cent is lost at 0.44 % of the most probable speed, for air at 288.15 K about 1.8 m/s:
-
-    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-    >>> round(float(piston_pressure_ratio(1.8, BOLTZMANN * 288.15, DRY_AIR.molecule_mass)), 3)
-    0.99
-    """
-    from scipy import special  # loads slowly
-
-    s = as_floats(piston_speed) / np.sqrt(2.0 * as_floats(kT) / as_floats(mass))
-    ratio: FloatArray = (1.0 + 2.0 * s**2) * special.erfc(s) - 2.0 / np.sqrt(np.pi) * s * np.exp(-(s**2))
-    return ratio

@@ -1,4 +1,4 @@
-r"""How fast molecules leave a liquid, large or small.
+r"""How fast, and with which energy, molecules leave a liquid, large or small.
 
 A liquid of n molecules with the heat capacity :math:`C = n c_l + C_n`, in k, and the thermal energy U has the
 density of states :math:`U^{C-1} / \Gamma(C)`. With the states of a gas this fixes the rate at which molecules leave
@@ -21,11 +21,13 @@ from atmosbox.theory._water import (
     TRIPLE_TEMPERATURE,
     VAPOR_HEAT,
     checked_not_negative,
+    checked_positive,
     checked_temperature,
 )
 from atmosbox.theory.constants import BOLTZMANN, WATER
 
-_LEAVING = VAPOR_HEAT - 0.5  # exponents of the energy taken along: 2 across a surface, 3/2 of rotation
+LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
+"""Energy that a molecule carries across the surface, in kT: 2 by flight, for the fast come oftener, 3/2 by rotation."""
 
 
 def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:
@@ -125,9 +127,90 @@ def microcanonical_flux(
     u = np.where(leaves, energy, 2.0 * BINDING)
     before = LIQUID_HEAT * np.maximum(number, 1.0) + nuclei
     after = before - LIQUID_HEAT
-    weight = (after + _LEAVING - 1.0) * np.log(u - BINDING) - special.gammaln(after + _LEAVING)
+    weight = (after + LEAVING_FREEDOM - 1.0) * np.log(u - BINDING) - special.gammaln(after + LEAVING_FREEDOM)
     weight = weight - (before - 1.0) * np.log(u) + special.gammaln(before)
     t = TRIPLE_TEMPERATURE
     prefactor = float(hertz_knudsen_flux(t)) * np.exp(BINDING / t)
-    flux: FloatArray = np.where(leaves, share * prefactor * np.exp(weight - (_LEAVING - LIQUID_HEAT) * np.log(t)), 0.0)
+    flux: FloatArray = np.where(
+        leaves, share * prefactor * np.exp(weight - (LEAVING_FREEDOM - LIQUID_HEAT) * np.log(t)), 0.0
+    )
     return flux
+
+
+def _mean_density(edges: ArrayLike, temperature: float, shape: float, least: float) -> FloatArray:
+    from scipy import special  # loads slowly
+
+    bounds = np.maximum(as_floats(edges) / BOLTZMANN - least, 0.0)
+    warm = checked_positive(as_floats(temperature), "temperature")
+    density: FloatArray = np.diff(special.gammainc(shape, bounds / warm)) / np.diff(as_floats(edges))
+    return density
+
+
+def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
+    r"""Return which share of the molecules that leave a liquid has how much energy, per unit of energy.
+
+    The binding energy :math:`\varphi` and a gamma variate, :math:`\varphi + kT\, \Gamma(2 + 3/2)`.
+
+    Parameters
+    ----------
+    edges : (bin + 1,)
+        Bounds of the bins over which the density is averaged [J].
+    temperature
+        Temperature of the liquid [K].
+
+    Returns
+    -------
+    (bin,) ndarray
+        Density [J^-1].
+
+    Raises
+    ------
+    ValueError
+        If the temperature is not positive.
+
+    References
+    ----------
+    .. [1] Weisskopf, V. (1937), doi:10.1103/PhysRev.52.295.
+
+    Examples
+    --------
+    At 20 degC none leaves with less than 94 zJ:
+
+    >>> edges = np.array([0.0, 94e-21, 200e-21])
+    >>> (leaving_energy_density(edges, 293.15) * np.diff(edges)).round(3)
+    array([0., 1.])
+    """
+    return _mean_density(edges, temperature, LEAVING_FREEDOM, BINDING)
+
+
+def staying_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
+    r"""Return which share of the molecules in a liquid has how much thermal energy, per unit of energy.
+
+    A gamma variate of the heat capacity, :math:`kT\, \Gamma(c_l / k)`.
+
+    Parameters
+    ----------
+    edges : (bin + 1,)
+        Bounds of the bins over which the density is averaged [J].
+    temperature
+        Temperature of the liquid [K].
+
+    Returns
+    -------
+    (bin,) ndarray
+        Density [J^-1].
+
+    Raises
+    ------
+    ValueError
+        If the temperature is not positive.
+
+    Examples
+    --------
+    At 20 degC one in three thousand has as much as it takes to leave:
+
+    >>> edges = np.array([0.0, 94e-21, 1000e-21])
+    >>> round(1.0 / float(staying_energy_density(edges, 293.15)[1] * np.diff(edges)[1]), -3)
+    3000.0
+    """
+    return _mean_density(edges, temperature, LIQUID_HEAT, 0.0)

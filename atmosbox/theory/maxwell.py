@@ -1,4 +1,4 @@
-r"""How fast molecules are: Maxwell's distribution, and what a small closed box does to it.
+r"""How fast molecules are: Maxwell's distribution, and how much the temperature of few of them scatters.
 
 References
 ----------
@@ -9,43 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats, require_dimensions
-
-
-def most_probable_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
-    r"""Return the speed at the peak of Maxwell's distribution.
-
-    :math:`\sqrt{2kT/m}`, or :math:`\sqrt{kT/m}` in a plane.
-
-    Parameters
-    ----------
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    dimensions
-        3, or 2 for molecules in a plane.
-
-    Returns
-    -------
-    ndarray
-        Most probable speed [length time^-1].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
-
-    Examples
-    --------
-    Air at 288.15 K, in metres per second:
-
-    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-    >>> round(float(most_probable_speed(BOLTZMANN * 288.15, DRY_AIR.molecule_mass)))
-    407
-    """
-    require_dimensions(dimensions)
-    speed: FloatArray = np.sqrt((dimensions - 1) * as_floats(kT) / as_floats(mass))
-    return speed
 
 
 def mean_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
@@ -83,41 +46,6 @@ def mean_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArra
     require_dimensions(dimensions)
     factor = 8.0 / np.pi if dimensions == 3 else np.pi / 2.0
     speed: FloatArray = np.sqrt(factor * as_floats(kT) / as_floats(mass))
-    return speed
-
-
-def root_mean_square_speed(kT: ArrayLike, mass: ArrayLike, dimensions: int = 3) -> FloatArray:
-    r"""Return the speed that carries the mean energy, :math:`\sqrt{d\, kT/m}` in d dimensions.
-
-    Parameters
-    ----------
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-    dimensions
-        3, or 2 for molecules in a plane.
-
-    Returns
-    -------
-    ndarray
-        Root-mean-square speed [length time^-1].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
-
-    Examples
-    --------
-    Air at 288.15 K, in metres per second:
-
-    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-    >>> round(float(root_mean_square_speed(BOLTZMANN * 288.15, DRY_AIR.molecule_mass)))
-    498
-    """
-    require_dimensions(dimensions)
-    speed: FloatArray = np.sqrt(dimensions * as_floats(kT) / as_floats(mass))
     return speed
 
 
@@ -216,64 +144,33 @@ def maxwell_speed_cumulative(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, d
     return share
 
 
-def constant_energy_kurtosis(dof: ArrayLike) -> FloatArray:
-    r"""Return the kurtosis of one velocity component in a box of exactly constant energy, :math:`3f/(f+2)`.
-
-    In a closed box the velocities lie on a sphere in f dimensions, and one component follows a beta
-    distribution, not quite Gauss's: a molecule cannot have more than all the energy.
+def temperature_noise(molecules: ArrayLike, dof: float = 3, temperature: ArrayLike = 1.0) -> FloatArray:
+    r"""Return the scatter of the temperature of N molecules about their heat bath's, :math:`T \sqrt{2/fN}`.
 
     Parameters
     ----------
+    molecules
+        Number of molecules N [1].
     dof
-        Degrees of freedom f that share the energy, 3N without rotation [1].
+        Degrees of freedom f of one molecule [1].
+    temperature
+        Mean temperature, in K or as an energy; without it the scatter is relative.
 
     Returns
     -------
     ndarray
-        Kurtosis, 3 for a normal distribution [1].
+        Standard deviation, in the unit of the temperature.
 
     References
     ----------
-    .. [1] Scalas, E., Gabriel, A. T., Martin, E., Germano, G. (2015), doi:10.1103/PhysRevE.92.022140.
+    .. [1] Hadjiconstantinou, N. G., et al. (2003), doi:10.1016/S0021-9991(03)00099-8.
 
     Examples
     --------
-    >>> round(float(constant_energy_kurtosis(3 * 100)), 3)
-    2.98
+    A thermometer of 200 molecules at 300 K scatters by 17 K, of 800 by 9 K:
+
+    >>> [round(float(t), 1) for t in temperature_noise([200, 800], temperature=300.0)]
+    [17.3, 8.7]
     """
-    f = as_floats(dof)
-    return 3.0 * f / (f + 2.0)
-
-
-def constant_energy_speed_factor(dof: ArrayLike) -> FloatArray:
-    r"""Return by what factor the mean speed in a box of exactly constant energy exceeds Maxwell's.
-
-    :math:`\sqrt{f/2}\; \Gamma(f/2) / \Gamma((f+1)/2) \approx 1 + 1/4f`. The collision rate carries the same
-    factor.
-
-    Parameters
-    ----------
-    dof
-        Degrees of freedom f that share the energy, 3N without rotation [1].
-
-    Returns
-    -------
-    ndarray
-        Mean speed over that of Maxwell's distribution at :math:`kT = 2E/f` [1].
-
-    References
-    ----------
-    .. [1] Scalas, E., Gabriel, A. T., Martin, E., Germano, G. (2015), doi:10.1103/PhysRevE.92.022140.
-
-    Examples
-    --------
-    It matters below about a hundred molecules:
-
-    >>> round(float(constant_energy_speed_factor(3 * 10)), 4)
-    1.0084
-    """
-    from scipy import special  # loads slowly
-
-    f = as_floats(dof)
-    factor: FloatArray = np.sqrt(f / 2.0) * np.exp(special.gammaln(f / 2.0) - special.gammaln((f + 1.0) / 2.0))
-    return factor
+    scatter: FloatArray = as_floats(temperature) * np.sqrt(2.0 / (dof * as_floats(molecules)))
+    return scatter

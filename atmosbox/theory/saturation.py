@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from atmosbox.theory import _water
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory._water import checked_not_negative, checked_temperature
-from atmosbox.theory.constants import GAS_CONSTANT, WATER
 
 VAPOR_HEAT_CAPACITY: float = _water.VAPOR_HEAT
 """Heat capacity of a molecule of vapour at constant pressure [k]."""
@@ -25,42 +24,6 @@ LIQUID_HEAT_CAPACITY: float = _water.LIQUID_HEAT
 """Heat capacity of a molecule of liquid water, 4219.4 J/(kg K) [k]."""
 BINDING_TEMPERATURE: float = _water.BINDING
 """Binding energy of a molecule in liquid water over k [K]."""
-
-
-def water_latent_heat_vaporization(temperature: ArrayLike) -> FloatArray:
-    r"""Return the heat that it takes to evaporate water.
-
-    :math:`L = \varphi + (c_{pv} - c_l) T` per molecule [1]_.
-
-    Parameters
-    ----------
-    temperature
-        Temperature [K].
-
-    Returns
-    -------
-    ndarray
-        Latent heat of vaporization [J kg^-1].
-
-    Raises
-    ------
-    ValueError
-        If a temperature lies below 0 K or above the critical point of water, 647.096 K.
-
-    References
-    ----------
-    .. [1] Ambaum, M. H. P. (2020), doi:10.1002/qj.3899, equation 15.
-
-    Examples
-    --------
-    Less by 4 % at 40 degC than at freezing:
-
-    >>> water_latent_heat_vaporization([273.16, 313.15]).round(-2)
-    array([2500800., 2406000.])
-    """
-    t = checked_temperature(as_floats(temperature))
-    heat: FloatArray = (_water.BINDING - _water.EXCESS * t) * (GAS_CONSTANT / WATER.molar_mass)
-    return heat
 
 
 def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.theory._array import FloatArray, as_floats
 from atmosbox.theory.constants import STANDARD_GRAVITY
-from atmosbox.theory.environment import environment_pressure, environment_temperature, height_of_pressure
+from atmosbox.theory.environment import environment_pressure, environment_temperature
 
 _ISA_GAS_CONSTANT = 287.05287
 _ISA_LOWEST, _ISA_HIGHEST = -2000.0, 80000.0
@@ -110,54 +110,6 @@ def isa_pressure(height: ArrayLike) -> FloatArray:
     layer = _isa_layer(z)
     return environment_pressure(
         z - _ISA_BASE[layer],
-        _ISA_TEMPERATURE[layer],
-        _ISA_PRESSURE[layer],
-        _ISA_LAPSE_RATE[layer],
-        STANDARD_GRAVITY,
-        _ISA_GAS_CONSTANT,
-    )
-
-
-def isa_height(pressure: ArrayLike) -> FloatArray:
-    r"""Return the height at which the International Standard Atmosphere has a pressure.
-
-    It is the reading of an altimeter.
-
-    Parameters
-    ----------
-    pressure
-        Pressure, 0.9 to 127 774 Pa [Pa].
-
-    Returns
-    -------
-    ndarray
-        Geopotential height [m].
-
-    Raises
-    ------
-    ValueError
-        If a pressure lies outside the standard.
-
-    References
-    ----------
-    .. [1] ISO 2533:1975, Standard Atmosphere.
-
-    Examples
-    --------
-    Flight level 300 is 300 hundred feet:
-
-    >>> round(float(isa_height(300.9e2)) / 0.3048 / 100.0)
-    300
-    """
-    p = as_floats(pressure)
-    if not np.all((p >= isa_pressure(_ISA_HIGHEST)) & (p <= isa_pressure(_ISA_LOWEST))):
-        raise ValueError(
-            f"pressure must lie between {isa_pressure(_ISA_HIGHEST):.3g} Pa "
-            f"and {isa_pressure(_ISA_LOWEST):.6g} Pa in the standard atmosphere."
-        )
-    layer = np.maximum(np.searchsorted(-_ISA_PRESSURE, -p, side="right") - 1, 0)
-    return _ISA_BASE[layer] + height_of_pressure(
-        p,
         _ISA_TEMPERATURE[layer],
         _ISA_PRESSURE[layer],
         _ISA_LAPSE_RATE[layer],

@@ -29,43 +29,6 @@ class FreeMolecularSlab(NamedTuple):
     """Heat from the first wall to the second, per area and time [energy length^-2 time^-1]."""
 
 
-def wall_flux(number_density: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
-    r"""Return how many molecules hit a wall, per area and time, :math:`n \sqrt{kT / 2\pi m}`.
-
-    In three dimensions it is a quarter of density times mean speed. The formula is the same in two, per
-    length of wall.
-
-    Parameters
-    ----------
-    number_density
-        Molecules per volume [length^-3].
-    kT
-        Temperature as an energy [energy].
-    mass
-        Mass of a molecule [mass].
-
-    Returns
-    -------
-    ndarray
-        Hits per area and time [length^-2 time^-1].
-
-    References
-    ----------
-    .. [1] Garcia, A. L., Wagner, W. (2006), J. Comput. Phys. 217, 693 (WIAS preprint 1013).
-
-    Examples
-    --------
-    Each square nanometre of anything in the air is hit three thousand million times a second:
-
-    >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
-    >>> kT = BOLTZMANN * 288.15
-    >>> print(f"{wall_flux(101325.0 / kT, kT, DRY_AIR.molecule_mass) * 1e-18:.0e}")
-    3e+09
-    """
-    flux: FloatArray = as_floats(number_density) * np.sqrt(as_floats(kT) / (2.0 * np.pi * as_floats(mass)))
-    return flux
-
-
 def emission_normal_speed(kT: ArrayLike, mass: ArrayLike) -> FloatArray:
     r"""Return the mean speed away from the wall of molecules that leave a heat bath.
 
@@ -137,42 +100,6 @@ def emission_energy(kT: ArrayLike, dimensions: int = 3, rotational_dof: float = 
     """
     require_dimensions(dimensions)
     return (dimensions + 1 + rotational_dof) / 2.0 * as_floats(kT)
-
-
-def emission_energy_variance(kT: ArrayLike, dimensions: int = 3, rotational_dof: float = 0) -> FloatArray:
-    r"""Return the variance of the energy that a molecule takes from a heat bath.
-
-    :math:`2 (kT)^2` for a sphere: that of the gamma distribution of :func:`emission_energy`.
-
-    Parameters
-    ----------
-    kT
-        Temperature of the wall as an energy [energy].
-    dimensions
-        3, or 2 for molecules in a plane.
-    rotational_dof
-        Rotational degrees of freedom: 0, or 2 for air, 3 for water vapour [1].
-
-    Returns
-    -------
-    ndarray
-        Variance of the energy [energy^2].
-
-    Raises
-    ------
-    ValueError
-        If dimensions is neither 2 nor 3.
-
-    References
-    ----------
-    .. [1] Garcia, A. L., Wagner, W. (2006), J. Comput. Phys. 217, 693 (WIAS preprint 1013).
-
-    Examples
-    --------
-    >>> float(emission_energy_variance(2.0))
-    8.0
-    """
-    return emission_energy(kT, dimensions, rotational_dof) * as_floats(kT)
 
 
 def free_molecular_slab(

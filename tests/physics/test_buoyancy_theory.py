@@ -31,7 +31,6 @@ def test_a_triangle_of_buoyancy_has_its_area():
 def test_a_parcel_that_is_nowhere_buoyant_has_no_energy_and_no_level():
     for differences in ((0.0, -1.0, -2.0), (-1.0, 0.0, -1.0), (0.0, 0.0)):
         assert theory.cape_cin(*sounding(*differences)) == (0.0, 0.0, None, None)
-        assert theory.cape_standard_error(*sounding(*differences), np.ones(len(differences))) == 0.0
 
 
 def test_a_parcel_that_leaves_the_sounding_rising_has_no_equilibrium_level():
@@ -118,33 +117,6 @@ def test_cloud_water_weighs_on_the_parcel():
     assert 0.0 < loaded.cape < free.cape
 
 
-@pytest.mark.parametrize("base", [None, float(at(0.8))])
-def test_the_error_of_cape_is_its_derivative_times_that_of_the_levels(base):
-    p, around, parcel = sounding(-1.0, 1.0, 3.0, 1.5, -1.0, -3.0)
-    error = np.array([0.3, 0.1, 0.2, 0.4, 0.1, 0.2])
-    step, slope = 1e-5, np.empty(6)
-    for i in range(6):
-        shift = step * (np.arange(6) == i)
-        above, below = (theory.cape_cin(p, around, parcel + s * shift, base).cape for s in (1.0, -1.0))
-        slope[i] = (above - below) / (2.0 * step)
-    independent = theory.cape_standard_error(p, around, parcel, error, 0.0, base)
-    assert independent == pytest.approx(float(np.sqrt(np.sum((slope * error) ** 2))), rel=1e-6)
-    together = theory.cape_standard_error(p, around, parcel, error, 1.0, base)
-    assert together == pytest.approx(float(np.sum(slope * error)), rel=1e-6)
-    half = theory.cape_standard_error(p, around, parcel, error, 0.5, base)
-    assert half == pytest.approx(np.sqrt(0.5 * independent**2 + 0.5 * together**2), rel=1e-12)
-
-
-def test_the_error_of_cape_is_the_scatter_of_measured_parcels():
-    # 4000 parcels: the standard deviation has a relative standard error of 1.1 %; 4 of them fail once in 16000.
-    p, around, parcel = sounding(-2.0, 2.0, 4.0, 3.0, 1.5, -2.0)
-    rng = np.random.default_rng(7)
-    noise = 0.05 * rng.standard_normal((4000, 6))
-    energies = [theory.cape_cin(p, around, parcel + shift).cape for shift in noise]
-    expected = theory.cape_standard_error(p, around, parcel, np.full(6, 0.05))
-    assert np.std(energies) == pytest.approx(expected, rel=0.045)
-
-
 def test_buoyancy_is_gravity_times_the_share_of_lightness():
     assert np.allclose(theory.parcel_buoyancy([303.0, 297.0], 300.0, 10.0), [0.1, -0.1], rtol=1e-13)
 
@@ -168,12 +140,3 @@ def test_a_broken_sounding_is_refused_with_a_sentence(change, match):
     assert theory.cape_cin(**whole).cape > 0.0
     with pytest.raises(ValueError, match=match):
         theory.cape_cin(**(whole | change))
-
-
-def test_errors_that_cannot_be_are_refused():
-    with pytest.raises(ValueError, match="standard_error"):
-        theory.cape_standard_error(*sounding(-1.0, 1.0), [0.1])
-    with pytest.raises(ValueError, match="standard_error"):
-        theory.cape_standard_error(*sounding(-1.0, 1.0), [0.1, -0.1])
-    with pytest.raises(ValueError, match="correlation"):
-        theory.cape_standard_error(*sounding(-1.0, 1.0), [0.1, 0.1], 1.5)

@@ -17,6 +17,7 @@ from atmosbox.engine import HeatBath, Periodic, Specular, maxwell_velocities, ra
 from atmosbox.engine.classic.classic import SCHEMES, ClassicParcel
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.scene.statistics import block_average
+from tests.oracle import kinetic_gas
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many steps take hours without numba")
 
@@ -63,7 +64,7 @@ def pressure_and_rate(box, excess, rate, contacts):
         pressure.append((box.virial.sum() - virial) / (2.0 * kinetic * elapsed * excess))
         met.append(2.0 * (box.contacts - before) / (number * elapsed * rate))
     dimensions = 2 if box.planar else 3
-    few = theory.constant_energy_speed_factor(dimensions * (number - 1)) * math.sqrt((number - 1) / number)
+    few = kinetic_gas.constant_energy_speed_factor(dimensions * (number - 1)) * math.sqrt((number - 1) / number)
     assert box.energy()[0] == pytest.approx(kinetic, rel=1e-12)
     return block_average(pressure), block_average(np.array(met) / few)
 

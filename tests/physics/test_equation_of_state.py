@@ -10,10 +10,10 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox import theory
 from atmosbox.engine import Periodic, Specular
 from atmosbox.engine.core.measure import mean_free_path
 from atmosbox.scene.statistics import block_average
+from tests.oracle import kinetic_gas
 
 S, P = Specular(), Periodic()
 FINITE = 1.5
@@ -58,12 +58,12 @@ def compare(gas, row, number, contacts):
     # Z = 1 + W / (3 (N - 1) kT), where 3 (N - 1) kT is twice the energy, because the momentum is zero
     measured, error = block_average(1.0 + virial / (2.0 * kinetic))
     # the scatter of counts and impulses, if molecules forgot at once what they did
-    assert error < 2.0 * theory.compressibility_noise(z, contacts)
+    assert error < 2.0 * kinetic_gas.compressibility_noise(z, contacts)
     assert abs(measured - z) <= 4.0 * error + FINITE * (z - 1.0) / number
 
     # in a box of fixed energy and momentum a pair is a little faster than the mean temperature says, and a
     # molecule has N - 1 partners
-    finite = theory.constant_energy_speed_factor(3 * number - 3) * math.sqrt((number - 1) / number)
+    finite = kinetic_gas.constant_energy_speed_factor(3 * number - 3) * math.sqrt((number - 1) / number)
     measured, error = block_average(2.0 * meetings / number)
     assert abs(measured / (rate * finite) - 1.0) <= 4.0 * error / rate + FINITE / number
 
@@ -82,7 +82,7 @@ def test_spheres_press_and_meet_as_molecular_dynamics_and_enskog_say(gas, row):
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"phi={row[0]}")
 def test_spheres_press_and_meet_to_three_parts_in_a_thousand(gas, row):
     contacts = 6e6
-    assert theory.compressibility_noise(row[1], contacts) / (row[1] - 1.0) <= 0.003
+    assert kinetic_gas.compressibility_noise(row[1], contacts) / (row[1] - 1.0) <= 0.003
     compare(gas, row, 2000, contacts)
 
 

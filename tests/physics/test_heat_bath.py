@@ -12,6 +12,7 @@ from scipy import stats
 from atmosbox import theory
 from atmosbox.engine import HeatBath, Periodic, Ramp, Specular, Steps
 from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from tests.oracle import kinetic_gas
 
 S, P = Specular(), Periodic()
 
@@ -57,7 +58,7 @@ def test_the_heat_that_walls_give_and_take_in_equilibrium_is_none_on_average(gas
     mean, error = block_average(np.array(heat))
     assert (np.abs(mean) <= 4.0 * error).all()
     # each hit exchanges 2 kT; at random, that would be the scatter, and what is given is soon given back
-    per_block = theory.heat_noise((box.wall_hits - hits) / 20.0, kT)
+    per_block = kinetic_gas.heat_noise((box.wall_hits - hits) / 20.0, kT)
     assert (error * math.sqrt(20.0) < 1.5 * per_block).all()
 
 

@@ -1,0 +1,36 @@
+"""What kinetic theory says of walls, pistons and noise: what the molecules of a simulated gas are checked against."""
+
+import numpy as np
+from scipy import special
+
+
+def constant_energy_speed_factor(dof):
+    """Return the mean speed in a box of constant energy over Maxwell's; for f quadratic terms 1 + 1/4f and so on."""
+    f = np.asarray(dof, float)
+    return np.sqrt(f / 2.0) * np.exp(special.gammaln(f / 2.0) - special.gammaln((f + 1.0) / 2.0))
+
+
+def wall_flux(number_density, kT, mass):
+    """Return how many molecules hit a wall per area and time, n sqrt(kT / 2 pi m)."""
+    return number_density * np.sqrt(kT / (2.0 * np.pi * mass))
+
+
+def heat_noise(hits, kT, rotational_dof=0):
+    """Return the scatter of the heat through a heat bath in equilibrium: each hit takes and gives (2 + z/2) (kT)^2."""
+    return kT * np.sqrt((4.0 + rotational_dof) * np.asarray(hits, float))
+
+
+def compressibility_noise(compressibility_factor, collisions):
+    """Return the standard error of Z from so many independent collisions, each of a Rayleigh-distributed impulse."""
+    return (compressibility_factor - 1.0) * np.sqrt(4.0 / (np.pi * collisions))
+
+
+def isothermal_work(molecules, kT, volume0, volume):
+    """Return the work of an ideal gas that expands slowly at constant temperature, N kT ln(V / V0)."""
+    return molecules * kT * np.log(volume / volume0)
+
+
+def piston_pressure_ratio(piston_speed, kT, mass):
+    """Return the pressure on a receding piston over that on one at rest: the mean of 2 n m (v - u)^2 over v > u."""
+    s = piston_speed / np.sqrt(2.0 * kT / mass)
+    return (1.0 + 2.0 * s**2) * special.erfc(s) - 2.0 / np.sqrt(np.pi) * s * np.exp(-(s**2))
