@@ -32,11 +32,11 @@ from atmosbox.scene import (
     SceneSettings,
     Series,
     Setup,
-    block_average,
     setting,
 )
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.statistics import average_beside
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -113,6 +113,29 @@ class Column:
         self.bottom = 0.5 * self.diameter
         self.top = self.height - self.bottom
 
+    @property
+    def memory(self) -> float:
+        r"""How long a surplus of energy stays in the column until it has left by the floor [reduced time].
+
+        A column of a surplus :math:`c\,\Delta T` per molecule must conduct it to the floor, and the molecules that hit
+        the floor must take it along, :math:`(d + 1) k / 2` each,
+
+        .. math:: \tau = \frac{c N}{(d + 1) k J / 2} + \frac{c N}{\kappa} \int s(z)^2 dz ,
+
+        for the flux :math:`J = n_0 \sqrt{kT / 2 \pi m}`, the share s(z) above z, and the conductivity of a
+        thin gas by Chapman and Enskog, :math:`1.025\,(75/64)\,(k/\sigma^2) \sqrt{kT / \pi m}`, of discs
+        :math:`1.029 \cdot 2\,(k/\sigma) \sqrt{kT / \pi m}` (Gass 1971, doi:10.1063/1.1675116).
+        """
+        a, d = min(self.height, 700.0), self.dimensions
+        held = -math.expm1(-a)
+        capacity = 0.5 * d + 1.0 - a * a * math.exp(-a) / held**2
+        leaves = capacity * held / ((d + 1.0) / 2.0 / math.sqrt(2.0 * math.pi))
+        thin = 1.025 * 75.0 / 64.0 / self.diameter**2 if d == 3 else 1.029 * 2.0 / self.diameter
+        above = 0.5 - 2.0 * math.exp(-a) + (a + 1.5) * math.exp(-2.0 * a)
+        conducted = capacity * self.per_area * above / held**2 / (thin / math.sqrt(math.pi))
+        total: float = leaves + conducted
+        return total
+
     def density(self, edges: np.ndarray, kT: float, diameter: float, gravity: float = 1.0) -> np.ndarray:
         """Return the mean number density of layers in equilibrium [1/scale height^3]."""
         column = self.per_area, self.bottom, self.top, kT, 1.0, gravity, diameter
@@ -166,7 +189,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         scale,
         settings.duration,
         FRAMES,
-        (Air("floor"), Layers(LAYERS)),
+        (Air("floor"), Layers(LAYERS, column.memory)),
         samples=8,
         settle=SETTLE,
         time_unit="s",
@@ -221,19 +244,24 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         return ()
     kT = column.equilibrium_kT(dataset, settings)
     force = late.wall_pressure.values
-    weight = block_average(force[:, 4] - force[:, 5])
-    temperature = block_average(late.air_temperature.values)
+    weight = force[:, 4] - force[:, 5]
     expected = column.per_area * column.scale.pressure
+    # what floor less ceiling give beyond the weight is the change of momentum: its variance is N m kT at either end
+    lasted = float(np.diff(dataset.elapsed_time_bnds.values[[SETTLE, -1], [0, 1]])[0]) / column.scale.time
+    chance = math.sqrt(2.0 * column.per_area * kT / column.width ** (column.dimensions - 1)) / lasted
+    energy = late.kinetic_energy.values + late.potential_energy.values
+    memory = column.memory * FRAMES / settings.duration
+    temperature = average_beside(late.air_temperature.values, energy, memory)
     edges = np.linspace(0.0, column.height, 401)
     share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
     height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
     per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
-    climbed = block_average(late.potential_energy.values / per_metre)
+    climbed = average_beside(late.potential_energy.values / per_metre, energy, memory)
     return (
         Headline(
             "weight_of_the_air",
-            float(weight.mean),
-            float(weight.standard_error),
+            float(weight.mean()),
+            chance * column.scale.pressure,
             expected,
             0.0,
             "none: the model has no other error than chance",

@@ -36,7 +36,6 @@ from atmosbox.scene.exchange import MoistBox, history
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import moist_air, nuclei_heat_capacity, water
-from atmosbox.scene.statistics import short_blocks
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -193,7 +192,6 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         return ()
     vapour = late.water_vapor_partial_pressure
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
-    short = short_blocks(lasted / BLOCKS / memory)
     share = start.share
     # if only few came and went, blocks tell little of the error: that of a Poisson number with this memory
     few = start.flux * faces * start.face * lasted < FEW
@@ -213,8 +211,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     )
     found = []
     for name, measured, unit, shown, label, expected in rows:
-        mean = block_average(measured.values, BLOCKS)
-        error = max(short * float(mean.standard_error), alone * float(expected.mean()) / share if share else 0.0)
+        mean = block_average(measured.values, BLOCKS, memory / settings.si.duration * FRAMES)
+        error = max(float(mean.standard_error), alone * float(expected.mean()) / share if share else 0.0)
         found.append(
             Headline(
                 f"mean_{name}",

@@ -38,7 +38,6 @@ from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, his
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.moisture import water
 from atmosbox.scene.piston import moist_parcel
-from atmosbox.scene.statistics import short_blocks
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -205,7 +204,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     lost, walk = start.loss(until), start.walk(until)
     steep = start.latent / rest.temperature
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
-    short = short_blocks(lasted / BLOCKS / start.memory)
+    memory = start.memory / settings.si.duration * FRAMES
     rate = start.rate(rest.vapor_pressure, rest.temperature)
     met = rate * lasted
 
@@ -213,8 +212,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         name: str, expected: float, heated: float, chance: float, unit: str, shown: str, label: str
     ) -> Headline:
         # heated: what a kelvin does to it; chance: its error if only few molecules came and went
-        found = block_average(late[name].values, BLOCKS)
-        error = max(short * float(found.standard_error), chance if met < FEW else 0.0)
+        found = block_average(late[name].values, BLOCKS, memory)
+        error = max(float(found.standard_error), chance if met < FEW else 0.0)
         value, error = float(found.mean), math.hypot(error, walk * heated)
         return Headline(f"mean_{name}", value, error, expected, lost * heated, LATE, unit, shown, label)
 
@@ -227,7 +226,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     e, heated = rest.vapor_pressure, steep * rest.vapor_pressure
     found += [headline("water_vapor_partial_pressure", e, heated, scatter, "Pa", "hPa", "vapour pressure")]
     if found[-1].value > 0.0:
-        found.append(_saturation(late, found[-1], start, 0.0 if wet else lost, scatter if met < FEW else 0.0, short))
+        found.append(_saturation(late, found[-1], start, 0.0 if wet else lost, scatter if met < FEW else 0.0, memory))
     for name in ("condensation", "evaporation"):
         alone = math.sqrt(met) / lasted
         found.append(headline(f"{name}_rate", rate, steep * rate, alone, "s-1", "ns-1", name))
@@ -235,7 +234,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def _saturation(
-    late: "xr.Dataset", vapour: Headline, start: AirOverPool, lost: float, chance: float, short: float
+    late: "xr.Dataset", vapour: Headline, start: AirOverPool, lost: float, chance: float, memory: float
 ) -> Headline:
     """Return the vapour pressure over that of saturation at the temperature of the pool, of the air if that is dry.
 
@@ -248,7 +247,7 @@ def _saturation(
     share = vapour.value / float(law.saturation_vapor_pressure(warm.mean()))
     expected = rest.vapor_pressure / float(law.saturation_vapor_pressure(rest.temperature))
     together = late.water_vapor_partial_pressure.values / vapour.value - steep * warm
-    error = share * max(short * float(block_average(together, BLOCKS).standard_error), chance / vapour.value)
+    error = share * max(float(block_average(together, BLOCKS, memory).standard_error), chance / vapour.value)
     tolerance = lost * steep * expected
     reason = CHANCE_ALONE if wet else LATE
     label = "vapour pressure / saturation"

@@ -29,12 +29,12 @@ from atmosbox.scene import (
     Series,
     Setup,
     Speeds,
-    block_average,
     setting,
 )
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
+from atmosbox.scene.statistics import overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -166,17 +166,17 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     scale, density, side, factor = _start(settings, ideal=ideal)
     off = _crowding(density, side, settings.molecules)
     warm = dataset.isel(elapsed_time=slice(SETTLE, None))
-    if warm.sizes["elapsed_time"] < 40:
+    if warm.sizes["elapsed_time"] < 41:
         return ()
-    temperature = block_average(warm.air_temperature.values)
-    pressure = block_average(warm.air_pressure.values)
+    temperature = overlapping_average(warm.air_temperature.values)
+    pressure = overlapping_average(warm.air_pressure.values)
     bins = np.diff(dataset.speed_bnds.values, axis=1)[:, 0]
     share = dataset.speed_probability_density.values * bins
     spread = dataset.speed_probability_density_se.values * bins
     speed = dataset.speed.values
     lasted = float(warm.elapsed_time[-1] - warm.elapsed_time[0]) * 1e-9
     met = np.diff(warm.collision_count.values) * 2.0 / settings.molecules
-    per_second = block_average(met * (len(met) / lasted))
+    per_second = overlapping_average(met * (len(met) / lasted))
     share_of_contacts = law.contact_share((side,) * 3, 1.0, settings.molecules)
     expected = float(law.collision_rate(density, 1.0, 1.0, 1.0)) * share_of_contacts / scale.time
     if ideal:  # whom chance chooses is crowded by nobody, and has all the others for partners

@@ -15,12 +15,15 @@ class BlockAverage(NamedTuple):
     """Standard deviation that the mean would show if the run were repeated."""
 
 
-def block_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
+def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> BlockAverage:
     r"""Return the mean of a series and its standard error, from the means of blocks.
 
     Values that follow each other closely in time are not independent, and taking them for such makes an error
     bar too small. The means of blocks much longer than the memory of the gas, ten mean free times, are: the
-    standard error is their standard deviation over the square root of their number.
+    standard error is their standard deviation over the square root of their number. Blocks of a length L that is
+    not much longer than a memory that fades as :math:`e^{-t/\tau}` show too little. The variance of a mean over a time
+    t is :math:`f(t) / t`, :math:`f = 1 - (1 - e^{-t/\tau}) \tau / t`, and so of n blocks the square of the error is
+    divided by :math:`[n f(L) / f(nL) - 1] / (n - 1)`.
 
     Parameters
     ----------
@@ -28,6 +31,8 @@ def block_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
         Series along the first axis; further axes, such as layers, are kept.
     blocks
         Number of blocks [1].
+    memory
+        Memory :math:`\tau` in values, where theory knows it; 0 for blocks without a memory of each other [1].
 
     Returns
     -------
@@ -57,35 +62,130 @@ def block_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
     >>> print(f"{mean:.2f} +- {error:.2f}")
     0.50 +- 0.05
     """
+    series = _divisible(values, blocks)
+    length = series.shape[0] // blocks
+    means = series[-blocks * length :].reshape(blocks, length, *series.shape[1:]).mean(axis=1)
+    error = means.std(axis=0, ddof=1) / np.sqrt(blocks)
+    if memory > 0.0:
+        # the blocks scatter about the mean of this run, not about the true one
+        lengths = length / memory * np.array([1.0, blocks])
+        one, all_of_them = 1.0 + np.expm1(-lengths) / lengths
+        error = error / np.sqrt((blocks * one / all_of_them - 1.0) / (blocks - 1.0))
+    return BlockAverage(means.mean(axis=0), error)
+
+
+def _divisible(values: ArrayLike, blocks: int) -> NDArray[np.float64]:
+    """Return a series as an array, or raise ``ValueError`` unless it can be divided into so many blocks."""
     series = np.asarray(values, dtype=np.float64)
     if blocks < 2:
         raise ValueError(f"blocks = {blocks} must be at least 2: the error is read from their scatter.")
     if series.ndim == 0 or series.shape[0] < blocks:
         found = series.shape[0] if series.ndim else 1
         raise ValueError(f"{found} values cannot be divided into {blocks} blocks.")
-    length = series.shape[0] // blocks
-    means = series[-blocks * length :].reshape(blocks, length, *series.shape[1:]).mean(axis=1)
-    error = means.std(axis=0, ddof=1) / np.sqrt(blocks)
-    return BlockAverage(means.mean(axis=0), error)
+    return series
 
 
-def short_blocks(lengths: float) -> float:
-    r"""Return by what to multiply a standard error that is read from blocks which know of each other.
+def overlapping_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
+    r"""Return the mean of a series of unknown memory and its standard error, from blocks of two lengths.
 
-    Of a memory that fades as :math:`e^{-t/\tau}` a block of length L shows the share
-    :math:`1 - (1 - e^{-L/\tau}) \tau/L` of the variance of the mean.
+    The variance of the mean that blocks of a length L show is too small by a share that goes as 1/L [1]_. That of
+    half as long blocks is too small by twice as much, and so :math:`2 V(L) - V(L/2)` is free of that error. All
+    overlapping blocks count, not only those that lie side by side.
 
     Parameters
     ----------
-    lengths
-        Length of a block over the memory, :math:`L/\tau` [1].
+    values : (time, ...)
+        Series along the first axis, at least twice as many values as blocks; further axes are kept.
+    blocks
+        How many of the longer blocks fill the series [1].
+
+    Returns
+    -------
+    BlockAverage
+        ``mean`` of all values and ``standard_error``, of the shape of one value.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than 2 blocks, or fewer than twice as many values.
+
+    Notes
+    -----
+    The error is itself uncertain by 20 % for 20 blocks. Where chance makes the difference small, a quarter of V(L) is
+    the least. Blocks of five memories or more make the error right within 2 %, plain blocks within 11 %.
+
+    References
+    ----------
+    .. [1] Vats, D., Flegal, J. M. (2022), Lugsail lag windows, doi:10.1093/biomet/asab049.
 
     Examples
     --------
-    >>> round(short_blocks(2.0), 3), round(short_blocks(100.0), 3)
-    (1.327, 1.005)
+    A series of which each value keeps 0.9 of the one before has a mean that scatters by 10 / sqrt(n):
+
+    >>> noise = np.random.default_rng(1).normal(size=4001)
+    >>> series = [0.0]
+    >>> for each in noise:
+    ...     series.append(0.9 * series[-1] + each)
+    >>> bool(0.7 < overlapping_average(series).standard_error * len(series) ** 0.5 / 10 < 1.3)
+    True
     """
-    return float(1.0 / np.sqrt(1.0 + np.expm1(-lengths) / lengths))
+    series = _divisible(values, blocks)
+    _divisible(values, 2 * blocks)
+    n = series.shape[0]
+    mean = series.mean(axis=0)
+    sums = np.concatenate([np.zeros((1, *series.shape[1:])), np.cumsum(series - mean, axis=0)])
+
+    def variance(length: int) -> NDArray[np.float64]:
+        # of the mean of all: a block counts by its length, and its own share in that mean is made good
+        squares = np.sum((sums[length:] - sums[:-length]) ** 2, axis=0) / length
+        found: NDArray[np.float64] = squares / ((n - length) * (n - length + 1))
+        return found
+
+    half = n // (2 * blocks)
+    whole = variance(2 * half)
+    return BlockAverage(mean, np.sqrt(np.maximum(2.0 * whole - variance(half), 0.25 * whole)))
+
+
+def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: int = 20) -> BlockAverage:
+    r"""Return the mean of a series, part of which follows something slow, and its standard error.
+
+    The energy of a column, say, changes only as heat passes through the floor, and the temperature of each layer
+    follows it besides its own quick noise. So a value is :math:`b E + r`, with b from the regression; the error of
+    the mean of E is that of its known memory, and r has been forgotten within a block.
+
+    Parameters
+    ----------
+    values : (time, ...)
+        Series along the first axis, at least twice as many values as blocks; further axes are kept.
+    slow : (time,)
+        What changes slowly.
+    memory
+        How long that is remembered, in values [1].
+    blocks
+        As in `overlapping_average`.
+
+    Returns
+    -------
+    BlockAverage
+        ``mean`` and ``standard_error``, of the shape of one value.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(2)
+    >>> quick, slow = rng.normal(size=400), np.sin(np.arange(400) / 30.0)
+    >>> mean, error = average_beside(quick + slow, slow, 30.0)
+    >>> bool(error > overlapping_average(quick).standard_error)
+    True
+    """
+    series, changing = np.asarray(values, np.float64), np.asarray(slow, np.float64)
+    apart = changing - changing.mean()
+    size = float(apart @ apart)
+    if not size > 1e-20 * float(changing @ changing):  # it does not change at all
+        return overlapping_average(series, blocks)
+    slope = np.tensordot(apart, series, axes=(0, 0)) / size
+    quick = overlapping_average(series - np.multiply.outer(apart, slope), blocks)
+    error = np.hypot(slope * block_average(changing, blocks, memory).standard_error, quick.standard_error)
+    return BlockAverage(quick.mean, error)
 
 
 def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:

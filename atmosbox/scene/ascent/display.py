@@ -153,7 +153,9 @@ def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -
     scatter = successive_error(misfit, block=BLOCK)
     for level in ascent.levels:
         middle = int(np.argmin(np.abs(np.log(pressure / level))))
-        near = slice(max(middle - BLOCK // 2, 0), middle + BLOCK // 2 + 1)
+        # the error is that of so many frames: at the top the last of them, not fewer
+        first = min(max(middle - BLOCK // 2, 0), max(len(pressure) - BLOCK, 0))
+        near = slice(first, first + BLOCK)
         if dataset.environment_pressure.values.min() > 1.02 * level:  # the parcel's own pressure scatters
             continue
         expected = float(ascent.planned_at(level).temperature[0])

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.engine.core.measure import layer_sample
 from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.statistics import average_beside, block_average
 from atmosbox.scene.units import Scale
 
 __all__ = ["Layers"]
@@ -27,14 +26,19 @@ class Layers:
     ----------
     number
         How many layers; the box must count its virial by as many.
+    memory
+        How long the energy of the column is remembered [reduced time], see `atmosbox.scene.statistics.average_beside`.
     """
 
-    def __init__(self, number: int) -> None:
+    def __init__(self, number: int, memory: float = 0.0) -> None:
         self._number = number
+        self._memory = memory
+        self._energy: list[float] = []
         self._sum = np.zeros((3, number))
         self._looks = 0
         self._virial = np.zeros(number)
         self._time = 0.0
+        self._lasted = 0.0
         self._frames: list[Array] = []
         self._volume = 1.0
         self._height = 1.0
@@ -49,7 +53,9 @@ class Layers:
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close the sums of a frame."""
         lasted = parcel.time - self._time
+        self._lasted = lasted
         rate = (parcel.virial - self._virial) / lasted
+        self._energy.append(sum(parcel.energy()))
         self._frames.append(np.stack([*(self._sum / max(self._looks, 1)), rate]))
         self._sum = np.zeros((3, self._number))
         self._looks = 0
@@ -61,33 +67,30 @@ class Layers:
         self._dimensions = 2.0 if parcel.planar else 3.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the profiles with the standard errors of 20 blocks."""
+        """Return the profiles with their standard errors, of the deviations from the mean state to first order."""
         frames = np.array(self._frames[settle:])
         edges = np.linspace(0.0, self._height, self._number + 1) * scale.length
         out = Readings(height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
         if len(frames) < 2:
             return out
-        blocks = min(_BLOCKS, len(frames))
-        parts = np.array([part.mean(axis=0) for part in np.array_split(frames, blocks)])
-        number, energy, freedom, virial = np.moveaxis(parts, 1, 0)
+        number, energy, freedom, rate = np.moveaxis(frames, 1, 0)
+        volume, dimensions = self._volume, self._dimensions
+        mean_number, mean_freedom = number.mean(axis=0), freedom.mean(axis=0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            kT = np.where(freedom > 0.0, 2.0 * energy / freedom, np.nan)
-        pressure = (number * kT + virial / self._dimensions) / self._volume
-        density = number / self._volume
-        whole = frames.mean(axis=0)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            whole_kT = np.where(whole[2] > 0.0, 2.0 * whole[1] / whole[2], np.nan)
+            kT = np.where(mean_freedom > 0.0, 2.0 * energy.mean(axis=0) / mean_freedom, np.nan)
+            warmer = (2.0 * energy - kT * freedom) / mean_freedom
         unit = {
-            "number_density": (scale.number_density, whole[0] / self._volume, density),
-            "air_density": (scale.mass_density * self._mass, whole[0] / self._volume, density),
-            "layer_temperature": (scale.temperature, whole_kT, kT),
-            "layer_pressure": (
-                scale.pressure,
-                (whole[0] * whole_kT + whole[3] / self._dimensions) / self._volume,
-                pressure,
-            ),
+            "number_density": (scale.number_density, number / volume),
+            "air_density": (scale.mass_density * self._mass, number / volume),
+            "layer_temperature": (scale.temperature, kT + warmer),
+            "layer_pressure": (scale.pressure, (number * kT + mean_number * warmer + rate / dimensions) / volume),
         }
-        for name, (factor, mean, part) in unit.items():
+        slow, blocks = np.array(self._energy[settle:]), min(_BLOCKS, len(frames) // 2)
+        for name, (factor, values) in unit.items():
+            if blocks < 2:
+                mean, error = block_average(values, len(frames))
+            else:
+                mean, error = average_beside(values, slow, self._memory / self._lasted, blocks)
             out[name] = factor * mean
-            out[f"{name}_se"] = factor * part.std(axis=0, ddof=1) / math.sqrt(blocks)
+            out[f"{name}_se"] = factor * error
         return out
