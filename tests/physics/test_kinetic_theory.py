@@ -134,3 +134,16 @@ def test_without_rotation_the_heat_between_two_walls_is_the_textbooks():
 def test_the_thermometer_of_few_molecules_scatters_by_the_square_root_of_their_number():
     assert theory.temperature_noise(50, dof=3) == pytest.approx(np.sqrt(2.0 / 150.0), rel=1e-15)
     assert theory.temperature_noise(50, dof=5) == pytest.approx(np.sqrt(2.0 / 250.0), rel=1e-15)
+
+
+def test_the_share_of_contacts_is_that_of_the_directions_that_no_wall_is_in():
+    # the mean of (1 - |n_x| s_x)(1 - |n_y| s_y)(1 - |n_z| s_z) over all directions, by quadrature in one octant
+    sides = np.array([1.2, 1.7, 2.5])
+
+    def room(cosine, angle):
+        sine = np.sqrt(1.0 - cosine**2)
+        direction = np.array([sine * np.cos(angle), sine * np.sin(angle), cosine])
+        return np.prod(1.0 - direction / sides) * 2.0 / np.pi
+
+    share = integrate.dblquad(room, 0.0, np.pi / 2.0, 0.0, 1.0, epsabs=1e-10)[0]
+    assert theory.contact_share(sides, 1.0, 5) == pytest.approx(0.8 * share, rel=1e-8)
