@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.run import runner
+from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from atmosbox.engine import ParcelSet, Periodic
-from atmosbox.run.recording import Recording
 from atmosbox.scene.setup import Setup
 from atmosbox.scene.units import Scale
+from atmosbox.simulation.recording import Recording
 
 
 class Tracker:
