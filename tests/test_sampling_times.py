@@ -17,10 +17,10 @@ class Tracker:
     def __init__(self):
         self.sampled, self.closed = [], []
 
-    def look(self, parcel, snapshot):
+    def sample(self, parcel, snapshot):
         self.sampled.append(float(snapshot.position[0, 0]))
 
-    def close(self, parcel, snapshot):
+    def end_frame(self, parcel, snapshot):
         self.closed.append((len(self.sampled), float(snapshot.position[0, 0])))
 
 
