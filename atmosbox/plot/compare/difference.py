@@ -67,7 +67,7 @@ class Compared:
     runs: tuple[Measured, ...]
 
     def difference(self, run: int) -> float:
-        """Return the number of a run less that of the first."""
+        """Return the number of a run minus that of the first."""
         return self.runs[run].value - self.runs[0].value
 
     def error(self, run: int) -> float:
