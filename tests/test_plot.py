@@ -498,6 +498,17 @@ def test_a_short_label_stays_in_one_line_beside_a_low_axis(runs):
     assert first.get_ylabel() == "temperature (°C)"
 
 
+@pytest.mark.parametrize("theme", plot.THEMES)
+def test_legends_beside_each_other_have_equally_many_columns(drawings, theme):
+    for scene in ("lifting-dry", "atmosphere"):
+        legends = [axes.get_legend() for axes in drawings[scene, theme].axes]
+        rows: dict[int, set[int]] = {}
+        for legend in legends:
+            heights = {round(text.get_window_extent().y0) for text in legend.get_texts()}
+            rows.setdefault(len(legend.get_texts()), set()).add(len(heights))
+        assert all(len(each) == 1 for each in rows.values())
+
+
 def test_panels_over_each_other_share_the_axis_of_time(drawings):
     first, second = drawings["temperature", "notes"].axes[:2]
     assert first.get_xlim() == second.get_xlim()
