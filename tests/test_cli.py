@@ -24,9 +24,10 @@ from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.output_name import FIGURES
 from atmosbox.cli.request import gather
 from atmosbox.errors import EngineError
+from atmosbox.file import checkpoint, provenance
 from atmosbox.file import netcdf as output
-from atmosbox.file import provenance
 from atmosbox.scene.headline import Headline
+from atmosbox.scene.instruments import Discs
 from atmosbox.simulation import runner
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -387,6 +388,68 @@ def test_bad_input_is_one_sentence_and_leaves_nothing_behind(folder, no_computin
     assert [path.name for path in folder.iterdir()] == ["foreign.nc"]
 
 
+@pytest.mark.parametrize("name", ["", ".", "..", "folder", "no.nc", "empty.nc", "text.nc", "cut.nc"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["info", "{}"],
+        ["run", "{}"],
+        ["run", "./{}"],
+        ["run", "--from", "{}"],
+        ["run", "--config", "{}"],
+        ["plot", "{}"],
+        ["animate", "{}"],
+        ["check", "{}"],
+        ["view", "{}"],
+        ["view", "whole.nc", "{}"],
+        ["compare", "{}", "whole.nc"],
+        ["compare", "whole.nc", "{}"],
+        ["live", "--no-browser", "{}"],
+        ["live", "--no-browser", "--from", "{}"],
+        ["sheet", "./{}"],
+        ["tradeoff", "./{}"],
+        ["sweep", "./{}", "--vary", "duration=1,2"],
+    ],
+)
+def test_no_path_is_a_bug(folder, no_computing, finished, words, name):
+    """Whatever stands where a file is read, the answer is one sentence, and nothing is written."""
+    Path("folder").mkdir()
+    Path("empty.nc").touch()
+    Path("text.nc").write_text("elapsed_time, temperature\n", encoding="utf-8")
+    shutil.copy(finished, "whole.nc")
+    Path("cut.nc").write_bytes(Path("whole.nc").read_bytes()[:3000])
+    before = sorted(folder.rglob("*"))
+    refused(atmosbox_in_process(*(word.format(name) for word in words)))
+    assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize("name", ["", "..", "folder", "whole.nc/x.nc"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", SCENE],
+        ["live", SCENE, "--no-browser"],
+        ["sweep", SCENE, "--vary", "duration=1,2"],
+        ["tradeoff", SCENE],
+        ["sheet", SCENE],
+        ["sheet", SCENE, "--format", "md"],
+        ["plot", "whole.nc"],
+        ["plot", "whole.nc", "--format", "png"],
+        ["animate", "whole.nc"],
+        ["view", "whole.nc"],
+        ["compare", "whole.nc", "whole.nc"],
+        ["compare", "whole.nc", "whole.nc", "--format", "html"],
+    ],
+)
+def test_no_output_path_is_a_bug(folder, no_computing, finished, words, name):
+    """Whatever stands where a file is written, the answer is one sentence, and nothing is written."""
+    Path("folder").mkdir()
+    shutil.copy(finished, "whole.nc")
+    before = sorted(folder.rglob("*"))
+    assert "bug" not in refused(atmosbox_in_process(*words, "-o", name))
+    assert sorted(folder.rglob("*")) == before
+
+
 def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):
     attributes = provenance.global_attributes({"scene": SCENE}, title="A box", command="a test")
     output.write(xr.Dataset(attrs=attributes), "old.nc")
@@ -496,6 +559,34 @@ def test_a_stopped_run_tells_a_program_the_file_it_left(folder, monkeypatch, opt
     assert result.exit_code == 130
     text = json.loads(result.stdout)["file"] if option == "--json" else result.stdout.strip()
     assert text == f"{SCENE}.part.nc"
+
+
+def press_ctrl_c_inside(monkeypatch, home, name, call):
+    """Let Ctrl-C be pressed while a function is called for the n-th time."""
+    original, calls = getattr(home, name), []
+
+    def pressed(*args, **kwargs):
+        calls.append(args)
+        if len(calls) == call:
+            signal.raise_signal(signal.SIGINT)
+        return original(*args, **kwargs)
+
+    monkeypatch.setattr(home, name, pressed)
+
+
+def test_ctrl_c_while_a_frame_ends_keeps_the_frames_of_all_instruments(folder, monkeypatch):
+    press_ctrl_c_inside(monkeypatch, Discs, "end_frame", 10)
+    assert atmosbox_in_process(*SHORT).exit_code == 130
+    kept = output.read(f"{SCENE}.part.nc")
+    assert kept.sizes["elapsed_time"] == 10
+    assert kept.attrs["atmosbox_status"] == "interrupted"
+
+
+def test_ctrl_c_while_the_finished_file_is_written_keeps_it(folder, monkeypatch):
+    press_ctrl_c_inside(monkeypatch, checkpoint, "write_whole", 1)
+    assert atmosbox_in_process(*SHORT).exit_code == 130
+    assert [path.name for path in folder.iterdir()] == [f"{SCENE}.nc"]
+    assert output.read(f"{SCENE}.nc").attrs["atmosbox_status"] == "complete"
 
 
 @posix

@@ -62,10 +62,8 @@ def tradeoff(
     except SettingError as error:
         fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
         raise type(error)(error.setting, error.value, error.problem, fix) from None
-    path = netcdf_name(out, for_scene(scene, "-tradeoff.nc"))
-    files = [path, path.with_suffix(".csv"), path.with_suffix(".png")]
-    for file in files:
-        check_writable(file, force)
+    path = check_writable(netcdf_name(out, for_scene(scene, "-tradeoff.nc")), force)
+    files = [path, *(check_writable(path.with_suffix(suffix), force) for suffix in (".csv", ".png"))]
     with progress(scene, quiet=quiet) as show:
         found = measure(
             scene,

@@ -73,7 +73,7 @@ def named(
         raise SettingError("format", kind or None, problem, f"give a file name or --format of {known}")
     if suffix in formats and suffix != kind:
         raise SettingError("format", kind, f"does not go with the file name {path.name}", "leave one of the two out")
-    if suffix != kind and path.name:
+    if suffix != kind and path.name and not path.is_dir():
         path = path.with_name(f"{path.name}.{kind}")
     return check_writable(path, force, example=f"{what}.{kind}"), kind
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +23,37 @@ if TYPE_CHECKING:
 
     from atmosbox.engine import Snapshot
 
-__all__ = ["Recording"]
+__all__ = ["Recording", "uninterrupted"]
+
+
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C, and a request to end, wait until what stands in this block is complete.
+
+    Examples
+    --------
+    >>> try:
+    ...     with uninterrupted():
+    ...         signal.raise_signal(signal.SIGINT)
+    ...         print("complete")
+    ... except KeyboardInterrupt:
+    ...     print("stopped")
+    complete
+    stopped
+    """
+    came: list[int] = []
+    numbers = (signal.SIGINT, signal.SIGTERM) if threading.current_thread() is threading.main_thread() else ()
+    # None is a handler that was not set from Python, and could not be set again.
+    before = {number: handler for number in numbers if (handler := signal.getsignal(number)) is not None}
+    try:
+        for number in before:
+            signal.signal(number, lambda number, frame: came.append(number))
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    for number in came:
+        signal.raise_signal(number)
 
 
 @dataclass
@@ -58,10 +91,11 @@ class Recording:
             instrument.sample(self.setup.parcel, snapshot)
 
     def end_frame(self, snapshot: Snapshot) -> None:
-        """Let the instruments finish a frame."""
-        for instrument in self.instruments:
-            instrument.end_frame(self.setup.parcel, snapshot)
-        self.times.append(self.setup.parcel.time)
+        """Let all instruments finish a frame, or none: frames that only some have could not be saved."""
+        with uninterrupted():
+            for instrument in self.instruments:
+                instrument.end_frame(self.setup.parcel, snapshot)
+            self.times.append(self.setup.parcel.time)
 
     def advance(self, watch: Callable[[float], None]) -> None:
         """Advance by one frame and measure."""

@@ -12,7 +12,7 @@ from atmosbox.errors import EngineError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
-from atmosbox.simulation.recording import Recording
+from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
 if TYPE_CHECKING:
@@ -151,10 +151,12 @@ def execute(
     except KeyboardInterrupt:
         partial = outcome("interrupted") if recording.frames else None
         if partial is not None and checkpoint is not None:
-            checkpoint.save(partial.dataset)
+            with uninterrupted():
+                checkpoint.save(partial.dataset)
         raise Interrupted(partial) from None
     if checkpoint is not None:
-        checkpoint.finish(done.dataset)
+        with uninterrupted():
+            checkpoint.finish(done.dataset)
     return done
 
 
