@@ -140,7 +140,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         facts={
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in start.sides + 1.0)
             + " nm at the start, real size",
-            "weight of a molecule": "1: every molecule stands for itself",
+            "weight of a molecule": "1, each stands for one real molecule",
             "exaggeration": "none"
             if settings.diameter == 0.37
             else f"molecules {si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",

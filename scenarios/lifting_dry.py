@@ -147,7 +147,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         facts={
             "box": f"{length[0] * scale.length * 1e9:.1f} x {length[1] * scale.length * 1e9:.1f} x "
             f"{length[2] * scale.length * 1e9:.1f} nm at the start, real size",
-            "weight of a molecule": "1: every molecule stands for itself",
+            "weight of a molecule": "1, each stands for one real molecule",
             "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "gamma": gamma,
             "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",

@@ -84,13 +84,15 @@ def wrapped(text: str, width: int, indent: str = "") -> list[str]:
 def story(text: str, width: int) -> list[str]:
     r"""Return a docstring for a terminal: its paragraphs are filled anew, what is indented stays as it is.
 
+    The quotation marks of code are left out.
+
     Examples
     --------
-    >>> story("Air that\nrises cools.\n\n    T ~ p^(2/7)", 80)
+    >>> story("Air that\n``rises`` cools.\n\n    T ~ p^(2/7)", 80)
     ['Air that rises cools.', '', '    T ~ p^(2/7)']
     """
     made: list[str] = []
-    for paragraph in text.strip().split("\n\n"):
+    for paragraph in text.replace("``", "").strip().split("\n\n"):
         lines = paragraph.splitlines()
         plain = not any(line[:1].isspace() or line[:2] in ("- ", "* ", "..") for line in lines)
         made += ["", *(wrapped(" ".join(lines), width) if plain else lines)]

@@ -97,7 +97,7 @@ def rise(
         facts={
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)
             + " nm at the start, real size",
-            "weight of a molecule": "1: every molecule stands for itself",
+            "weight of a molecule": "1, each stands for one real molecule",
             "exaggeration": f"molecules {ascent.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
