@@ -23,6 +23,7 @@ from atmosbox import plot, scenarios
 from atmosbox.errors import DiskFullError, FileError, SettingError
 from atmosbox.plot import caption, tick, unit
 from atmosbox.plot.curve import curve
+from atmosbox.plot.theme import OKABE_ITO
 from atmosbox.scene.panels import Line, Panel, to_json
 
 K_B = 1.380649e-23  # J/K
@@ -534,7 +535,7 @@ def test_theory_is_dashed_and_dark_and_data_solid_with_a_band(drawings):
 
 
 def test_the_colours_are_those_of_okabe_and_ito(drawings):
-    palette = matplotlib.color_sequences["okabe_ito"]
+    palette = [to_rgb(colour) for colour in OKABE_ITO]
     for axes in drawings["elastic-collisions", "notes"].axes[1:]:
         for line in (line for line in lines_of(axes) if not line.is_dashed()):
             assert any(to_rgb(line.get_color()) == pytest.approx(colour) for colour in palette)

@@ -17,6 +17,7 @@ from matplotlib.text import Text
 from atmosbox import plot, theory
 from atmosbox.errors import FileError
 from atmosbox.plot.skewt import levels
+from atmosbox.plot.theme import OKABE_ITO
 from atmosbox.scene.panels import Line, Panel, from_json, to_json
 from atmosbox.scene.sounding import weisman_klemp
 
@@ -241,7 +242,7 @@ def test_cape_is_shaded_between_lfc_and_el_where_the_parcel_is_warmer_and_cin_be
         assert warmer.max() > 0.3
         assert warmer.max() <= (sign * (parcel - air)).max() + 0.05
     assert cape.get_hatch() != cin.get_hatch()
-    palette = [to_rgb(colour) for colour in matplotlib.color_sequences["okabe_ito"]]
+    palette = [to_rgb(colour) for colour in OKABE_ITO]
     for area in (cape, cin):
         assert any(np.allclose(area.get_facecolor()[0][:3], colour) for colour in palette)
 

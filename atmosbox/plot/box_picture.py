@@ -23,7 +23,7 @@ from atmosbox.plot.camera import EDGES, FACES, Camera, corners
 from atmosbox.plot.caption import number
 from atmosbox.plot.disc_marker import put_discs, trails
 from atmosbox.plot.plane import colour_scale, discs
-from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, PALE, Theme
+from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, OKABE_ITO, PALE, Theme
 from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.unit import spelled
 from atmosbox.theory.constants import DRY_AIR
@@ -38,7 +38,7 @@ _UNITS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
 _SMALLEST = 0.18  # diameter of a molecule in the picture, in distances from one to the next if they stood in rows
 _TO_SIZE, _MANY_TIMES = 1.05, 1000.0
 
-_, _ORANGE, _SKY, _, _, _BLUE, _VERMILLION, _ = matplotlib.color_sequences["okabe_ito"]
+_, _ORANGE, _SKY, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO
 _WALL, _POOL, _WARM, _COLD = (to_rgba("#efefef"), to_rgba(_SKY, 0.55), to_rgba(_ORANGE, 0.32), to_rgba(_SKY, 0.32))
 _LID = to_rgba("#8c8c8c", 0.35)
 _DROP = to_rgba(_SKY, 0.9)

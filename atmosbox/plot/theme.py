@@ -11,8 +11,10 @@ import matplotlib.style
 
 from atmosbox.errors import SettingError
 
-# Okabe and Ito's colours, which those who see no difference of red and green can tell apart.
-_BLACK, _ORANGE, _SKY, _GREEN, _YELLOW, _BLUE, _VERMILLION, _PURPLE = matplotlib.color_sequences["okabe_ito"]
+OKABE_ITO = ("#000000", "#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
+"""Okabe and Ito's colours, which those who see no difference of red and green can tell apart."""
+
+_BLACK, _ORANGE, _SKY, _GREEN, _YELLOW, _BLUE, _VERMILLION, _PURPLE = OKABE_ITO
 DARK = "#1a1a1a"
 FAINT = "#595959"
 
