@@ -47,13 +47,13 @@ def uninterrupted() -> Iterator[None]:
     before = {number: handler for number in numbers if (handler := signal.getsignal(number)) is not None}
     try:
         for number in before:
-            signal.signal(number, lambda number, frame: came.append(number))
+            signal.signal(number, lambda which, frame: came.append(which))
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    for number in came:
-        signal.raise_signal(number)
+    for which in came:
+        signal.raise_signal(which)
 
 
 @dataclass
