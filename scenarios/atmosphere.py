@@ -2,14 +2,14 @@
 
 Three thousand molecules in a tall column with real gravity. Each falls freely between collisions, and yet
 the column neither falls down nor leaves: density and pressure decrease with height by the barometric law,
-by a factor e every 8.4 km, while the temperature is the same everywhere. The floor feels the blows of the
-molecules, and floor minus ceiling is the weight of the air.
+by a factor e every 8.4 km, while the temperature is the same everywhere. The molecules hit the floor,
+and the force on the floor minus that on the ceiling is the weight of the air.
 
 Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
 smooth, a smooth ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each
 molecule stands for some 10^34 real ones and is hundreds of metres wide, so that it meets others within a
-stated share of the scale height (the Knudsen number): the theory beside the barometric law counts the
-room that they take. With ``plane`` the air is discs in a plane, and a slab one scale height thick stands for
+stated share of the scale height (the Knudsen number): the theory beside the barometric law counts their
+excluded volume. With ``plane`` the air is discs in a plane, and a slab one scale height thick stands for
 the third dimension. A real atmosphere is stirred and heated from below, and therefore cools with height;
 left alone for long enough it would become isothermal like this one.
 """
@@ -86,7 +86,7 @@ class Column:
     """The column in reduced units: length in scale heights, energy in kT, mass of a molecule.
 
     A column in the plane stands for a slab of unit thickness, so that molecules per area are as many per volume.
-    Where the molecules of the engine take no room from each other, it has no excess pressure.
+    With an engine whose molecules have no volume, it has no excess pressure.
     """
 
     def __init__(self, settings: Settings, engine: EngineChoice = EXACT) -> None:
@@ -196,13 +196,13 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         facts={
             "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
             "weight of a molecule": f"{scale.weight:.2g} real molecules",
-            "exaggeration": f"{width}, which take no room from each other" if engine.ideal else width,
+            "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
             "gamma": "2: the discs move in a plane and do not rotate" if plane else "5/3: the molecules do not rotate",
             "scale height": f"{scale.length / 1000.0:.2f} km",
             "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
             "time": f"{settings.duration * scale.time / 60.0:.0f} minutes",
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
-            f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K at every look",
+            f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
         },
         knobs=(
             wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
@@ -214,7 +214,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the profiles of the barometric law, and of hydrostatics with the room that molecules take, if any."""
+    """Return the profiles of the barometric law, and of hydrostatics with the excluded volume, if any."""
     column = Column(settings, used(dataset))
     scale = column.scale
     kT = column.equilibrium_kT(dataset, settings)
@@ -246,7 +246,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     force = late.wall_pressure.values
     weight = force[:, 4] - force[:, 5]
     expected = column.per_area * column.scale.pressure
-    # what floor less ceiling give beyond the weight is the change of momentum: its variance is N m kT at either end
+    # what floor minus ceiling give beyond the weight is the change of momentum: its variance is N m kT at either end
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[SETTLE, -1], [0, 1]])[0]) / column.scale.time
     chance = math.sqrt(2.0 * column.per_area * kT / column.width ** (column.dimensions - 1)) / lasted
     energy = late.kinetic_energy.values + late.potential_energy.values

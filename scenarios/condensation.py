@@ -3,12 +3,16 @@
 Moist air of real density between walls of one temperature, with more vapour in it than it can hold. Two
 things are counted: the molecules of vapour that meet liquid and stay, and those that leave it. The first rate
 falls while vapour is used up, the second depends on the temperature of the liquid alone, and where they meet
-the air is saturated: the vapour pressure is then e_s(T), the relative humidity 100 %. No rule says so.
+the air is saturated: the vapour pressure is then e_s(T), the relative humidity 100 %.
+
+The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken
+from it. What the run shows is that two rates, counted independently, meet there; that the air plays no part; how
+long it takes; and how much so few molecules scatter.
 
 Modelled: hard molecules of air and water at real density; droplets too fine to draw, of one temperature and a
-given area, that every molecule of vapour sticks to which meets them; a binding energy and two heat capacities,
-from which e_s(T) follows. Left out: ice, the curvature of droplets and what is dissolved in them, so that no
-supersaturation is needed to start; forces between molecules of vapour; gravity.
+given area; every molecule of vapour that meets a droplet sticks to it. Left out: ice, the curvature of droplets and
+what is dissolved in them, so that no supersaturation is needed to start; forces between molecules of vapour;
+gravity.
 """
 
 import math
@@ -47,7 +51,7 @@ PARTS = 24
 """Into how many equal parts of the logarithmic axis of time its curves are averaged."""
 BLOCKS = 20
 MEMORIES = 4.0
-"""After how many memories a surplus is forgotten."""
+"""After how many correlation times the start no longer matters."""
 FEW = 400
 """How many molecules must have condensed for an error to be read from blocks alone."""
 MOLECULE = 0.52
@@ -69,7 +73,7 @@ class Settings(SceneSettings):
     duration: float = setting(40.0, "ns", "how long to watch", low=0.01, high=1e5)
 
     def check(self) -> None:
-        """Refuse vapour that leaves no room for air."""
+        """Refuse so much vapour that no air is left."""
         most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
         if self.si.humidity > most:
             raise SettingError(
@@ -140,7 +144,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             else "none in the gas; the droplets have far more area than so little water could",
             "vapour at the start": f"{start.vapour} molecules; {start.full:.0f} saturate the air",
             "time to condense": f"{memory * 1e9:.2g} ns",
-            "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % at every look",
+            "noise of the hygrometer": f"{100.0 / math.sqrt(start.full):.2g} % in each sample",
         },
         knobs=(wall_temperature(parcel, scale, settings, low=-20.0, high=60.0),),
     )
@@ -179,8 +183,8 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return humidity, vapour pressure and both rates, once they have met.
 
-    The humidity is that at the temperature of the walls. Over that of the air at each look it would come out too large:
-    so few molecules scatter in temperature, and one over e_s is convex.
+    The humidity is that at the temperature of the walls. At the temperature of the air in each sample it would come
+    out too large: the temperature of so few molecules scatters, and 1 / e_s is convex.
     """
     start = _start(settings, ideal=used(dataset).ideal)
     faces = _faces(settings, start)

@@ -93,7 +93,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "weight of a disc": f"1, masses from 10 g to {10.0 * float(mass.max()):.0f} g",
             "exaggeration": "none",
             "gamma": "2: two degrees of freedom",
-            "noise": f"the mean energy of {n // 2} discs scatters by {100.0 * math.sqrt(2.0 / n):.0f} % at every look",
+            "noise": f"the mean energy of {n // 2} discs scatters by {100.0 * math.sqrt(2.0 / n):.0f} % in each sample",
         },
     )
 
@@ -105,12 +105,12 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def _memory(dataset: "xr.Dataset") -> float:
-    r"""Return how long the light discs remember a surplus of energy [s].
+    r"""Return the correlation time of the energy of the light discs [s].
 
     At a contact disc i gets on average :math:`4 m_i m_j / (m_i + m_j)^2` of what j has more, and they meet with the
     rate :math:`\sigma_{ij} g \sqrt{2 \pi kT (1/m_i + 1/m_j)} / A`. So the energies go back to their mean as
     :math:`dE/dt = -R E` with a symmetric matrix R, and of the surplus a of the light discs, which is at the cost of
-    the others, the memory is :math:`a R^{-1} a / a^2`.
+    the others, the correlation time is :math:`a R^{-1} a / a^2`.
     """
     mass, diameter = dataset.disc_mass.values, dataset.disc_diameter.values
     area = float(np.prod(dataset.box_length.values[[0, 2]]))

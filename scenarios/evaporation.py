@@ -3,13 +3,17 @@
 Dry air over a pool of water, at the pressure of the air outside and without heat from anywhere. Of the molecules
 of the pool only those leave that happen to have far more energy than the mean, and the rest grows colder: first
 the pool, then the air above it. The vapour comes back to the pool, the oftener the more there is of it, and where
-as many come back as leave, the air is saturated. No rule says so.
+as many come back as leave, the air is saturated.
+
+The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken
+from it. What the run shows is that two rates, counted independently, meet there; that the air plays no part; that
+the pool cools first and the air follows; and how much so few molecules scatter.
 
 Modelled: hard molecules of air and water of real size and density under a piston that keeps the pressure; a pool
-on the floor that every molecule of vapour sticks to which hits it, that air exchanges heat with, and whose
-molecules leave at the rate of its energy; a binding energy and two heat capacities, from which e_s(T) follows.
-Left out: ice, gravity, currents within the pool, which is of one temperature and takes no room; forces between
-molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is needed to remove it.
+on the floor. Every molecule of vapour that hits the pool sticks; molecules of air exchange heat with it; molecules
+of water leave it at a rate that depends on its energy. Left out: ice, gravity, currents within the pool, which has
+one temperature and no volume; forces between molecules of vapour. At this size no layer of moist air builds up over
+the pool, and no wind is needed to remove it.
 """
 
 import math
@@ -69,7 +73,7 @@ class Settings(SceneSettings):
     diameter: float = setting(0.37, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.0)
 
     def check(self) -> None:
-        """Refuse water that boils, vapour that leaves no room for air, and molecules that do."""
+        """Refuse water that boils, vapour that leaves no air, and molecules too wide for a gas."""
         saturated = float(law.saturation_vapor_pressure(self.si.temperature))
         if saturated >= self.si.pressure:
             coldest = float(law.dewpoint(self.si.pressure)) - 273.15
@@ -157,7 +161,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _wet_bulb(settings: Settings) -> str:
-    """Return the temperature that a pool without end of its own would come to, or why there is none."""
+    """Return the temperature that an endless pool would reach, or why there is none."""
     if settings.humidity > 100.0:
         return "none: the air is supersaturated"
     si = settings.si
@@ -167,13 +171,13 @@ def _wet_bulb(settings: Settings) -> str:
 
 
 def _settled(start: AirOverPool, settings: Settings) -> int:
-    """Return how many frames pass until all has come to rest."""
+    """Return how many frames pass until equilibrium."""
     frame: float = settings.si.duration / start.scale.time / FRAMES
     return math.ceil(min(start.settling / frame, float(FRAMES)))
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return where all ends, saturation over the pool as it is now, and who leaves and who stays."""
+    """Return the final state, saturation over the pool as it is now, and the energies of those that leave and stay."""
     start = _start(settings, ideal=used(dataset).ideal)
     rest = start.rest
     frames = np.ones(dataset.sizes["elapsed_time"])
@@ -195,7 +199,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return temperatures, vapour pressure and both rates, once all is at rest, and the energy of those that leave."""
+    """Return temperatures, vapour pressure and both rates, in equilibrium, and the energy of those that leave."""
     start = _start(settings, ideal=used(dataset).ideal)
     late = dataset.isel(elapsed_time=slice(_settled(start, settings), None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:

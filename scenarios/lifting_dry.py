@@ -1,13 +1,13 @@
 """A parcel of dry air rises and cools.
 
-Some thousand molecules fly in a box whose ceiling is a piston. The piston gives way so that the pressure
-in the box follows that of the air outside, as the parcel rises. Nothing cools the molecules but this:
+Some thousand molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure
+in the box follows that of the environment, as the parcel rises. Nothing cools the molecules but this:
 those that hit the receding ceiling come back slower than they went. Temperature against pressure is the
 dry adiabat, T ~ p^(2/7).
 
 Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact;
 smooth walls; a hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it
-would change its temperature by less than a billionth), water, mixing with the air outside, heat from it.
+would change its temperature by less than a billionth), water, mixing with the environment, heat from it.
 Exaggerated: the molecules are drawn larger than they are, so that they meet often, and some kilometres
 are climbed within nanoseconds. Because the ascent is not infinitely slow, the parcel arrives at 300 hPa
 too warm: by about 150 K divided by the length of the ascent in mean free times, 0.1 K at first.
@@ -84,13 +84,13 @@ def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np
 
 
 def _ascent(settings: Settings) -> law.Ascent:
-    """Return the ascent, which knows what its haste costs."""
+    """Return the ascent, with the error of its finite rate."""
     si = settings.si
     return law.Ascent(si.pressure, si.top_pressure, settings.ascent, 5 if settings.rotation else 3, CLOSING)
 
 
 def _environment(settings: Settings, duration: float) -> Environment:
-    """Return the air around a parcel that climbs evenly for so long [s]."""
+    """Return the environment of a parcel that climbs evenly for so long [s]."""
     si = settings.si
     top = float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
     freedom = 5 if settings.rotation else 3
@@ -112,7 +112,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     rng = np.random.default_rng(settings.seed)
     scale, density, sides, excess = _start(settings, ideal=engine.ideal)
     mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-    if engine.ideal:  # nobody is crowded towards anybody
+    if engine.ideal:  # no excluded volume
         mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
     length = tuple(sides + 1.0)
     degrees = 2.0 if settings.rotation else 0.0
@@ -176,7 +176,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     order = np.argsort(pressure)
     spheres = 0.0 if used(dataset).ideal else 1.0
     ascent, density = _ascent(settings), _start(settings)[1]
-    reason = "the ascent is not infinitely slow, and spheres take up room"
+    reason = "the ascent is not infinitely slow, and spheres have volume"
     found = []
     for level in (100.0 * shown for shown in _levels(settings)):
         if pressure.min() > 1.01 * level:

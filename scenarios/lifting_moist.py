@@ -2,13 +2,17 @@
 
 Below it cools along the dry adiabat, by ten degrees in a kilometre. At the lifting condensation level its vapour
 begins to meet more liquid than leaves it, and every molecule that condenses gives up its binding energy: from
-here on the parcel cools half as fast, along the moist adiabat. Nobody tells it where the cloud base is.
+here on the parcel cools half as fast, along the moist adiabat.
+
+The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken from
+it. The level of the cloud base is not: it is where the parcel, cooled by the receding piston, comes to saturation.
+What the run shows is that level, both lapse rates, and the errors of a fast ascent and of few molecules.
 
 Modelled: hard molecules of air and water that rotate; droplets too fine to draw, of one temperature, carried along
-by the air; a binding energy and two heat capacities, from which the latent heat and e_s(T) follow; a hydrostatic
+by the air; the latent heat, which follows from the binding energy and the heat capacities; a hydrostatic
 environment of constant lapse rate. Reversible: the droplets stay in the parcel; with rain=on the cloud holds a gram
-per kilogram, and what is more falls out, which is nearly pseudo-adiabatic. Left out: ice, the curvature of droplets
-and what is dissolved in them; gravity inside the parcel; mixing with the air outside. Exaggerated: some kilometres
+per kilogram, and any more falls out, which is nearly pseudo-adiabatic. Left out: ice, the curvature of droplets
+and what is dissolved in them; gravity inside the parcel; mixing with the environment. Exaggerated: some kilometres
 are climbed within nanoseconds, in a few hundred collisions of each molecule; the molecules are drawn larger than they
 are; the droplets have far more area than so little water could. Few molecules are vapour, one in fifty, and so the
 cloud base is blurred: already below it some molecules are clustered, RH / (1 - RH) on average.
@@ -45,7 +49,7 @@ ladder = (
     Series("exact", "molecules", (3000, 10_000), {"ascent": 400}),
     Series("dsmc", "ascent", (400, 1000, 3000), {"molecules": 50_000}),
 )
-"""What is worth comparing: haste warms, few molecules blur."""
+"""What is worth comparing: a fast ascent ends too warm, and few molecules blur the cloud base."""
 
 
 class Settings(SceneSettings):

@@ -1,13 +1,13 @@
 """A parcel of air rises through a sounding, and may become a thunderstorm.
 
 The air at the ground is lifted through the air that a balloon has found above it. As long as it is colder than the
-air around, it must be pushed; above the level of free convection its cloud is warmer, and it rises by itself, up to
+environment, it must be pushed; above the level of free convection its cloud is warmer, and it rises by itself, up to
 the equilibrium level. The area between the two curves is the energy that a storm can have.
 
 Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the air;
 the environment as it was measured, hydrostatic; buoyancy of virtual temperatures. Reversible: the droplets stay in the
 parcel, but their weight is not counted, as is usual for CAPE; with rain=on the cloud holds a gram per kilogram. Left
-out: ice, the curvature of droplets; mixing with the air outside, which weakens every real cloud; the parcel's own
+out: ice, the curvature of droplets; mixing with the environment, which weakens every real cloud; the parcel's own
 motion: it is lifted at a steady pace, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within
 nanoseconds.
 """
@@ -87,7 +87,7 @@ def _between(settings: Settings, levels: np.ndarray, pressure: np.ndarray) -> np
 
 
 def _around(settings: Settings, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return temperature, dewpoint and virtual temperature of the air around at pressures [Pa], in K."""
+    """Return temperature, dewpoint and virtual temperature of the environment at pressures [Pa], in K."""
     found = _read(settings.sounding)
     temperature = _between(settings, found.temperature, pressure)
     dewpoint = _between(settings, found.dewpoint, pressure)
@@ -154,7 +154,7 @@ def _verdict(settings: Settings) -> str:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the water of the adiabat, the air around, and the buoyancy."""
+    """Return the water of the adiabat, the environment, and the buoyancy."""
     pressure = dataset.parcel_pressure.values
     _, dewpoint, virtual = _around(settings, dataset.environment_pressure.values)
     at_parcel = _around(settings, pressure)[2]
@@ -187,7 +187,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     colder, warmer = _convection(settings, along - noise), _convection(settings, along + noise)
     least, most = _convection(settings, -off), _convection(settings, off)
     independent = max((len(pressure) * _depth(expected, route)) / SMOOTH, 1.0)
-    reason = "the ascent is not infinitely slow, spheres take up room, and vapour must find liquid"
+    reason = "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid"
     rows = (
         ("cape", "J kg-1", "J kg-1", "CAPE of the parcel", math.sqrt(independent)),
         ("cin", "J kg-1", "J kg-1", "CIN of the parcel", 1.0),

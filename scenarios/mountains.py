@@ -7,7 +7,7 @@ Without rain it would arrive as it set out.
 
 Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the
 air; rain, which takes what liquid the cloud cannot hold with its heat. Left out: ice, the curvature of droplets and
-what is dissolved in them; the wind, mixing with the air outside, heat from the ground and from the sun. Exaggerated:
+what is dissolved in them; the wind, mixing with the environment, heat from the ground and from the sun. Exaggerated:
 eight kilometres up and down within nanoseconds.
 """
 

@@ -75,7 +75,7 @@ def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, flo
     """Return the scale, the density [1/diameter^3], the side that centres can reach [diameters], and Z.
 
     Near a wall a molecule has fewer partners, and so Z - 1 is a little smaller than in open space. Molecules of
-    an ideal gas take no room, and Z is 1.
+    an ideal gas have no volume, and Z is 1.
     """
     si = settings.si
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
@@ -138,7 +138,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "exaggeration": "none: mass, diameter, density and speeds are those of air",
             "gamma": "5/3: the molecules do not rotate",
             "mean free path": f"{free_path * scale.length * 1e9:.3g} nm",
-            "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K at every look",
+            "noise of the thermometer": f"{float(law.temperature_noise(n, 3, si.temperature)):.2g} K in each sample",
         },
         knobs=(wall_temperature(parcel, scale, settings, low=-200.0, high=500.0),),
     )
@@ -179,7 +179,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     per_second = overlapping_average(met * (len(met) / lasted))
     share_of_contacts = law.contact_share((side,) * 3, 1.0, settings.molecules)
     expected = float(law.collision_rate(density, 1.0, 1.0, 1.0)) * share_of_contacts / scale.time
-    if ideal:  # whom chance chooses is crowded by nobody, and has all the others for partners
+    if ideal:  # pairs chosen at random: no excluded volume, and any other molecule may be the partner
         crowded = float(law.contact_value(law.packing_fraction(density, 1.0))) * share_of_contacts
         expected *= (1.0 - 1.0 / settings.molecules) / crowded
     mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
