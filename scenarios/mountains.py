@@ -131,7 +131,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     noise = successive_error(misfit, block=BLOCK)[-1], finite_size.walk(ascent, pressure)[-1] * arrival
     scatter = math.hypot(*noise, finite_size.warmth_of(lost, cold))
     humidity = float(law.vapor_pressure(ascent.pressure, path.vapor[-1]) / law.saturation_vapor_pressure(arrival))
-    hurried = ascent.temperature * finite_size.haste(ascent).finite_speed(ascent.top_pressure)
+    hurried = ascent.temperature * finite_size.finite_rate(ascent).finite_speed(ascent.top_pressure)
     found = [
         Headline(
             "arrival_temperature",

@@ -131,7 +131,7 @@ def gravity(
 
 
 def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:
-    """Return the knob that moves a parcel up and down by hand, at the speed of its planned ascent.
+    """Return the knob that moves a parcel up and down, at the speed of its planned ascent.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 
     Examples
     --------
-    Without a hand on it the parcel rises to the top:
+    Left alone the parcel rises to the top:
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("lifting-dry", {"molecules": 100}))
@@ -160,7 +160,7 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 
 
 def way(parcel: Parcel, driver: FollowPressure) -> Knob:
-    """Return the knob that moves a parcel back and forth by hand along a way that goes up and down.
+    """Return the knob that moves a parcel back and forth along a way that goes up and down.
 
     Examples
     --------

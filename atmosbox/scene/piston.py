@@ -39,7 +39,7 @@ def size_of_parcel(
     pressure
         That of the gas [Pa].
     ideal
-        Whether molecules take no room, and Z is 1.
+        Whether molecules have no volume, and Z is 1.
     flatness
         Height of the box over its width [1].
 
@@ -48,7 +48,7 @@ def size_of_parcel(
     density
         Number density n [1/diameter^3].
     sides : (axis,)
-        Sides of the room that centres can reach [diameter].
+        Sides of the space that centres can reach [diameter].
     excess
         What contacts add to the pressure, (Z - 1) / n [diameter^3].
 
@@ -96,7 +96,7 @@ def moist_parcel(
     molecules, vapour
         How many there are, and how many of them are vapour.
     sides : (axis,)
-        Sides of the room that centres can reach [diameter].
+        Sides of the space that centres can reach [diameter].
     driver
         What moves the piston.
     liquid

@@ -1,4 +1,4 @@
-"""Means with honest error bars, and the critical values of the tests of a distribution."""
+"""Means with their standard errors, and the critical values of the tests of a distribution."""
 
 from typing import NamedTuple
 
@@ -19,9 +19,9 @@ def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> B
     r"""Return the mean of a series and its standard error, from the means of blocks.
 
     Values that follow each other closely in time are not independent, and taking them for such makes an error
-    bar too small. The means of blocks much longer than the memory of the gas, ten mean free times, are: the
-    standard error is their standard deviation over the square root of their number. Blocks of a length L that is
-    not much longer than a memory that fades as :math:`e^{-t/\tau}` show too little. The variance of a mean over a time
+    bar too small. The means of blocks much longer than the correlation time of the gas, ten mean free times, are: the
+    standard error is their standard deviation over the square root of their number. Where a correlation decays as
+    :math:`e^{-t/\tau}`, blocks of a length L not much longer show too little. The variance of a mean over a time
     t is :math:`f(t) / t`, :math:`f = 1 - (1 - e^{-t/\tau}) \tau / t`, and so of n blocks the square of the error is
     divided by :math:`[n f(L) / f(nL) - 1] / (n - 1)`.
 
@@ -32,7 +32,7 @@ def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> B
     blocks
         Number of blocks [1].
     memory
-        Memory :math:`\tau` in values, where theory knows it; 0 for blocks without a memory of each other [1].
+        Correlation time :math:`\tau` in values, where theory gives it; 0 for independent blocks [1].
 
     Returns
     -------
@@ -86,7 +86,7 @@ def _divisible(values: ArrayLike, blocks: int) -> NDArray[np.float64]:
 
 
 def overlapping_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
-    r"""Return the mean of a series of unknown memory and its standard error, from blocks of two lengths.
+    r"""Return the mean of a series of unknown correlation time and its standard error, from blocks of two lengths.
 
     The variance of the mean that blocks of a length L show is too small by a share that goes as 1/L [1]_. That of
     half as long blocks is too small by twice as much, and so :math:`2 V(L) - V(L/2)` is free of that error. All
@@ -112,7 +112,7 @@ def overlapping_average(values: ArrayLike, blocks: int = 20) -> BlockAverage:
     Notes
     -----
     The error is itself uncertain by 20 % for 20 blocks. Where chance makes the difference small, a quarter of V(L) is
-    the least. Blocks of five memories or more make the error right within 2 %, plain blocks within 11 %.
+    the least. Blocks of five correlation times or more make the error right within 2 %, plain blocks within 11 %.
 
     References
     ----------
@@ -151,7 +151,7 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
 
     The energy of a column, say, changes only as heat passes through the floor, and the temperature of each layer
     follows it besides its own quick noise. So a value is :math:`b E + r`, with b from the regression; the error of
-    the mean of E is that of its known memory, and r has been forgotten within a block.
+    the mean of E is that of its known correlation time, and r is not correlated from block to block.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     slow : (time,)
         What changes slowly.
     memory
-        How long that is remembered, in values [1].
+        Its correlation time, in values [1].
     blocks
         As in `overlapping_average`.
 
@@ -234,7 +234,7 @@ def successive_error(values: ArrayLike, block: int = 1, lag: int = 1, near: int 
 
     .. math:: \sigma^2 = \tfrac12 \langle (b_{k + \ell} - b_k)^2 \rangle ,
 
-    where b are running means over the block, and the blocks must not remember each other.
+    where b are running means over the block, and the blocks must be independent of each other.
 
     Parameters
     ----------

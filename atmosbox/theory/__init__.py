@@ -16,7 +16,7 @@ wall_law            with which energy they leave a wall; the heat between two wa
 barometric          how a gas thins out with height
 column_temperature  which temperature an isolated column comes to
 hydrostatic         a column of spheres or discs with excluded volume
-lifting             what becomes of a parcel that is lifted, squeezed or held at its temperature
+lifting             what becomes of a parcel that is lifted, compressed or held at its temperature
 finite_rate         what the finite rate of an ascent, and excluded volume, add to that
 environment         the environment of a parcel: lapse rates, pressures and heights
 standard_atmosphere the same of the International Standard Atmosphere

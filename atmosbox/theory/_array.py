@@ -26,6 +26,6 @@ def require_not_negative(**values: float) -> None:
 
 
 def require_dimensions(dimensions: int) -> None:
-    """Raise ``ValueError`` unless the gas lives in two or three dimensions."""
+    """Raise ``ValueError`` unless there are two or three dimensions."""
     if dimensions not in (2, 3):
         raise ValueError(f"dimensions = {dimensions} must be 2 or 3.")

@@ -1,4 +1,4 @@
-"""The equation of state of spheres or of discs, whichever live in so many dimensions."""
+"""The equation of state of spheres or of discs, by the number of dimensions."""
 
 from collections.abc import Callable
 from functools import partial

@@ -22,12 +22,12 @@ from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
 def parcel_buoyancy(
     parcel_virtual_temperature: ArrayLike, virtual_temperature: ArrayLike, gravity: ArrayLike = STANDARD_GRAVITY
 ) -> FloatArray:
-    r"""Return the acceleration of a parcel that is lighter than the air around it, :math:`g (T_v' - T_v) / T_v`.
+    r"""Return the acceleration of a parcel that is lighter than its environment, :math:`g (T_v' - T_v) / T_v`.
 
     Parameters
     ----------
     parcel_virtual_temperature, virtual_temperature
-        Virtual temperature of the parcel and of the air around it [K].
+        Virtual temperature of the parcel and of its environment [K].
     gravity
         Acceleration of gravity g [m s^-2].
 
@@ -116,7 +116,7 @@ def cape_cin(
     pressure : (level,)
         Pressure, falling from the parcel's start upward [Pa].
     virtual_temperature : (level,)
-        Virtual temperature of the air around the parcel [K].
+        Virtual temperature of the environment [K].
     parcel_virtual_temperature : (level,)
         Virtual temperature of the parcel [K].
     lcl_pressure

@@ -1,6 +1,6 @@
 r"""How often molecules meet, and how far they fly between.
 
-Enskog's theory: the rate of a thin gas, times the crowding at contact :math:`g(\sigma)`. For hard spheres in
+Enskog's theory: the rate of a thin gas, times the pair distribution at contact :math:`g(\sigma)`. For hard spheres in
 equilibrium it is exact.
 
 References
@@ -181,7 +181,7 @@ def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> Flo
 
     Examples
     --------
-    Spheres crowd against each other, points only because the spheres leave them less room:
+    Spheres are denser next to each other; points are so only because the spheres leave them less volume:
 
     >>> print(contact_value_between([0.2, 0.1], [1.0, 0.0]).round(4))
     [[1.3206 1.117 ]

@@ -132,7 +132,7 @@ def compressibility_factor_discs(packing_fraction: ArrayLike, form: DiscForm = "
 
 
 def inverse_compressibility_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
-    r"""Return how stiff a plane gas is against squeezing at constant temperature, :math:`d(\eta Z) / d\eta`.
+    r"""Return how stiff a plane gas is against compression at constant temperature, :math:`d(\eta Z) / d\eta`.
 
     It is :math:`(\partial P / \partial n)_T / kT`, and 1 for an ideal gas.
 

@@ -1,4 +1,4 @@
-r"""What the room that molecules take from each other does to entropy, free energy and the adiabat.
+r"""What the excluded volume of molecules does to entropy, free energy and the adiabat.
 
 References
 ----------
@@ -29,7 +29,7 @@ _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 
 
 def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return the free energy per molecule, in units of kT, that taking up room adds to an ideal gas.
+    r"""Return the free energy per molecule, in units of kT, that excluded volume adds to an ideal gas.
 
     :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`. Hard spheres have no potential energy, so this is
     also minus the excess entropy per molecule in units of k: the room that each molecule takes from the
@@ -76,7 +76,7 @@ def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> Fl
 
 
 def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return the work, in units of kT, of making room for one more molecule.
+    r"""Return the work, in units of kT, of inserting one more molecule.
 
     :math:`\mu_{ex} / kT = a(\phi) + Z(\phi) - 1` with :math:`a` from :func:`excess_free_energy`; the chance
     that a place taken at random is free for a sphere is :math:`e^{-\mu_{ex}/kT}`.
@@ -114,7 +114,7 @@ def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa"
 
 
 def excess_free_energy_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
-    r"""Return the free energy per disc, in units of kT, that taking up room adds to an ideal plane gas.
+    r"""Return the free energy per disc, in units of kT, that excluded volume adds to an ideal plane gas.
 
     :math:`a(\eta) = \int_0^\eta (Z - 1)\, d\eta' / \eta'`, as :func:`excess_free_energy` of spheres.
 
@@ -158,7 +158,7 @@ def excess_free_energy_discs(packing_fraction: ArrayLike, form: DiscForm = "hend
 
 
 def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
-    r"""Return the work, in units of kT, of making room for one more disc, :math:`a(\eta) + Z(\eta) - 1`.
+    r"""Return the work, in units of kT, of inserting one more disc, :math:`a(\eta) + Z(\eta) - 1`.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm 
 def hard_sphere_isentrope(
     packing_fraction: ArrayLike, packing_fraction0: ArrayLike, dof: float = 3, form: Form = "kolafa"
 ) -> FloatArray:
-    r"""Return by what factor a gas of spheres warms when it is squeezed slowly and without heat.
+    r"""Return by what factor a gas of spheres warms when it is compressed slowly and without heat.
 
     The entropy per molecule, :math:`(f/2) \ln T - \ln \phi - a(\phi)`, stays, so
 
@@ -232,7 +232,7 @@ def hard_sphere_isentrope(
 
     Examples
     --------
-    Squeezed from a twentieth to a tenth filled, spheres warm by a factor 1.87; points would by 1.59:
+    Compressed from a twentieth to a tenth filled, spheres warm by a factor 1.87; points would by 1.59:
 
     >>> round(float(hard_sphere_isentrope(0.10, 0.05)), 4)
     1.8673

@@ -1,4 +1,4 @@
-r"""The air around a parcel: temperature, pressure and height of an atmosphere at rest.
+r"""The environment of a parcel: temperature, pressure and height of an atmosphere at rest.
 
 Hydrostatic balance :math:`dp/dz = -\rho g` with the ideal gas law. Heights are geopotential, gravity does not
 change with height, units are SI.

@@ -1,4 +1,4 @@
-r"""Spheres that take up room: by how much they press harder than an ideal gas, and what follows.
+r"""Spheres with excluded volume: by how much they press harder than an ideal gas, and what follows.
 
 The packing fraction :math:`\phi = \pi n \sigma^3 / 6` is the share of the space that the spheres fill.
 Everything here depends on it alone, never on the temperature: hard spheres have no energy but their motion.
@@ -82,7 +82,7 @@ def packing_fraction(number_density: ArrayLike, diameter: ArrayLike) -> FloatArr
 
 
 def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return how crowded it is around a molecule: the pair distribution at contact, :math:`g(\sigma)`.
+    r"""Return how much denser it is next to a molecule: the pair distribution at contact, :math:`g(\sigma)`.
 
     It is 1 in a thin gas. Neighbours shield each other from being hit elsewhere, so pairs in contact are more
     frequent than chance, and by the virial theorem :math:`Z = 1 + 4 \phi g(\sigma)`.
@@ -158,7 +158,7 @@ def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -
 
 
 def inverse_compressibility(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return how stiff the gas is against squeezing at constant temperature.
+    r"""Return how stiff the gas is against compression at constant temperature.
 
     :math:`(\partial P / \partial n)_T / kT`, in terms of the compressibility factor
     :math:`d(\phi Z) / d\phi`; 1 for an ideal gas. Its inverse is the mean square fluctuation of the number of

@@ -1,4 +1,4 @@
-r"""Where evaporation and condensation end: the temperature and the vapour of air that has come to rest with water.
+r"""Where evaporation and condensation end: the temperature and the vapour of air in equilibrium with water.
 
 Evaporation takes its heat from the air, the vapour and the liquid. What ends it is saturation, or the last drop.
 Units are SI; heat capacities of single bodies are in k.
@@ -22,7 +22,7 @@ from atmosbox.theory._water import (
 
 
 class EvaporationEquilibrium(NamedTuple):
-    """Air, vapour and liquid at rest with each other."""
+    """Air, vapour and liquid in equilibrium."""
 
     temperature: FloatArray
     """Temperature [K]."""

@@ -1,4 +1,4 @@
-r"""A column of spheres or discs that take up room, in gravity: the barometric law of a gas that is not ideal.
+r"""A column of spheres or discs with excluded volume, in gravity: the barometric law of a gas that is not ideal.
 
 Each layer carries the weight of those above, :math:`dP/dz = -n m g`, and the column is isothermal. With
 :math:`P = n k T Z(\phi)` this says that the chemical potential falls by the work of lifting,

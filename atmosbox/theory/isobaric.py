@@ -1,6 +1,6 @@
-r"""How much vapour a small parcel of air over water holds, if it is let alone at constant pressure.
+r"""How much vapour a small parcel of air over water holds, if it is left alone at constant pressure.
 
-The exact distribution at equilibrium, for any number of molecules, one even: where a law of evaporation and
+The exact distribution at equilibrium, for any number of molecules, even for one: where a law of evaporation and
 condensation must lead under a piston. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 """
 

@@ -1,4 +1,4 @@
-r"""What becomes of a parcel of gas that is lifted, squeezed, or held at its temperature while it expands.
+r"""What becomes of a parcel of gas that is lifted, compressed, or held at its temperature while it expands.
 
 A molecule with f degrees of freedom has the heat capacity :math:`(f/2) k` at constant volume and
 :math:`(f/2 + 1) k` at constant pressure. Air has f = 5, three of translation and two of rotation; spheres

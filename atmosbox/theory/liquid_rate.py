@@ -27,7 +27,7 @@ from atmosbox.theory._water import (
 from atmosbox.theory.constants import BOLTZMANN, WATER
 
 LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
-"""Energy that a molecule carries across the surface, in kT: 2 by flight, for the fast come oftener, 3/2 by rotation."""
+"""Energy that a molecule carries across the surface, in kT: 2 of flight (the fast cross more often), 3/2 of rotation."""
 
 
 def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:
@@ -111,7 +111,7 @@ def microcanonical_flux(
 
     Examples
     --------
-    Fifty molecules with the energy of 20 degC let go of fewer than a large liquid of that temperature:
+    From fifty molecules with the energy of 20 degC fewer evaporate than from a large liquid of that temperature:
 
     >>> energy = 50 * LIQUID_HEAT * BOLTZMANN * 293.15
     >>> round(float(microcanonical_flux(energy, 50) / hertz_knudsen_flux(293.15)), 2)

@@ -1,4 +1,4 @@
-"""A cloud that rains at a finite rate: the way of a parcel when time counts, too."""
+"""A cloud that rains at a finite rate: the path of a parcel, which depends on time as well."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,7 +29,7 @@ def raining_path(
     most_liquid: float = 0.0,
     nuclei_heat: float = 0.0,
 ) -> ParcelPath:
-    r"""Follow a parcel up and down whose cloud rains in proportion to what it holds too much.
+    r"""Follow a parcel up and down whose cloud rains in proportion to its liquid beyond a threshold.
 
     Liquid l beyond a threshold falls out as :math:`-dl/dt = r \, (l - l_0)` [1]_, and takes its entropy with it.
     All else is kept, and at equilibrium. A rate of zero is the reversible adiabat; without end fast, and with a

@@ -44,7 +44,7 @@ def _vapor_number(log_weight: FloatArray) -> VaporNumber:
 def isothermal_vapor_number(water: int, temperature: float, volume: float) -> VaporNumber:
     r"""Return how the number of molecules of vapour scatters in a closed box with liquid, held at its temperature.
 
-    Each molecule of vapour comes back at the same rate, and the liquid lets go of molecules at one rate, if it
+    Each molecule of vapour comes back at the same rate, and molecules leave the liquid at one rate, if it
     has any. So the number is Poisson-distributed with :math:`\lambda = e_s V / kT`, cut off at all the water.
 
     Parameters

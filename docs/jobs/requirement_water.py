@@ -53,7 +53,7 @@ def rising_cloud(found: Findings) -> None:
     small = (3.0 * WATER.molecule_mass * 100.0 / (4.0 * math.pi * LIQUID_DENSITY)) ** (1.0 / 3.0)
     pseudo = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water, 0.0)
     lost = float(pseudo.temperature[0]) - end
-    hurry = end * finite_size.haste(ascent).finite_speed(top)
+    hurry = end * finite_size.finite_rate(ascent).finite_speed(top)
     low, high = base - finite_size.blur(ascent), base + finite_size.blur(ascent)
     lag = finite_size.lag(ascent, 0.8 * base)
     nuclei = theory.parcel_path([top], ascent.pressure, ascent.temperature, ascent.total_water)

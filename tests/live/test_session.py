@@ -215,7 +215,7 @@ def test_a_parcel_is_led_down_again_by_hand():
     assert top["parcel_height"][-1] == pytest.approx(box.setup.knobs[0].high * 1000.0)
     assert back["parcel_height"][-1] == pytest.approx(0.0, abs=1.0)
     assert back["environment_pressure"][-1] == pytest.approx(1e5)
-    assert back["parcel_temperature"][-1] == pytest.approx(288.15, abs=12.0)  # haste warms it on the way: 150 K / 200
+    assert back["parcel_temperature"][-1] == pytest.approx(288.15, abs=12.0)  # finite-rate error: 150 K / 200
     assert len(back["parcel_pressure"]) == len(back["elapsed_time"]) >= 85
     assert box.state()["ledger"] < LEDGER_LIMIT
 

@@ -1,4 +1,4 @@
-"""Adiabats, pistons and the air around a parcel: textbook values, and the laws that tie them together."""
+"""Adiabats, pistons and the environment of a parcel: textbook values, and the laws that tie them together."""
 
 import numpy as np
 import pytest

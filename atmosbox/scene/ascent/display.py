@@ -1,4 +1,4 @@
-"""What a lifted parcel of moist air tells: its curves, its numbers, its figure."""
+"""What a lifted parcel of moist air shows: its curves, its numbers, its figure."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
         planned = np.exp(np.interp(middle, shares, np.log(ascent.route)))
         if np.allclose(planned, dataset.environment_pressure.values, rtol=1e-6):
             path = law.ParcelPath(*(np.interp(middle, shares, each) for each in along))
-        else:  # it was led by hand
+        else:  # its altitude was set by a knob
             path = ascent.path(pressure, middle)
     else:
         path = ascent.path(pressure, pressure)
@@ -166,7 +166,7 @@ def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -
                 float(np.hypot(scatter[middle], expected * finite_size.walk(ascent, np.array([level]))[0])),
                 expected if finite_size.comparable(ascent) else None,
                 finite_size.tolerance(ascent, level, ideal=ideal),
-                "the ascent is not infinitely slow, spheres take up room, and vapour must find liquid",
+                "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid",
                 "K",
                 "degC",
                 f"temperature at {level / 100.0:.0f} hPa",

@@ -1,7 +1,7 @@
-"""What the model itself costs: how far a parcel may be from its adiabat, and a cloud base from its level.
+"""The errors of the model itself: how far a parcel may be from its adiabat, and a cloud base from its level.
 
-Three things are not as in a cloud of kilometres. The way takes nanoseconds; molecules take up room; and few of
-them are vapour, so that a cloud is never far from having none.
+Three things are not as in a cloud of kilometres. The way takes nanoseconds; molecules have volume; and few of
+them are vapour, so that a cloud consists of few molecules.
 """
 
 import math
@@ -16,7 +16,7 @@ from atmosbox.scene.piston import CLOSING, size_of_parcel
 __all__ = [
     "blur",
     "comparable",
-    "haste",
+    "finite_rate",
     "haze",
     "lag",
     "least_cloud",
@@ -29,19 +29,19 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-def haste(ascent: MoistAscent) -> law.Ascent:
-    """Return what the speed costs; a detour down and up again makes the way faster, and longer."""
+def finite_rate(ascent: MoistAscent) -> law.Ascent:
+    """Return the ascent at a constant rate that has the same finite-rate error; a detour makes the way faster."""
     detour = ascent.travel / math.log(ascent.pressure / ascent.top_pressure)
     return law.Ascent(ascent.pressure, ascent.top_pressure, ascent.length / detour**2, closing=CLOSING)
 
 
 def walk(ascent: MoistAscent, pressure: Array) -> Array:
-    r"""Return what the chance of the piston's work leaves behind, as a share of the temperature, by pressure [Pa].
+    r"""Return the scatter of the temperature by that of the piston's work, as a share of it, by pressure [Pa].
 
-    As in dry air it is :math:`\sqrt{2 s / N} / c_p`, for the entropy s that the haste makes per molecule. The pressures
-    are in the order in which they are met: what was left behind at the lowest so far stays on the way down.
+    As in dry air it is :math:`\sqrt{2 s / N} / c_p`, for the entropy s that the finite rate makes per molecule. The
+    pressures are in the order in which they are met: the scatter at the lowest so far stays on the way down.
     """
-    speed = haste(ascent)
+    speed = finite_rate(ascent)
     lowest = np.minimum.accumulate(np.minimum(pressure.ravel(), ascent.pressure))
     gained = np.array([3.5 * speed.finite_speed(float(p)) for p in lowest])
     share: Array = np.sqrt(2.0 * gained.reshape(pressure.shape) / ascent.molecules) / 3.5
@@ -122,7 +122,7 @@ def least_cloud(ascent: MoistAscent) -> float:
 
 
 def comparable(ascent: MoistAscent) -> bool:
-    """Tell whether theory, which knows of no chance, says how much it rains."""
+    """Tell whether theory, which leaves chance out, says how much it rains."""
     return not ascent.rains or ascent.most_liquid >= least_cloud(ascent)
 
 
@@ -160,7 +160,7 @@ def lag(ascent: MoistAscent, pressure: float) -> float:
 def rain_scatter(ascent: MoistAscent) -> float:
     r"""Return by how much the rain scatters, per dry air [kg kg-1].
 
-    Rain forgets what the cloud held a time 1/r ago, and the cloud forgets its scatter s within the time
+    Rain depends on what the cloud held during the last time 1/r, and the scatter s of the cloud decays within the time
     :math:`\tau` in which vapour meets liquid, over the steepness; what is left is :math:`s \sqrt{r \tau}`.
     """
     t = float(ascent.planned_at(ascent.top_pressure).temperature[0])
@@ -172,7 +172,7 @@ def rain_scatter(ascent: MoistAscent) -> float:
 def tolerance(ascent: MoistAscent, pressure: float, *, ideal: bool) -> float:
     """Return how far from the adiabat the model itself may take the parcel where it first meets a pressure [K]."""
     density = size_of_parcel(ascent.scale, ascent.molecules, ascent.pressure, ideal=ideal)[0]
-    speed = haste(ascent)
+    speed = finite_rate(ascent)
     room = 0.0 if ideal else speed.room(min(pressure, ascent.pressure), density)
     path = ascent.planned_at(pressure)
     t = float(path.temperature[0])

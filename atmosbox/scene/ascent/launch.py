@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Mist
-from atmosbox.scene.ascent.finite_size import haste, least_cloud, walk
+from atmosbox.scene.ascent.finite_size import finite_rate, least_cloud, walk
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
 from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
@@ -45,9 +45,9 @@ def rise(
     engine
         What lets its time pass.
     height, around
-        Height of the parcel [m] and temperature of the air outside [K] when a share of the time, 0 to 1, has passed.
+        Height of the parcel [m] and temperature of the environment [K] when a share of the time, 0 to 1, has passed.
     frames, looks
-        Into how many frames the way is divided, and how often the parcel is looked at in each.
+        Into how many frames the way is divided, and how many samples of the parcel are taken in each.
     seed
         Seed of all random numbers.
     """
@@ -55,7 +55,7 @@ def rise(
     scale, n = ascent.scale, ascent.molecules
     density, sides, excess = size_of_parcel(scale, n, ascent.pressure, ideal=engine.ideal)
     mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-    if engine.ideal:  # nobody is crowded towards anybody
+    if engine.ideal:  # no excluded volume
         mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
     duration = ascent.length * mean_free_time
     shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
@@ -85,7 +85,7 @@ def rise(
     def curve(pressure: Array) -> Array:
         return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * looks)).temperature
 
-    warmth = ascent.temperature * haste(ascent).finite_speed(ascent.top_pressure)
+    warmth = ascent.temperature * finite_rate(ascent).finite_speed(ascent.top_pressure)
     base = ascent.base
     return Setup(
         parcel,

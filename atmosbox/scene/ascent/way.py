@@ -35,7 +35,7 @@ class MoistAscent:
     temperature, pressure, vapour_pressure
         At the start [K, Pa, Pa].
     route
-        Pressure outside at equal times, from the start to the end [Pa].
+        Pressure of the environment at equal times, from the start to the end [Pa].
     length
         How long the way is, in mean free times at its start.
     area

@@ -1,4 +1,4 @@
-"""Vapour and liquid that trade molecules until as many come as go: what the scenes of it know by theory."""
+"""Vapour and liquid in exchange until both rates are equal: the theory that the scenes of it share."""
 
 from atmosbox.scene.exchange.emission import energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.exchange.moist_box import MoistBox

@@ -1,4 +1,4 @@
-"""Who leaves a pool: with which energy, and how warm the pool was when it let them go."""
+"""Molecules that leave a pool: with which energy, and how warm the pool was then."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["energy_of_those_that_leave", "temperature_of_those_that_left"]
 
 
 def temperature_of_those_that_left(dataset: xr.Dataset) -> float:
-    """Return the temperature of the liquid as those knew it that left it [K]; NaN if nobody did.
+    """Return the mean temperature of the liquid at the moments when molecules left it [K]; NaN if none did.
 
     A pool that is lost now and then is made of a molecule or two that came from the gas, and has its temperature.
     """
@@ -56,7 +56,7 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
             math.sqrt(float((middle - mean) ** 2 @ share) / left),
             BOLTZMANN * law.BINDING_TEMPERATURE + flux,
             flux * law.BINDING_TEMPERATURE / warm / (law.LIQUID_HEAT_CAPACITY * start.pool),
-            "a pool of few molecules is warmer when it lets one go",
+            "a pool of few molecules is warmer when one leaves",
             "J",
             "zJ",
             "energy of leaving molecules",

@@ -30,7 +30,7 @@ class MoistBox:
     humidity
         Relative humidity at the start [1].
     ideal
-        Whether molecules take no room.
+        Whether molecules have no volume.
 
     Examples
     --------
@@ -110,8 +110,8 @@ class MoistBox:
     def over_drops(self, liquid: ArrayLike, drops: ArrayLike, ball: float) -> NDArray[np.float64]:
         r"""Return the vapour pressure over drops at rest, over that of saturation.
 
-        A drop that takes up a molecule pushes the gas away from the volume v that the molecule fills, with the room
-        that others' centres keep from it. That work raises the vapour pressure (Poynting),
+        A drop that takes up a molecule pushes the gas away from the volume v that the molecule fills, which includes
+        the volume excluded to the centres of others. That work raises the vapour pressure (Poynting),
 
         .. math:: e = e_s\, e^{n v} \frac{L + 1}{L + D} .
 
@@ -140,7 +140,7 @@ class MoistBox:
         return share
 
     def memory(self, faces: float) -> float:
-        r"""Return how long the number of molecules of vapour remembers a chance surplus [s].
+        r"""Return the correlation time of the number of molecules of vapour [s].
 
         A surplus must find liquid, :math:`4V/A\bar c`, but its latent heat must leave the droplets with the air that
         hits them, and the air with the walls: until then the liquid is too warm to keep it. A hit takes 3 kT along.

@@ -1,4 +1,4 @@
-"""Air over a pool at constant pressure, as theory knows it: how long it takes to come to rest, and where it ends."""
+"""Air over a pool at constant pressure, by theory: its equilibrium, and how long it takes to get there."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class AirOverPool:
     temperature, pressure, vapour_pressure
         At the start [K, Pa, Pa].
     ideal
-        Whether molecules take no room.
+        Whether molecules have no volume.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class AirOverPool:
         Numbers of molecules at the start.
     free_time, exchange, closing, settling
         Mean free time; how long a molecule of vapour takes to meet the pool; how long the piston takes to close a gap
-        of pressure; and within which time all comes to rest [reduced time].
+        of pressure; and the time to equilibrium [reduced time].
     """
 
     molecules: int
@@ -82,7 +82,7 @@ class AirOverPool:
 
     @property
     def memory(self) -> float:
-        """How long the number of molecules of vapour remembers a chance surplus [s]."""
+        """Correlation time of the number of molecules of vapour [s]."""
         return 0.5 * (self.exchange + self.free_time) * self.scale.time
 
     @property
@@ -122,7 +122,7 @@ class AirOverPool:
     def loss(self, time: float) -> float:
         r"""Return how much heat the piston may have taken by a time [reduced], in kelvins of all there is.
 
-        It moves when the pressure has changed, which is a little late: while it gives way the pressure is above that
+        It moves when the pressure has changed, which is a little late: while it recedes the pressure is above that
         outside, and more work is done than is needed; while it closes in, less. Of a change S of ln p, at once, that
         costs :math:`S^2 / 2 \Gamma` of p V. The noise that the heat between pool and air makes in ln p costs its
         variance over :math:`\Gamma`, again within each time that the piston needs.

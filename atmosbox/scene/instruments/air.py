@@ -114,6 +114,6 @@ class Air:
         columns = {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
         if not columns["numerical_heat"].any():  # most schemes make none
             del columns["numerical_heat"]
-        if not columns["work_by_gravity"].any():  # few boxes have it changed by hand
+        if not columns["work_by_gravity"].any():  # few boxes have it changed while they run
             del columns["work_by_gravity"], columns["gravity"]
         return Readings(columns)

@@ -16,7 +16,7 @@ __all__ = ["DropSizes"]
 class DropSizes:
     """The number of drops, the radius of the largest, and the area of all on which molecules hit them.
 
-    Molecules hit a drop when their centres are half a diameter from it. The area is the mean over the looks within a
+    Molecules hit a drop when their centres are half a diameter from it. The area is the mean over the samples within a
     frame, the other two are those at its end.
     """
 

@@ -27,7 +27,7 @@ class Layers:
     number
         How many layers; the box must count its virial by as many.
     memory
-        How long the energy of the column is remembered [reduced time], see `atmosbox.scene.statistics.average_beside`.
+        Correlation time of the energy of the column [reduced time], see `atmosbox.scene.statistics.average_beside`.
     """
 
     def __init__(self, number: int, memory: float = 0.0) -> None:

@@ -1,4 +1,4 @@
-"""A parcel on its way up, and the air around it."""
+"""A parcel on its way up, and its environment."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REFERENCE_PRESSURE = 1e5
 
 @dataclass(frozen=True)
 class Environment:
-    """The air around a parcel that rises: its height, pressure and temperature as functions of time.
+    """The environment of a parcel that rises: its height, pressure and temperature as functions of time.
 
     Parameters
     ----------
@@ -48,9 +48,9 @@ class Lift:
     Parameters
     ----------
     driver
-        The driver of the piston, which knows the pressure of the parcel.
+        The driver of the piston, which measures the pressure of the parcel.
     environment
-        The air around.
+        The environment.
 
     Notes
     -----
@@ -65,7 +65,7 @@ class Lift:
     .. math:: w = \int \left( \frac{d \ln n}{dt} \right)^2 \frac{dt}{n \sqrt{T}} ,
 
     and the variance, N times, is twice the drift [1]_. The variance is measured by the steps from one of 20 blocks of
-    the ascent to the next, less their share of the drift; w tells how much of it has been gathered by when. To it
+    the ascent to the next, minus their share of the drift; w tells how much of it has been gathered by when. To it
     comes the variance of the barometer, that of Z about the straight line.
 
     Against the scatter of 24 to 144 runs each the error is right within 20 %, as well as these can tell, from 400

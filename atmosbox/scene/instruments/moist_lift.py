@@ -1,4 +1,4 @@
-"""A parcel of moist air on its way, and the air around it."""
+"""A parcel of moist air on its way, and its environment."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 class MoistLift:
     r"""A parcel of moist air on its way: temperature and pressure of parcel and environment against height.
 
-    Both are means over the looks within a frame; of the pressure, its logarithm. The number of molecules of vapour is
-    never at rest, and with it the temperature: each molecule that condenses warms the others. That noise has a
+    Both are means over the samples within a frame; of the pressure, its logarithm. The number of molecules of vapour is
+    never constant, nor is the temperature: each molecule that condenses warms the others. That noise has a
     memory of a frame or two. How large it is in the mean of a frame is told by how much the misfit from the adiabat
     changes within three frames, by `atmosbox.scene.statistics.successive_error`. To it comes the noise of the piston's
     work, which adds up on the way.
@@ -32,9 +32,9 @@ class MoistLift:
     Parameters
     ----------
     driver
-        The driver of the piston, which knows the pressure of the parcel.
+        The driver of the piston, which measures the pressure of the parcel.
     environment
-        The air around.
+        The environment.
     curve
         Temperatures [K] that theory expects along a sequence of pressures [Pa], in the order in which they are met.
     walk

@@ -46,10 +46,10 @@ def wall_laws(parcel: Any) -> tuple[str, ...]:
 
 
 class Molecules:
-    """Places and speeds of all molecules and the box they are in, for who asked for them with ``--save-molecules``.
+    """Places and speeds of all molecules and the box they are in, for ``--save-molecules``.
 
-    A molecule that is in the liquid has neither place nor speed, and reads NaN. Where there is water, it is told which
-    molecules are water, and of drops that can be seen where they are.
+    A molecule that is in the liquid has neither place nor speed, and reads NaN. Where there is water, the readings say
+    which molecules are water, and where drops are that can be seen.
     """
 
     def __init__(self) -> None:
@@ -66,7 +66,7 @@ class Molecules:
         """Need no sample between frames."""
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Remember all molecules, in single precision, the drops and how large the box is."""
+        """Keep all molecules, in single precision, the drops and how large the box is."""
         present = parcel.present
         position = np.full((present.size, 3), np.nan, np.float32)
         speed = np.full(present.size, np.nan, np.float32)

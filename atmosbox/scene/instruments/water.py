@@ -45,7 +45,7 @@ def vapour_pressure(parcel: Any, kT: float) -> float:
 class Water:
     """Vapour pressure and relative humidity, the liquid and its temperature, and the two rates.
 
-    All are means over the looks within a frame; the numbers of molecules are those at its end.
+    All are means over the samples within a frame; the numbers of molecules are those at its end.
     """
 
     def __init__(self) -> None:

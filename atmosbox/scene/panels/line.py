@@ -29,7 +29,7 @@ class Line:
         What the legend calls the curve.
     role : {"data", "theory", "environment", "reference"}
         ``data`` was measured (solid, with its error band), ``theory`` calculated (dashed, dark),
-        ``environment`` belongs to the air outside a parcel (dash-dotted), ``reference`` is a broad, pale line to
+        ``environment`` belongs to the environment of a parcel (dash-dotted), ``reference`` is a broad, pale line to
         compare with.
     error : str, optional
         Name of the standard error of the measured variable, drawn as a band or as bars of one standard error.

@@ -7,7 +7,7 @@ profile       the sounding itself: pressure, temperature, dewpoint from the grou
 column        the names and units under which its columns go
 check         what no ascent can be
 table         from the columns of a file to a sounding: units, missing values, order
-reading       the one door to files, which recognises their format
+reading       opens a file and recognises its format
 wyoming       the University of Wyoming's tables, as text or page of the web
 sharppy       SHARPpy's text
 delimited     CSV and its kin

@@ -1,4 +1,4 @@
-"""The one door to files: open, recognise by content, read, check."""
+"""Reading a file of any format: open, recognise by content, read, check."""
 
 from __future__ import annotations
 
