@@ -1,4 +1,4 @@
-"""The pages that look: what each of them has still to be told, never more than a little."""
+"""The pages that are open, and the messages that wait for each of them, never more than a few."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _LATEST = ('{"type": "state"', '{"type": "arrays"')
 
 
 class Mailbox:
-    """What a page has still to be told.
+    """The messages that wait for one page.
 
     Of pictures, states and arrays only the latest waits. What must not be missed waits in order; a page that is so
-    slow that too much of it gathers is told everything anew instead.
+    slow that too many wait gets everything anew instead.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class Mailbox:
         self.waiting.set()
 
     def take(self) -> list[str | bytes]:
-        """Return what waits, and forget it."""
+        """Return what waits, and empty the mailbox."""
         found: list[str | bytes] = [*self._texts, *self._latest.values()]
         if self._picture is not None:
             found.append(self._picture)
@@ -65,7 +65,7 @@ class Mailbox:
 
 
 class Audience:
-    """All pages that look.
+    """All pages that are open.
 
     Examples
     --------
@@ -90,7 +90,7 @@ class Audience:
         return box
 
     def leave(self, box: Mailbox) -> None:
-        """Forget a page that has gone."""
+        """Remove a page that has gone."""
         self._boxes.pop(box.number, None)
 
     def put(self, page: int | None, message: str | bytes) -> None:

@@ -64,7 +64,7 @@ class Control:
         return self.parameter.parse(value)
 
     def record(self) -> dict[str, Any]:
-        """Return it as the page is told of it.
+        """Return it as data for the page.
 
         Examples
         --------

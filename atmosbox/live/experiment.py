@@ -31,9 +31,9 @@ _WINDOW = 6000
 
 
 class Experiment:
-    """A box that begins, and all that watches it.
+    """A box at its start, with its instruments.
 
-    However its time is cut into pieces, a box that nobody changes does the same as in ``atmosbox run``. What the
+    However its time is cut into pieces, a box that is not changed does the same as in ``atmosbox run``. What the
     graphs show is measured by instruments that begin anew after each change and, in a box that could go on for ever,
     now and then: of an ascent, they watch the whole way.
 
@@ -214,7 +214,7 @@ class Experiment:
 
 
 def _copied(instrument: Instrument) -> Instrument:
-    """Return an instrument that has seen as little as this one, and looks at the same box."""
+    """Return an instrument that has seen as little as this one, and measures the same box."""
     twin = copy.copy(instrument)
     for name, value in vars(instrument).items():
         if isinstance(value, list | dict | set | np.ndarray):

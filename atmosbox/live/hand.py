@@ -20,7 +20,7 @@ from atmosbox.simulation.preparation import Prepared
 __all__ = ["MOST_CHANGES", "Hand", "begun_anew", "meeting", "with_collisions"]
 
 MOST_CHANGES = 5000
-"""How many changes are remembered: as many as a file can tell."""
+"""How many changes are kept: as many as a file can hold."""
 
 
 class Hand:
@@ -58,7 +58,7 @@ class Hand:
 
     @property
     def overflows(self) -> bool:
-        """Whether there are more changes than a file can tell."""
+        """Whether there are more changes than a file can hold."""
         return len(self.changes) > MOST_CHANGES
 
     def settings(self, prepared: Prepared) -> dict[str, Value]:

@@ -135,7 +135,7 @@ class Recorder:
         Parameters
         ----------
         why
-            What is said if something is being recorded, where nobody has asked for the end.
+            What is said if something is being recorded, where the end was not asked for.
         """
         if why is not None and self.name is not None:
             self._note("warning", why)

@@ -1,4 +1,4 @@
-"""A box that the class plays with: it runs, is changed by hand, measured and recorded; no socket is needed."""
+"""A box for a class: it runs, is changed by hand, measured and recorded; no socket is needed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _STEP = 0.04
 class Session:
     """A box with its instruments, advanced in small pieces, that obeys what the page asks for.
 
-    However its time is cut into pieces, a box that nobody changes does the same as in ``atmosbox run``.
+    However its time is cut into pieces, a box that is not changed does the same as in ``atmosbox run``.
 
     Parameters
     ----------
@@ -116,13 +116,13 @@ class Session:
 
     @property
     def changes(self) -> list[Change]:
-        """What was turned by hand, in order."""
+        """What was changed by knobs, in order."""
         return self._hand.changes
 
     # ------------------------------------------------------------------ time
 
     def run(self, seconds: float, budget: float | None = None) -> None:
-        """Let as much time pass in the box as belongs to so many seconds, if it is playing.
+        """Advance the box by what belongs to so many seconds, if it is playing.
 
         Parameters
         ----------
@@ -154,7 +154,7 @@ class Session:
             self.finished = True
             self.playing = False
             names = [name for name in self._hand.names if name in ("altitude", "way")]
-            lead = f"; lead the parcel on with {names[0]}" if names else ""
+            lead = f"; move the parcel on with {names[0]}" if names else ""
             self.note("info", f"The parcel has come to the end of its way{lead}, or begin anew.")
             return False
         if frame >= longest(self.experiment):
@@ -180,7 +180,7 @@ class Session:
         """
         try:
             self._obey(message.get("type"), message)
-        except SettingError as error:  # said for somebody who types
+        except SettingError as error:  # worded for the command line
             fix = error.fix.replace("--set ", "").replace("--engine ", "the engine ")
             raise type(error)(error.setting, error.value, error.problem, fix) from None
 

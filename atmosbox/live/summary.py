@@ -22,7 +22,7 @@ _MOST = 1500
 
 
 class Report:
-    """The graphs of a scene, told bit by bit.
+    """The graphs of a scene, sent bit by bit.
 
     Where all that changes with time is drawn against time, only what is new is told. A scene that draws one series
     against another, as a parcel against its pressure, has all its values told whole, each time.

@@ -28,7 +28,7 @@ def plain(values: ArrayLike) -> list[float | None]:
 
 
 class Trace:
-    """Values against time, of which every second one is forgotten whenever there are too many.
+    """Values against time, of which every second one is dropped whenever there are too many.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Trace:
         return len(self._time)
 
     def append(self, time: Sequence[float], values: Mapping[str, Sequence[float | None]]) -> bool:
-        """Append points; return whether earlier ones were forgotten, so that all must be told anew."""
+        """Append points; return whether earlier ones were dropped, so that all must be sent anew."""
         for name in values:
             self._values.setdefault(name, [None] * len(self._time))
         for k, moment in enumerate(time):

@@ -31,12 +31,12 @@ _WAITING = 500
 class Worker:
     """Runs a session, 30 pictures a second.
 
-    While nobody looks the box rests, unless it is being recorded.
+    While no page is open the box rests, unless it is being recorded.
 
     Parameters
     ----------
     session
-        What runs; from now on nobody else may touch it.
+        What runs; from now on no other thread may use it.
     publish
         What takes the messages for the pages; called from this thread.
 
@@ -147,7 +147,7 @@ class Worker:
         return touched
 
     def _tell_controls(self) -> None:
-        """Tell all pages what somebody has set."""
+        """Tell all pages what one of them has set."""
         found = self._session.controls()
         values = {control.name: control.value for control in found}
         if values != self._last_values:

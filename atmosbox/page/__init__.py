@@ -1,12 +1,13 @@
 """The page that shows a box: its molecules in three dimensions, and its graphs on the same clock.
 
 A run becomes one HTML file that opens from disk without a network (`save`); a box that is running is shown by the
-same page, fed through a socket (`live_page`). Both speak one language: a *stage* that says once what there is to see,
+same page, fed through a socket (`live_page`). Both use the same data: a *stage* that says once what there is to see,
 and *frames* that say where everything is.
 
-Read in this order: `box` and `stage` (what is shown), `panel` (its graphs), `liquid` and `frame` (one moment as
-bytes), `thinning` (what a large run leaves out), `run` (from a dataset to all of these), `document` (the HTML) and
-`file`. The folder ``web`` holds the page's own scripts, ``vendor`` the two libraries that it draws with.
+Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (its graphs), `page_liquid` and `frame`
+(one moment as bytes), `thinning` (what a large run leaves out), `saved_run` (from a dataset to all of these),
+`document` (the HTML) and `page_file`. The folder ``web`` holds the page's own scripts, ``vendor`` the two libraries
+that it draws with.
 """
 
 from atmosbox.page.document import live_page, view_page

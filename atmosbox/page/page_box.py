@@ -57,7 +57,7 @@ class Box:
         return 1.0 / _UNITS[self.unit]
 
     def as_record(self) -> dict[str, object]:
-        """Return the box as the page is told of it, in its own unit."""
+        """Return the box as data for the page, in its own unit."""
         length = [side * self.metre for side in self.length]
         warm = [t if t is not None and math.isfinite(t) else None for t in self.wall_temperature]
         return {

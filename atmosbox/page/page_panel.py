@@ -1,4 +1,4 @@
-"""The graphs of a scene, as the page is told of them: which values, and how SI becomes the unit that is read."""
+"""The graphs of a scene, as data for the page: which values, and how SI becomes the unit that is read."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def declared(name: str, time_unit: str = "ns") -> Meaning:
     Returns
     -------
     Meaning
-        Its unit and its words; of a name that nobody declared, "1" and the name itself.
+        Its unit and its words; of an undeclared name, "1" and the name itself.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def panel_record(
     sentences: Sequence[str] = (),
     marks: dict[str, float] | None = None,
 ) -> dict[str, Any]:
-    """Return a panel as the page is told of it.
+    """Return a panel as data for the page.
 
     Parameters
     ----------

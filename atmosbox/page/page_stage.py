@@ -30,7 +30,7 @@ _PARTICLES = {False: "molecule", True: "disc"}
 
 
 class Stage(NamedTuple):
-    """What the page is told once, and what it needs to be told where everything is.
+    """What the page gets once, and what it needs to read frames.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ def stage(
     sentences: Sequence[Sequence[str]] = (),
     marks: Mapping[int, dict[str, float]] | None = None,
 ) -> Stage:
-    """Return what the page is told of a run.
+    """Return the stage of a run: what the page gets once.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str)
     particle = _PARTICLES[discs].capitalize()
     wanted = _SEEN * side * min(1.2, (_CROWD / max(count, 1)) ** (1.0 / 6.0))
     if size <= 0.0:
-        return 1.0, f"{particle}s are points and collide with no one in particular."
+        return 1.0, f"{particle}s are points, and chance decides which of them collide."
     ratio = wanted / size
     power = 10.0 ** math.floor(math.log10(ratio)) if ratio > 1.0 else 1.0
     factor = 1.0 if ratio <= 1.0 else power * min(_ROUND, key=lambda each: abs(math.log(each * power / ratio)))

@@ -1,4 +1,4 @@
-"""From the dataset of a run to what its page is told: the stage, the frames, the values of the graphs, the words."""
+"""From the dataset of a run to the data of its page: the stage, the frames, the values of the graphs, the words."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ Floats = NDArray[np.float64]
 
 
 class Page(NamedTuple):
-    """A run as its page is told of it: what is said once, and the frames."""
+    """A run as data for its page: what is said once, and the frames."""
 
     record: dict[str, Any]
     frames: list[bytes]
 
 
 def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
-    """Return what the page of some runs is told.
+    """Return the data of the page of some runs.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Share(NamedTuple):
 
 
 def share(molecules: int, frames: int, runs: int = 1) -> Share:
-    """Return how much of a run has room in a page.
+    """Return how much of a run fits into a page.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def chosen(count: int, most: int, water: NDArray[np.bool_] | None = None) -> Ind
     most : int
         How many may be drawn.
     water : (molecule,), optional
-        Which are water; as long as these fill no more than half of the room, all of them are drawn.
+        Which are water; as long as these are no more than half of those drawn, all of them are drawn.
 
     Returns
     -------

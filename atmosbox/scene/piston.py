@@ -92,7 +92,7 @@ def moist_parcel(
     Parameters
     ----------
     engine
-        What lets its time pass.
+        The engine with its options.
     molecules, vapour
         How many there are, and how many of them are vapour.
     sides : (axis,)

@@ -54,7 +54,7 @@ class Outcome(NamedTuple):
     made: float
     """Energy that the engine's scheme itself has made, in that of the motion; zero for an engine that keeps it."""
     escaped: int
-    """Number of molecules outside the box, or nowhere: zero, or the engine is wrong."""
+    """Number of molecules outside the box or at no finite place: zero, or the engine is wrong."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -81,7 +81,7 @@ def execute(
     checkpoint
         Keeps what is complete on disk while the run goes on, and writes the finished file.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a word on what is being done.
     command
         What the user typed, for the file's history.
 
@@ -179,9 +179,9 @@ def run(
     out
         Where to write the netCDF file; nothing is written without it. An existing file is never replaced.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a word on what is being done.
     engine
-        What lets time pass, with its options: ``stepped:delta=0.02``; ``exact`` if nothing is said.
+        The engine, with its options: ``stepped:delta=0.02``; ``exact`` if nothing is said.
     accuracy
         How accurate the run shall be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
         or ``"2%"``. Picks the engine, and the settings that are not given.

@@ -33,7 +33,7 @@ class Check(NamedTuple):
 
 
 def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> tuple[Headline, ...]:
-    """Return headlines that know by how much their approximate engine was measured to be off, at the same settings."""
+    """Return headlines with the measured error of their approximate engine, at the same settings."""
     known = parameters.get("accuracy")
     if not known or known["differs"] or known["engine"] == str(EXACT):
         return tuple(headlines)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["PATIENCE", "remote"]
 
 PATIENCE = 10.0
-"""For how long a scheduler, and then a first worker, may keep silent [s]."""
+"""For how long a scheduler, and then a first worker, may take to answer [s]."""
 
 _BREATH = 0.5
 
@@ -30,7 +30,7 @@ Watch = Callable[[float, str], None]
 def remote(tasks: Sequence[Task], address: str, watch: Watch) -> Generator[Record]:
     """Run the members on the workers of a Dask cluster, and give back each as soon as it is complete.
 
-    A worker that dies loses what it was at and what nobody has fetched, and Dask gives that to another.
+    A worker that dies loses its current run and results that were not fetched, and Dask gives that to another.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def _run(task: Task, version: str) -> tuple[str, Record | None]:
 
 
 def _collected(client: Client, tasks: Sequence[Task], address: str, watch: Watch) -> Generator[Record]:
-    """Hand out all runs and fetch them as they end; what is fetched is given up, so that none is ever made again."""
+    """Send out all runs and fetch them as they end; what is fetched is given up, so that none is ever made again."""
     from distributed import KilledWorker, wait
 
     own = uuid.uuid4().hex
@@ -130,7 +130,7 @@ def _collected(client: Client, tasks: Sequence[Task], address: str, watch: Watch
                 with client.as_current():
                     wait(list(under_way), timeout=_BREATH, return_when="FIRST_COMPLETED")
             except TimeoutError:
-                # Workers tell nothing of a run before its end: as much is counted as the pace so far lets expect.
+                # Workers report nothing before the end of a run: the share is estimated from the pace so far.
                 now = time.monotonic()
                 watch(min(done / (now - began) * (now - last), 0.9), "running")
             except CancelledError:

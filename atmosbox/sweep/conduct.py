@@ -80,7 +80,7 @@ def sweep(
     force
         Whether a file of that name may be replaced, and a journal of another sweep be thrown away.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a word on what is being done.
     note
         Called with remarks: what is taken from an earlier call, and what the runs warn of.
     command

@@ -29,7 +29,7 @@ ATTEMPTS = 2
 """How often a run may take its worker down before it counts as failed."""
 
 Watch = Callable[[float, str], None]
-"""Called with how many runs the work under way amounts to, in parts of one, and a word on what goes on."""
+"""Called with how many runs the work under way amounts to, in parts of one, and a word on what is being done."""
 
 
 def cores() -> int:
@@ -170,9 +170,9 @@ def _mourn(worker: _Worker, waiting: deque[Task], attempts: dict[tuple[int, int]
 
 
 def _serve(pipe: Connection) -> None:
-    """Run what is sent, until there is nobody any more who sends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the one who asked decides
-    sys.stdout = sys.stderr  # what a scene of one's own prints is no result
+    """Run what is sent, until the sender has closed the pipe."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all processes; the first one decides
+    sys.stdout = sys.stderr  # what a user's scene prints is no result
     threading.Thread(target=_end_with_parent, daemon=True).start()
     pipe.send(("ready", None))
 

@@ -30,7 +30,7 @@ def run(task: Task, progress: Progress | None = None) -> Record:
     task
         The run.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a word on what is being done.
 
     Returns
     -------

@@ -27,7 +27,7 @@ MOST_RUNS = 100_000
 
 
 class Task(NamedTuple):
-    """One run of a sweep, as it is sent to whoever computes it.
+    """One run of a sweep, as it is sent to the process that computes it.
 
     ``point`` and ``member`` count from 1, the points with the last of the varied settings running fastest.
     """

@@ -27,7 +27,7 @@ from atmosbox.theory._water import (
 from atmosbox.theory.constants import BOLTZMANN, WATER
 
 LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
-"""Energy that a molecule carries across the surface, in kT: 2 of flight (the fast cross more often), 3/2 of rotation."""
+"""Energy that a molecule carries across the surface, in kT: 2 of flight (fast ones cross oftener), 3/2 of rotation."""
 
 
 def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:

@@ -1,4 +1,4 @@
-// Where one looks from: four places, and what a mouse or a finger makes of them.
+// The camera: four places, and what a mouse or a finger makes of them.
 
 import * as THREE from "three";
 import { OrbitControls } from "./OrbitControls.js";
@@ -28,7 +28,7 @@ export class Camera {
     this.place = box.planar ? 1 : 0;
   }
 
-  // How much room the box needs: as much as it ever will, with what stands on its ceiling. Two boxes side by side are seen
+  // How much space the box needs: as much as it ever will, with what stands on its ceiling. Two boxes side by side are seen
   // from equally far, so that one can compare them.
   room() {
     const [x, y] = this.box.length;

@@ -1,9 +1,9 @@
-// The words under the box: what one sees, how it is drawn, and where it comes from.
+// The words under the box: what is seen, how it is drawn, and where it comes from.
 
 import { figure } from "./figure.js";
 
 const WALLS = {
-  specular: "smooth walls", periodic: "open sides, where who leaves on one side comes in on the other",
+  specular: "smooth walls", periodic: "open sides: what leaves on one side comes in on the other",
   heat_bath: "walls kept at a temperature", piston: "a piston for a ceiling", pool: "a pool on the floor",
 };
 
@@ -17,7 +17,7 @@ function boxSentence({ box }) {
   return `${box.planar ? "A flat box" : "A box"} of ${size}${box.gravity ? ", with gravity" : ""}: ${walls}.`;
 }
 
-// The first lines are there at once; who wants to know more opens the rest.
+// The first lines are there at once; a button opens the rest.
 export function showCaption(parent, runs) {
   parent.replaceChildren();
   const text = document.createElement("div");

@@ -1,4 +1,4 @@
-// What one may change while the box runs: a line for each setting, with its unit.
+// What may be changed while the box runs: a line for each setting, with its unit.
 
 import { spelled } from "./figure.js";
 
@@ -10,12 +10,12 @@ const brief = (number) => Number(Number(number).toPrecision(5));
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
 
 export class Controls {
-  // `set(name, value)` is called when somebody turns a control.
+  // `set(name, value)` is called when a control is changed.
   constructor(parent, set) {
     Object.assign(this, { parent, set, shown: new Map() });
   }
 
-  // Show again what is in force, for what somebody typed was refused.
+  // Show again what is in force, because what was typed was refused.
   restore() {
     if (this.told) this.show(this.told);
   }

@@ -2,7 +2,7 @@
 
 const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
 
-// The values of a run by name. Those that go with time may grow while one looks on.
+// The values of a run by name. Those that go with time may grow while the page is open.
 export class Numbers {
   constructor({ values = {}, timed = [] } = {}) {
     this.values = { ...values };

@@ -138,7 +138,7 @@ export class Furniture {
     this.drops.instanceMatrix.needsUpdate = true;
   }
 
-  // From above, one looks through the piston.
+  // From above, the piston is transparent.
   seenFrom(eye, height) {
     const [x, y] = this.box.length;
     const steep = (eye.z - height) / Math.hypot(eye.x - x / 2, eye.y - y / 2);

@@ -6,7 +6,7 @@ export const KEYS = [
   ["↑  ↓", "faster, slower"],
   ["1 2 3 4", "camera: corner, front, above, close"],
   ["C", "colour by speed or by kind"],
-  ["T", "follow one molecule; again: let it go"],
+  ["T", "follow one molecule; again: stop following"],
   ["D", "light or dark"],
   ["Home  End", "first and last moment"],
   ["?", "this list"],

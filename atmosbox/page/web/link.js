@@ -1,4 +1,4 @@
-// The line to the box that runs: it tells what comes, says when it is lost, and takes itself up again.
+// The connection to the box that runs: it passes on messages, says when it is lost, and reconnects.
 
 const SOONEST = 500, LATEST = 5000; // ms between two attempts
 

@@ -1,4 +1,4 @@
-// The page of a box that runs: frames and numbers come through a line, and what one turns goes back.
+// The page of a box that runs: frames and numbers come through a socket, and changes go back.
 
 import { showCaption } from "./caption.js";
 import { Controls } from "./controls.js";
@@ -13,7 +13,7 @@ import { Sheet } from "./sheet.js";
 import { Stage } from "./stage.js";
 
 const KEPT = 240; // frames, which the path of a molecule is drawn from
-const LOOK = 200; // ms between two looks of the graphs at what has come
+const LOOK = 200; // ms between two updates of the graphs
 
 const find = (name) => document.getElementById(name);
 

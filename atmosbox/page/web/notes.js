@@ -1,4 +1,4 @@
-// What the box has to say to whoever looks on: a sentence that goes away, or, if something was refused, stays.
+// Messages for the viewer: a sentence that goes away, or, if something was refused, stays.
 
 const SIGNS = { info: "i", warning: "!", error: "×" };
 const WORDS = { info: "", warning: "Note: ", error: "Refused: " };

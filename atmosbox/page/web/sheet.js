@@ -29,7 +29,7 @@ export class Sheet {
     matchMedia("(prefers-color-scheme: dark)").onchange = () => this.paint();
     stages.forEach((stage) => stage.parent.addEventListener("pick", ({ detail }) => this.follow(stage, detail)));
     this.#tools();
-    this.follow(null, null); // a box that begins anew follows nobody
+    this.follow(null, null); // in a box that begins anew no molecule is followed
   }
 
   #tools() {

@@ -46,7 +46,7 @@ export function background(foot, top) {
   return lines;
 }
 
-// CAPE and CIN: polygons between the parcel and the air around it, where the one is warmer or cooler.
+// CAPE and CIN: polygons between the parcel and its environment, where the parcel is warmer or cooler.
 export function energies(panel, curves) {
   const parcel = curves.find(({ role }) => role === "data"), around = curves.find(({ role }) => role === "environment");
   const { LFC: lfc, EL: el } = panel.marks;

@@ -43,7 +43,7 @@ def rise(
     ascent
         The way.
     engine
-        What lets its time pass.
+        The engine with its options.
     height, around
         Height of the parcel [m] and temperature of the environment [K] when a share of the time, 0 to 1, has passed.
     frames, looks

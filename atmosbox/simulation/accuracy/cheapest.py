@@ -27,7 +27,7 @@ class Expectation:
     labels
         What a table calls the headlines, by name.
     wish
-        What the user wished; None where the engine was given by hand.
+        What the user wished; None where the engine was given explicitly.
     met
         Whether the expected errors are within the wish.
     differs

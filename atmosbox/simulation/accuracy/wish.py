@@ -48,7 +48,7 @@ TARGETS: Mapping[str, Wish] = MappingProxyType(
     {
         wish.text: wish
         for wish in (
-            Wish("sketch", 3.0, 0.05),  # a quick look: on a figure it lies beside the theory
+            Wish("sketch", 3.0, 0.05),  # on a figure it lies beside the theory
             Wish("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
             Wish("reference", 0.5, 0.01, best=True),  # whatever it costs, of all that was measured
         )
@@ -66,7 +66,7 @@ def parse(text: object) -> Wish:
     Parameters
     ----------
     text
-        The name of a target, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
+        The name of a wish, or the largest error of temperatures, ``0.5K``, or of everything as a share, ``2%``.
 
     Raises
     ------
