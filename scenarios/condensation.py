@@ -85,7 +85,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air, as theory knows it."""
+    """Return the moist air, by theory."""
     si = settings.si
     return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 

@@ -105,7 +105,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
-    """Return the air over the pool, as theory knows it."""
+    """Return the air over the pool, by theory."""
     si = settings.si
     vapour_pressure = si.humidity * float(law.saturation_vapor_pressure(si.temperature))
     return AirOverPool(

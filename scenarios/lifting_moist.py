@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 title = "Lifting moist air"
 FRAMES = 60
-LOOKS = 10
+SAMPLES = 10
 
 
 ladder = (
@@ -80,7 +80,7 @@ def _top(settings: Settings) -> float:
 
 
 def _ascent(settings: Settings) -> MoistAscent:
-    """Return the way up, as theory knows it."""
+    """Return the way up, by theory."""
     si = settings.si
     return MoistAscent(
         molecules=settings.molecules,
@@ -108,7 +108,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         height=lambda share: top * share,
         around=lambda share: float(law.environment_temperature(top * share, si.temperature, si.lapse_rate)),
         frames=FRAMES,
-        looks=LOOKS,
+        samples=SAMPLES,
         seed=settings.seed,
     )
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 title = "Lifting through a sounding"
 FRAMES = 80
-LOOKS = 8
+SAMPLES = 8
 SMOOTH = 9
 """Over how many frames the misfit is averaged before curves are crossed."""
 BUILT_IN = "weisman-klemp"
@@ -97,7 +97,7 @@ def _around(settings: Settings, pressure: np.ndarray) -> tuple[np.ndarray, np.nd
 
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
-    """Return the way up, as theory knows it; it ends where the sounding does, at the latest."""
+    """Return the way up, by theory; it ends where the sounding does, at the latest."""
     found = _read(settings.sounding)
     ground = float(found.pressure[0])
     top = max(settings.si.top_pressure, float(found.pressure[-1]))
@@ -127,7 +127,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         height=lambda share: float(np.interp(share, shares, heights)),
         around=lambda share: float(np.interp(share, shares, temperatures)),
         frames=FRAMES,
-        looks=LOOKS,
+        samples=SAMPLES,
         seed=settings.seed,
     )
     found = _read(settings.sounding)

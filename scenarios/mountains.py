@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 title = "Over the mountains"
 FRAMES = 96
-LOOKS = 8
+SAMPLES = 8
 BLOCK = 6
 
 
@@ -75,7 +75,7 @@ def _height(settings: Settings, share: float) -> float:
 
 
 def _ascent(settings: Settings) -> MoistAscent:
-    """Return the way, as theory knows it."""
+    """Return the way, by theory."""
     si = settings.si
     return MoistAscent(
         molecules=settings.molecules,
@@ -106,7 +106,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         height=lambda share: _height(settings, share),
         around=around,
         frames=FRAMES,
-        looks=LOOKS,
+        samples=SAMPLES,
         seed=settings.seed,
     )
 

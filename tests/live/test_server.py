@@ -266,7 +266,7 @@ def test_ctrl_c_saves_the_recording_and_says_so(tmp_path, number, status):
         (["--port", "0"], "port = 0"),
         (["--port", "http"], "port = http"),
         (["--out", "no/such/x.nc"], "mkdir -p no/such"),
-        (["--out", "x.png"], "run writes netCDF"),
+        (["--out", "x.png"], "writes netCDF"),
         (["--out", "/"], "is a folder"),
         (["--set", "molecules=0"], "molecules = 0"),
     ],

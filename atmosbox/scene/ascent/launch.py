@@ -31,7 +31,7 @@ def rise(
     height: Profile,
     around: Profile,
     frames: int,
-    looks: int,
+    samples: int,
     seed: int,
 ) -> Setup:
     """Return a parcel of moist air at the start of its way.
@@ -46,7 +46,7 @@ def rise(
         The engine with its options.
     height, around
         Height of the parcel [m] and temperature of the environment [K] when a share of the time, 0 to 1, has passed.
-    frames, looks
+    frames, samples
         Into how many frames the way is divided, and how many samples of the parcel are taken in each.
     seed
         Seed of all random numbers.
@@ -83,7 +83,7 @@ def rise(
     )
 
     def curve(pressure: Array) -> Array:
-        return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * looks)).temperature
+        return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * samples)).temperature
 
     warmth = ascent.temperature * finite_rate(ascent).finite_speed(ascent.top_pressure)
     base = ascent.base
@@ -93,7 +93,7 @@ def rise(
         duration,
         frames,
         (Air(), Water(), MoistLift(driver, environment, curve, lambda p: walk(ascent, p))),
-        samples=looks,
+        samples=samples,
         facts={
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)
             + " nm at the start, real size",

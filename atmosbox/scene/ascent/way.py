@@ -1,4 +1,4 @@
-"""The way of a parcel of moist air, as theory knows it."""
+"""The way of a parcel of moist air, by theory."""
 
 import functools
 import math
@@ -24,7 +24,7 @@ Few molecules are liquid, and how many scatters: were it faster, each chance sur
 
 @dataclass(frozen=True)
 class MoistAscent:
-    """A way up of moist air, as theory knows it.
+    """A way up of moist air, by theory.
 
     Parameters
     ----------

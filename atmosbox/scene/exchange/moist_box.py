@@ -1,4 +1,4 @@
-"""Moist air in a closed box of one temperature, as theory knows it: what saturates it, and how soon."""
+"""Moist air in a closed box of one temperature, by theory: what saturates it, and how soon."""
 
 from __future__ import annotations
 
