@@ -150,12 +150,9 @@ class Bench:
 
     def __init__(self, box: Any, span: float) -> None:
         self._modes = box._modes
-        self._arguments = (
-            *(box._molecules, box._events, box._kinds, box._cells),
-            *(box._calendar, box._box, box._walls, box._tallies),
-        )
+        self._gas = box._gas()
         self._until = box._now + span
-        parts = [p for each in self._arguments for p in (each if type(each).__mro__[1] is tuple else (each,))]
+        parts = [p for each in self._gas for p in (each if type(each).__mro__[1] is tuple else (each,))]
         self._arrays = [part for part in parts if isinstance(part, np.ndarray)]
         self._before = [np.array(each) for each in self._arrays]
 
@@ -164,18 +161,16 @@ class Bench:
         # numba finds machine code on disk only if the classes of its arguments are those that a name leads to
         sys.modules.update(module.modules)
         state = module.types
-        arguments = [
-            getattr(state, type(each).__name__)(*each) if isinstance(each, tuple) else each for each in self._arguments
-        ]
+        gas = state.Gas(*(getattr(state, type(p).__name__)(*p) if isinstance(p, tuple) else p for p in self._gas))
         advance = module.loop.specialise(state.Modes(*self._modes))[1]
 
         def work() -> float:
             for array, before in zip(self._arrays, self._before, strict=True):
                 np.copyto(array, before)
             start = time.process_time()
-            status, _ = advance(*arguments, self._until, 1 << 60)
+            status, _ = advance(gas, self._until, 1 << 60)
             lasted = time.process_time() - start
-            if status != module.loop.DONE:
+            if status != module.loop.Status.DONE:
                 raise RuntimeError("a row of the cells is full: choose another seed")
             return lasted
 

@@ -114,7 +114,7 @@ def momentum(parcel):
 
 def happened(parcel):
     """Return how many came, left, met a drop and left again, and how often two drops became one."""
-    return np.array([parcel.condensed, parcel.evaporated, parcel._ledger.count[AIR_MET], parcel.merged])
+    return np.array([parcel.condensed, parcel.evaporated, parcel._reservoir.count[AIR_MET], parcel.merged])
 
 
 def deepest_overlap(parcel):
@@ -181,7 +181,7 @@ def is_lawful(parcel, waters, drops):
 
 def state(parcel):
     """Return everything that can be read off a parcel, as bytes."""
-    now, ledger, drops = parcel.snapshot(), parcel._ledger, parcel.drops()
+    now, ledger, drops = parcel.snapshot(), parcel._reservoir, parcel.drops()
     arrays = [now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial]
     arrays += [ledger.energy, ledger.count, ledger.spectrum, ledger.absent[: ledger.top[0]], parcel._tallies.random]
     numbers = (parcel.time, parcel.ceiling, parcel.work, parcel.contacts, parcel.number, parcel.liquid, parcel.merged)

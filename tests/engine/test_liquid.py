@@ -25,7 +25,7 @@ from atmosbox.engine.liquid.reservoir import (
     exchange,
     heat_capacity,
     leave,
-    new_ledger,
+    new_reservoir,
     rain_out,
     wait,
 )
@@ -39,7 +39,7 @@ SHAPE = 3.5
 
 def ledger_of(number, kT=1.0, nuclei=0.0, substance=WATER, **options):
     liquid = Mist(substance, number=number, kT=kT, nuclei=nuclei, area=AREA, **options)
-    return new_ledger(liquid, liquid.area, number, 0, 0)
+    return new_reservoir(liquid, liquid.area, number, 0, 0)
 
 
 def random_state(seed=5):
@@ -264,9 +264,9 @@ def test_rain_takes_its_share_of_the_heat_and_leaves_the_temperature_alone():
     assert (ledger.count[LIQUID], ledger.count[RAINED]) == (0, 4)
 
 
-def test_a_new_ledger_says_what_the_liquid_says():
+def test_a_new_reservoir_says_what_the_liquid_says():
     mist = Mist(WATER, number=3, kT=0.5, nuclei=8.0, sticking=0.4, rain=0.1, area=AREA)
-    ledger = new_ledger(mist, mist.area, 7, 4, 1)
+    ledger = new_reservoir(mist, mist.area, 7, 4, 1)
     assert ledger.energy.tolist() == [0.5 * (3 * C_L + 8.0), 0.0]
     assert ledger.count.tolist() == [3, 0, 0, 0, 0]
     assert ledger.absent[: ledger.top[0]].tolist() == [6, 5, 4]
@@ -274,7 +274,7 @@ def test_a_new_ledger_says_what_the_liquid_says():
     assert (ledger.area, ledger.kind, ledger.sticking, ledger.rain, ledger.rotation) == (AREA, 1, 0.4, 0.1, 3.0)
     assert ledger.log_rate == pytest.approx(math.log(0.4 * AREA * K / math.sqrt(2.0 * math.pi * MASS)), rel=1e-14)
     assert (ledger.spectrum.sum(), ledger.bin_width > 0.0) == (0, True)
-    empty = new_ledger(Pool(WATER), 1.0, 0, 0, -1)
+    empty = new_reservoir(Pool(WATER), 1.0, 0, 0, -1)
     assert (empty.top[0], empty.energy[0], len(empty.absent)) == (0, 0.0, 1)
 
 
@@ -283,7 +283,7 @@ def test_whole_numbers_make_the_same_kind_of_ledger_as_decimals():
     whole = Substance(mass=1, diameter=1, binding_energy=3, heat_capacity=9, volatility=1, rotation=3)
     mist = Mist(whole, number=2, kT=1, nuclei=5, sticking=1, rain=0, area=7)
     usual = ledger_of(2)
-    for name, value, wanted in zip(usual._fields, new_ledger(mist, mist.area, 2, 0, 0), usual, strict=True):
+    for name, value, wanted in zip(usual._fields, new_reservoir(mist, mist.area, 2, 0, 0), usual, strict=True):
         assert type(value) is type(wanted), name
 
 

@@ -101,7 +101,7 @@ by_name = pytest.mark.parametrize("name", NAMES)
 
 def state(parcel):
     """Return everything that can be read off a parcel, as bytes."""
-    now, ledger = parcel.snapshot(), parcel._ledger
+    now, ledger = parcel.snapshot(), parcel._reservoir
     arrays = [now.position, now.velocity, now.rotational_energy, parcel.wall_heat, parcel.wall_impulse, parcel.virial]
     arrays += [ledger.energy, ledger.count, ledger.spectrum, ledger.absent[: ledger.top[0]], parcel._tallies.random]
     numbers = (parcel.time, parcel.ceiling, parcel.work, parcel.contacts, parcel.number, parcel.liquid)
@@ -139,7 +139,7 @@ def is_lawful(parcel, waters):
 
 
 def happened(parcel):
-    return np.array([parcel.condensed, parcel.evaporated, parcel._ledger.count[AIR_MET], parcel.rained])
+    return np.array([parcel.condensed, parcel.evaporated, parcel._reservoir.count[AIR_MET], parcel.rained])
 
 
 @pytest.fixture
@@ -165,7 +165,7 @@ def test_energy_and_water_close_at_every_event(name, by_single_events):
         assert parcel.vapour + parcel.liquid + parcel.rained == waters
         assert parcel.number == 20 + parcel.vapour
         kinetic, rotational, potential = parcel.energy()
-        inside = kinetic + rotational + parcel.liquid_energy + PHI * parcel.vapour + parcel._ledger.energy[1]
+        inside = kinetic + rotational + parcel.liquid_energy + PHI * parcel.vapour + parcel._reservoir.energy[1]
         assert potential == 0.0
         assert inside - parcel.wall_heat.sum() - parcel.work == pytest.approx(start, rel=1e-10)
         assert parcel.ledger() < 1e-10
@@ -180,7 +180,7 @@ def test_energy_and_water_close_at_every_event(name, by_single_events):
         assert parcel.work != 0.0
     if "pool" in name:
         # each that meets the pool is counted, and what it brings and takes is felt by the floor
-        assert parcel.wall_hits[4] >= parcel.condensed + parcel._ledger.count[AIR_MET]
+        assert parcel.wall_hits[4] >= parcel.condensed + parcel._reservoir.count[AIR_MET]
         assert parcel.wall_impulse[4] > 0.0
     is_lawful(parcel, waters)
 

@@ -97,7 +97,7 @@ def many(name, **changes):
 
 def state(parcel):
     """Return everything that can be read off a parcel, as bytes."""
-    now, ledger = parcel.snapshot(), parcel._ledger
+    now, ledger = parcel.snapshot(), parcel._reservoir
     arrays = [*now[1:], parcel.wall_heat, parcel.wall_impulse, parcel.wall_hits, parcel.mass, parcel.present]
     arrays += [ledger.energy, ledger.count, ledger.spectrum, ledger.absent[: ledger.top[0]]]
     arrays += [[parcel.time, parcel.ceiling, parcel.work, parcel.contacts, parcel.number, parcel.liquid]]
@@ -135,18 +135,18 @@ def test_energy_and_water_close_at_every_step(name):
         assert parcel.vapour + parcel.liquid + parcel.rained == 40
         assert parcel.number == 20 + parcel.vapour == len(parcel.snapshot().position)
         kinetic, rotational, potential = parcel.energy()
-        inside = kinetic + rotational + parcel.liquid_energy + PHI * parcel.vapour + parcel._ledger.energy[1]
+        inside = kinetic + rotational + parcel.liquid_energy + PHI * parcel.vapour + parcel._reservoir.energy[1]
         assert potential == 0.0
         assert inside - parcel.wall_heat.sum() - parcel.work == pytest.approx(start, rel=1e-10)
         assert parcel.internal_energy() == pytest.approx(kinetic + rotational, rel=1e-9)
         assert parcel.ledger() < 1e-10
-        happened[:] = parcel.condensed, parcel.evaporated, parcel._ledger.count[AIR_MET], parcel.rained
+        happened[:] = parcel.condensed, parcel.evaporated, parcel._reservoir.count[AIR_MET], parcel.rained
     assert parcel.contacts > 0
     if "piston" in name:
         assert parcel.work != 0.0
     if "pool" in name:
         # each that meets the pool is counted, and what it brings and takes is felt by the floor
-        assert parcel.wall_hits[4] == parcel.condensed + parcel._ledger.count[AIR_MET]
+        assert parcel.wall_hits[4] == parcel.condensed + parcel._reservoir.count[AIR_MET]
         assert parcel.wall_impulse[4] > 0.0
     is_lawful(parcel, 40)
 

@@ -83,8 +83,8 @@ def tables_agree(parcel):
     """Assert that cells, calendar, clocks and the list of the absent tell of the same molecules."""
     assert parcel._modes.spanning
     absent = np.isinf(parcel._fields["clock"])
-    top = int(parcel._ledger.top[0])
-    assert sorted(parcel._ledger.absent[:top]) == np.flatnonzero(absent).tolist()
+    top = int(parcel._reservoir.top[0])
+    assert sorted(parcel._reservoir.absent[:top]) == np.flatnonzero(absent).tolist()
     assert top == parcel.liquid + parcel.rained
     listed = members(parcel)
     leaf = parcel._calendar.leaf

@@ -14,8 +14,9 @@ have also lost the rest of their way: the pressure on walls a length L apart is 
 :math:`\sqrt{2/\pi} \Delta t \sqrt{kT/m} / L`. Without gravity energy is kept to rounding.
 """
 
-from atmosbox.engine.classic.classic_tally import beyond, meet_wall, shortest, tally_contact, wrap
+from atmosbox.engine.classic.classic_tally import beyond, meet_wall, tally_contact, wrap
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_along
 
 __all__ = ["is_approaching", "march_lookahead"]
 
@@ -83,8 +84,8 @@ def _collide(step, epsilon, discs, frame, tallies, score):
     n = mass.size
     for i in range(n):
         for j in range(i + 1, n):
-            rx = shortest(x[i] - x[j], frame.length[0], frame.inverse[0])
-            rz = shortest(z[i] - z[j], frame.length[2], frame.inverse[2])
+            rx = nearest_along(x[i] - x[j], frame.length[0], frame.inverse[0])
+            rz = nearest_along(z[i] - z[j], frame.length[2], frame.inverse[2])
             touching = radius[i] + radius[j]
             square = rx * rx + rz * rz
             if square >= touching * touching:

@@ -21,8 +21,9 @@ rounding.
 
 import numpy as np
 
-from atmosbox.engine.classic.classic_tally import beyond, meet_wall, shortest, tally_contact, wrap
+from atmosbox.engine.classic.classic_tally import beyond, meet_wall, tally_contact, wrap
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_along
 from atmosbox.engine.core.walls import HEAT_BATH
 
 __all__ = ["march_spheres", "mirror"]
@@ -105,9 +106,9 @@ def _collide(step, closing_only, discs, frame, tallies, score):
     n = mass.size
     for i in range(n):
         for j in range(i + 1, n):
-            rx = shortest(x[i] - x[j], frame.length[0], frame.inverse[0])
-            ry = shortest(y[i] - y[j], frame.length[1], frame.inverse[1])
-            rz = shortest(z[i] - z[j], frame.length[2], frame.inverse[2])
+            rx = nearest_along(x[i] - x[j], frame.length[0], frame.inverse[0])
+            ry = nearest_along(y[i] - y[j], frame.length[1], frame.inverse[1])
+            rz = nearest_along(z[i] - z[j], frame.length[2], frame.inverse[2])
             touching = radius[i] + radius[j]
             square = rx * rx + ry * ry + rz * rz
             if square >= touching * touching or square == 0.0:

@@ -16,8 +16,9 @@ is kept to rounding.
 import math
 from typing import Any, NamedTuple
 
-from atmosbox.engine.classic.classic_tally import beyond, meet_wall, shortest, tally_contact, wrap
+from atmosbox.engine.classic.classic_tally import beyond, meet_wall, tally_contact, wrap
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_along
 
 __all__ = ["Strips", "march_strips", "strips_across"]
 
@@ -116,8 +117,8 @@ def _test(i, begin, end, step, discs, strips, frame, tallies, score):
     diameter = 2.0 * discs.radius[i]
     for q in range(begin, end):
         j = strips.order[q]
-        rx = shortest(x[j] - x[i], frame.length[0], frame.inverse[0])
-        rz = shortest(z[j] - z[i], frame.length[2], frame.inverse[2])
+        rx = nearest_along(x[j] - x[i], frame.length[0], frame.inverse[0])
+        rz = nearest_along(z[j] - z[i], frame.length[2], frame.inverse[2])
         square = rx * rx + rz * rz
         if square < diameter * diameter and rx * (v[0, i] - v[0, j]) + rz * (v[2, i] - v[2, j]) > 0.0:
             distance = math.sqrt(square)

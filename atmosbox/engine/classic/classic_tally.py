@@ -7,7 +7,7 @@ import numpy as np
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.walls import HEAT_BATH, resolve_wall_hit
 
-__all__ = ["Discs", "Frame", "Score", "beyond", "meet_wall", "shortest", "tally_contact", "wrap"]
+__all__ = ["Discs", "Frame", "Score", "beyond", "meet_wall", "tally_contact", "wrap"]
 
 
 class Discs(NamedTuple):
@@ -63,18 +63,6 @@ def wrap(x, length, inverse):
     """
     x -= length * np.floor(x * inverse)
     return x if 0.0 <= x < length else 0.0
-
-
-@kernel
-def shortest(r, length, inverse):
-    """Return a difference of coordinates [length] between nearest images; as it is where the axis has walls.
-
-    Examples
-    --------
-    >>> float(shortest(3.0, 4.0, 0.25)), float(shortest(3.0, 4.0, 0.0))
-    (-1.0, 3.0)
-    """
-    return r - length * np.rint(r * inverse)
 
 
 @kernel

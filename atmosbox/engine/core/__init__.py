@@ -3,7 +3,8 @@
 `state`         what is known of a molecule, of its box, of what lies ahead
 `motion`        free flight
 `random`        random numbers
-`contact`       two molecules meet
+`hard_sphere`   the law of hard spheres: when two touch, what becomes of their velocities
+`pair`          how far molecules feel each other, when they meet: by whichever law
 `schedule`      numbers that change with time
 `walls`         what walls do, one law each
 `refusal`       the errors

@@ -16,8 +16,10 @@ __all__ = [
     "Box",
     "Calendar",
     "Cells",
+    "Gas",
     "Kinds",
     "Modes",
+    "Motion",
     "Tallies",
     "Walls",
     "aligned_records",
@@ -188,6 +190,34 @@ class Tallies(NamedTuple):
     layer_scale: float
     random: Any
     progress: Any
+
+
+class Motion(NamedTuple):
+    """Where one molecule is and how it moves, at one time: ``x, y, z`` [length], ``vx, vy, vz`` [length/time]."""
+
+    x: float
+    y: float
+    z: float
+    vx: float
+    vy: float
+    vz: float
+
+
+class Gas(NamedTuple):
+    """All that the exact engine works on, as its kernels receive it.
+
+    ``molecules : (molecule,)`` of `MOLECULE` and ``events : (molecule,)`` of `EVENT`; the others are described at their
+    types. A kernel that takes a ``gas`` reads what it needs of it: the compiler passes the parts at no cost.
+    """
+
+    molecules: Any
+    events: Any
+    kinds: Kinds
+    cells: Cells
+    calendar: Calendar
+    box: Box
+    walls: Walls
+    tallies: Tallies
 
 
 def aligned_records(number: int, dtype: np.dtype[Any]) -> Any:

@@ -26,6 +26,7 @@ __all__ = [
     "Piston",
     "Specular",
     "Wall",
+    "bounce_off",
     "new_walls",
     "resolve_wall_hit",
     "wall_kT",
@@ -232,3 +233,39 @@ def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rot
         else:
             second = 0.0
     return normal, first, second, kT * gamma(rotation, state)
+
+
+@kernel
+def bounce_off(wall, time, velocity, spin, kind, walls, planar, state):
+    """Return velocity and rotational energy after a hit, and the velocity that it gave along the wall's axis.
+
+    Parameters
+    ----------
+    wall, time
+        Which wall is hit, and when [time since the start].
+    velocity : (axis,)
+        A tuple [length/time].
+    spin
+        Rotational energy [energy].
+    kind
+        Mass [mass] and rotational degrees of freedom of the molecule, a tuple.
+    walls, planar, state
+        The walls, whether the gas is a plane, the state of the random numbers, moved on.
+
+    Examples
+    --------
+    A smooth floor turns the vertical velocity round:
+
+    >>> walls = new_walls((Specular(),) * 6, 2.0)
+    >>> bounce_off(4, 0.0, (1.0, 0.0, -2.0), 0.0, (1.0, 0.0), walls, False, np.array([1], np.uint64))
+    ((1.0, 0.0, 2.0), 0.0, 4.0)
+    """
+    vx, vy, vz = velocity
+    mass, rotation = kind
+    axis = wall >> 1
+    came, first, second = (vx, vy, vz) if axis == 0 else ((vy, vx, vz) if axis == 1 else (vz, vx, vy))
+    went, first, second, spin = resolve_wall_hit(
+        walls, wall, time, came, first, second, spin, mass, rotation, planar, state
+    )
+    after = (went, first, second) if axis == 0 else ((first, went, second) if axis == 1 else (first, second, went))
+    return after, spin, went - came

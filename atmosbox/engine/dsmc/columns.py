@@ -171,7 +171,7 @@ def share_of(thread, threads, number):
 @kernel
 def number_present(swarm, water):
     """Return how many molecules are in the box: they stand in the first slots, those of the liquid in none."""
-    return swarm.x.size - water.ledger.top[0]
+    return swarm.x.size - water.reservoir.top[0]
 
 
 @kernel

@@ -24,7 +24,7 @@ from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
     LIQUID,
     THERMAL,
-    Ledger,
+    Reservoir,
     condense,
     direction,
     evaporate,
@@ -39,23 +39,24 @@ __all__ = ["Water", "copy_slot", "emit", "mist_step", "new_water", "next_rain", 
 
 
 class Water(NamedTuple):
-    """The liquid of a swarm.
+    """The liquid of many molecules.
 
-    ``ledger`` its account; ``calendar`` when those that wait on a pool came to it; ``hole : (slot,)`` the slots of
-    those that have gone in this step, as many as ``holes[0]`` says; ``random : (1,)`` a state of random numbers.
+    ``reservoir`` its molecules and energy; ``calendar`` when those that wait on a pool came to it; ``hole : (slot,)``
+    the slots of those that have gone in this step, as many as ``holes[0]`` says; ``random : (1,)`` a state of random
+    numbers.
     """
 
-    ledger: Ledger
+    reservoir: Reservoir
     calendar: Any
     hole: Any
     holes: Any
     random: Any
 
 
-def new_water(ledger: Ledger, waiting: int) -> Water:
+def new_water(reservoir: Reservoir, waiting: int) -> Water:
     """Return the liquid of a swarm, of which so many molecules may wait on a pool."""
     return Water(
-        ledger, new_calendar(waiting), np.zeros(waiting, np.int64), np.zeros(1, np.int64), np.zeros(1, np.uint64)
+        reservoir, new_calendar(waiting), np.zeros(waiting, np.int64), np.zeros(1, np.int64), np.zeros(1, np.uint64)
     )
 
 
@@ -72,14 +73,14 @@ def copy_slot(source, p, swarm, rotates):
 
 
 @kernel
-def strike(p, swarm, ledger):
+def strike(p, swarm, reservoir):
     """Note that the molecule of a slot is not in the box any more."""
-    ledger.absent[ledger.top[0]] = swarm.identity[p]
-    ledger.top[0] += 1
+    reservoir.absent[reservoir.top[0]] = swarm.identity[p]
+    reservoir.top[0] += 1
 
 
 @kernel
-def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
+def touch(p, flow, swarm, gas, reservoir, state, rotates, pool):
     """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
 
     Otherwise it leaves with another energy.
@@ -89,18 +90,18 @@ def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
     vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p]
     spin = swarm.spin[p] if rotates else 0.0
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if kind == ledger.kind and (ledger.sticking >= 1.0 or uniform(state) < ledger.sticking):
-        condense(ledger, energy)
+    if kind == reservoir.kind and (reservoir.sticking >= 1.0 or uniform(state) < reservoir.sticking):
+        condense(reservoir, energy)
         return True
     relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
-    flight, new_spin = exchange(ledger, relative, gas.rotations[kind], state)
+    flight, new_spin = exchange(reservoir, relative, gas.rotations[kind], state)
     ex, ey, ez = direction(pool, state)
     speed = math.sqrt(2.0 * flight / mass)
     wx, wy, wz = speed * ex, speed * ey, speed * ez + flow
     given = 0.5 * mass * (wx * wx + wy * wy + wz * wz) + new_spin - energy
-    if ledger.energy[THERMAL] - given >= 0.0:
-        ledger.energy[THERMAL] -= given
-        ledger.count[AIR_MET] += 1
+    if reservoir.energy[THERMAL] - given >= 0.0:
+        reservoir.energy[THERMAL] -= given
+        reservoir.count[AIR_MET] += 1
         swarm.vx[p], swarm.vy[p], swarm.vz[p] = wx, wy, wz
         if rotates:
             swarm.spin[p] = new_spin
@@ -110,26 +111,26 @@ def touch(p, flow, swarm, gas, ledger, state, rotates, pool):
 
 
 @kernel
-def emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, pool):
+def emit(p, x, y, z, flow, swarm, gas, reservoir, state, rotates, pool):
     """Let a molecule leave the liquid, into a slot that is free."""
-    mass = gas.masses[ledger.kind]
-    flight, spin = evaporate(ledger, state)
+    mass = gas.masses[reservoir.kind]
+    flight, spin = evaporate(reservoir, state)
     speed = math.sqrt(2.0 * flight / mass)
     ex, ey, ez = direction(pool, state)
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if flow != 0.0 and energy + ledger.binding_energy > ledger.energy[THERMAL]:
+    if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
         # only the last molecule can lack what the flow of the air adds: it leaves as if the air were at rest
         vz = speed * ez
         energy = flight + spin
-    leave(ledger, energy)
+    leave(reservoir, energy)
     swarm.x[p], swarm.y[p], swarm.z[p] = x, y, z
     swarm.vx[p], swarm.vy[p], swarm.vz[p] = vx, vy, vz
     if rotates:
         swarm.spin[p] = spin
-    swarm.kind[p] = ledger.kind
-    ledger.top[0] -= 1
-    swarm.identity[p] = ledger.absent[ledger.top[0]]
+    swarm.kind[p] = reservoir.kind
+    reservoir.top[0] -= 1
+    swarm.identity[p] = reservoir.absent[reservoir.top[0]]
 
 
 @kernel
@@ -156,15 +157,15 @@ def _fastest(number, swarm):
 
 
 @kernel
-def next_rain(t, ledger, state):
+def next_rain(t, reservoir, state):
     """Return when the next molecule rains [time]."""
-    return t + wait(ledger.rain * (ledger.count[LIQUID] - ledger.keeps), state)
+    return t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
 
 
 @kernel(entry=True)
 def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
     """Let a mist, carried along by the air, do what it does in a step."""
-    ledger, state = water.ledger, water.random
+    reservoir, state = water.reservoir, water.random
     state[0] = scramble(~key)
     number = number_present(swarm, water)
     r = gas.radius
@@ -172,12 +173,12 @@ def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
     volume = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
     volume *= box.length_y - (2.0 * r if box.inverse_y == 0.0 else 0.0)
     volume *= 0.5 * (ceiling + top) - (2.0 * r if box.inverse_z == 0.0 else 0.0)
-    often = ledger.area / (4.0 * volume)
+    often = reservoir.area / (4.0 * volume)
     rise = (top - ceiling) / dt
     bound = _fastest(number, swarm) + abs(rise)
     meets = wait(number * often * bound, state)
-    leaves = wait(evaporation_rate(ledger), state)
-    rains = next_rain(0.0, ledger, state)
+    leaves = wait(evaporation_rate(reservoir), state)
+    rains = next_rain(0.0, reservoir, state)
     while True:
         t = min(meets, leaves, rains)
         if t > dt:
@@ -190,9 +191,9 @@ def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
             if enough * enough >= vx * vx + vy * vy + vz * vz:
                 meets = t + wait(number * often * bound, state)
                 continue
-            if touch(p, flow, swarm, gas, ledger, state, rotates, False):
+            if touch(p, flow, swarm, gas, reservoir, state, rotates, False):
                 number -= 1
-                strike(p, swarm, ledger)
+                strike(p, swarm, reservoir)
                 copy_slot(number, p, swarm, rotates)
             else:
                 vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
@@ -203,13 +204,13 @@ def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
             y = place(r, box.length_y, box.inverse_y, state)
             z = place(r, top, box.inverse_z, state)
             flow = rise * z / top
-            emit(p, x, y, z, flow, swarm, gas, ledger, state, rotates, False)
+            emit(p, x, y, z, flow, swarm, gas, reservoir, state, rotates, False)
             find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
             number += 1
             vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
             bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
         else:
-            rain_out(ledger)
+            rain_out(reservoir)
         meets = t + wait(number * often * bound, state)
-        leaves = t + wait(evaporation_rate(ledger), state)
-        rains = next_rain(t, ledger, state)
+        leaves = t + wait(evaporation_rate(reservoir), state)
+        rains = next_rain(t, reservoir, state)

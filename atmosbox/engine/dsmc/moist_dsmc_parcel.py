@@ -98,7 +98,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         """Return the bytes that molecules, cells, the sorting of the ones into the others and the liquid take."""
         calendar = self._water.calendar
         arrays = (self._swarm.kind, self._spare_kind, self._water.hole, calendar.time, calendar.winner)
-        return super().memory() + self._ledger_memory() + sum(int(array.nbytes) for array in arrays)
+        return super().memory() + self._reservoir_memory() + sum(int(array.nbytes) for array in arrays)
 
     # ------------------------------------------------------------------ how
 
@@ -111,8 +111,8 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         substance = self._liquid.substance
         alike = (self._gas.masses == substance.mass) & (self._gas.rotations == substance.rotation)
         alike &= 2.0 * self._gas.radius == substance.diameter
-        self._open_ledger(alike, self._swarm.kind)
-        self._water = new_water(self._ledger, self._room if self._pool else 1)
+        self._open_reservoir(alike, self._swarm.kind)
+        self._water = new_water(self._reservoir, self._room if self._pool else 1)
         self._spare_kind = np.empty_like(self._swarm.kind)
 
     def _classify(self) -> tuple[Gas, Any]:

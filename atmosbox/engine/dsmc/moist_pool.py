@@ -52,7 +52,7 @@ def fill_holes(last, swarm, left, water, rotates):
 @kernel(entry=True)
 def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, water, rotates):
     """Let a pool on the floor do what it does in a step, with those that wait on it."""
-    ledger, state, calendar, left = water.ledger, water.random, water.calendar, desk.left
+    reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, desk.left
     state[0] = scramble(~key)
     number = number_present(swarm, water)
     books = desk.books[desk.books.shape[0] - 1]
@@ -61,8 +61,8 @@ def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, 
     for p in range(number):
         if left[p] > 0.0:
             schedule(calendar, p, dt - left[p])
-    leaves = wait(evaporation_rate(ledger), state)
-    rains = next_rain(0.0, ledger, state)
+    leaves = wait(evaporation_rate(reservoir), state)
+    rains = next_rain(0.0, reservoir, state)
     while True:
         p, comes = next_event(calendar)
         t = min(comes, leaves, rains)
@@ -75,9 +75,9 @@ def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, 
             mass = gas.masses[swarm.kind[p]]
             books[0, 4] -= mass * swarm.vz[p]
             books[2, 4] += 1.0
-            flies = not touch(p, 0.0, swarm, gas, ledger, state, rotates, True)
+            flies = not touch(p, 0.0, swarm, gas, reservoir, state, rotates, True)
             if not flies:
-                strike(p, swarm, ledger)
+                strike(p, swarm, reservoir)
                 left[p] = _GONE
                 water.hole[water.holes[0]] = p
                 water.holes[0] += 1
@@ -92,9 +92,9 @@ def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, 
             left[p] = 0.0
             x = place(gas.radius, box.length_x, box.inverse_x, state)
             y = place(gas.radius, box.length_y, box.inverse_y, state)
-            emit(p, x, y, gas.radius, 0.0, swarm, gas, ledger, state, rotates, True)
+            emit(p, x, y, gas.radius, 0.0, swarm, gas, reservoir, state, rotates, True)
         else:
-            rain_out(ledger)
+            rain_out(reservoir)
         if flies:
             books[0, 4] += gas.masses[swarm.kind[p]] * swarm.vz[p]
             here = ceiling + rise * t
@@ -102,6 +102,6 @@ def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, 
             find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
             if left[p] > 0.0:
                 schedule(calendar, p, dt - left[p])
-        leaves = t + wait(evaporation_rate(ledger), state)
-        rains = next_rain(t, ledger, state)
+        leaves = t + wait(evaporation_rate(reservoir), state)
+        rains = next_rain(t, reservoir, state)
     fill_holes(number, swarm, left, water, rotates)

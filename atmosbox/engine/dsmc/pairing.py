@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.contact import share_energy
+from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
 from atmosbox.engine.core.random import uniform
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
-from atmosbox.engine.core.walls import PISTON, resolve_wall_hit
+from atmosbox.engine.core.walls import PISTON, bounce_off
 
 __all__ = ["WAITS", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
 
@@ -229,22 +229,18 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_ove
             left_over[p] = left
             break
         before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-        axis = wall >> 1
         high = wall & 1 == 1
-        came, first, second = (vx, vy, vz) if axis == 0 else ((vy, vx, vz) if axis == 1 else (vz, vx, vy))
-        went, first, second, spin = resolve_wall_hit(
-            walls, wall, start + (dt - left), came, first, second, spin, mass, rotation, False, state
+        velocity, spin, change = bounce_off(
+            wall, start + (dt - left), (vx, vy, vz), spin, (mass, rotation), walls, False, state
         )
-        if axis == 0:
-            vx, vy, vz = went, first, second
+        vx, vy, vz = velocity
+        if wall < 2:
             x = high_x if high else radius
-        elif axis == 1:
-            vx, vy, vz = first, went, second
+        elif wall < 4:
             y = high_y if high else radius
         else:
-            vx, vy, vz = first, second, went
             z = ceiling + piston * (dt - left) - radius if high else radius
-        books[0, wall] += mass * (came - went) if high else mass * (went - came)
+        books[0, wall] += -mass * change if high else mass * change
         books[1, wall] += 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
         books[2, wall] += 1.0
     swarm.x[p] = _back_inside(x, radius, high_x, box.length_x, box.inverse_x)

@@ -7,6 +7,20 @@ centre stands in a **slot**: an interval between two successive boundaries, whic
 shifted by plus and minus its radius. Crossing a boundary means entering one cell, or leaving one. Layers
 of unequal thickness cost nothing, the outermost boundary is the wall, and a sphere larger than a cell
 just overlaps more of them.
+
+Three cells along one axis, and the slots of a sphere of radius r::
+
+    cells        |      0       |      1       |      2       |
+    boundaries   |r         -r +r         -r +r             -r|
+    slots           0      | 1 |     2    | 3 |      4
+    overlaps       {0}     {0,1}    {1}   {1,2}     {2}
+
+An even slot 2c lies within cell c (its span is 1), an odd one 2c + 1 across the edge from c to c + 1 (span 2). The
+first and the last boundary are one radius from the wall. Each cell has a row in one long array, ``stride`` numbers
+long: first how many molecules there are, then which::
+
+    row          | 2 | 17 | 4 | . | . || 1 | 9 | . | . | . || ...
+                 cell 0                 cell 1
 """
 
 import math

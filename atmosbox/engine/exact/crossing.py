@@ -1,56 +1,71 @@
 """A molecule reaches a boundary: it enters a cell, or leaves one, or the boundary is a wall.
 
-Entering, it is compared with the members of the new cells alone; leaving, with nobody.
+On entering it is compared with the members of the new cells alone; on leaving, with none.
 """
+
+from enum import IntEnum
 
 import numpy as np
 
 from atmosbox.engine.core.jit import POSITIVE, kernel
+from atmosbox.engine.core.state import Motion
 from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.cells import append, overlapped, remove
-from atmosbox.engine.exact.prediction import CONTACT, next_move, size_and_radius, soonest_in_cell
+from atmosbox.engine.exact.prediction import CONTACT, Meeting, next_move, side, size_and_radius, soonest_in_cell
 
-__all__ = ["ENTERED", "FULL", "LEFT", "WALL", "cross"]
+__all__ = ["Crossed", "cross"]
 
-WALL, ENTERED, LEFT, FULL = 0, 1, 2, 3
+
+class Crossed(IntEnum):
+    """What came of it when a molecule reached a boundary.
+
+    ``WALL`` the boundary is a wall, and nothing is changed; ``ENTERED`` the molecule is in a further cell; ``LEFT`` it
+    has left one; ``FULL`` the row of a new cell must grow first, and nothing is changed.
+    """
+
+    WALL = 0
+    ENTERED = 1
+    LEFT = 2
+    FULL = 3
 
 
 @kernel
-def _is_wall(slot, axis, up, size, radius, length, inverse, last_slot, cells, modes):
+def _is_wall(slot, axis, up, size, radius, gas, modes):
     """Tell whether the boundary that a molecule has reached is a wall."""
+    cells = gas.cells
+    length, inverse = side(axis, gas.box)
     if inverse != 0.0:
         return False
     if modes.spanning:
         if up == 1:
             return cells.boundary[size, axis, slot + 1] >= length - radius
         return cells.boundary[size, axis, slot] <= radius
-    return slot + up == 0 or slot + up == last_slot + 1
+    last = cells.last_slot_x if axis == 0 else (cells.last_slot_y if axis == 1 else cells.last_slot_z)
+    return slot + up == 0 or slot + up == last + 1
 
 
 @kernel
-def cross(i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes):
-    """Let molecule i, which is at (x, y, z) at time t, cross the boundary that it has reached, and plan its next move.
+def cross(i, what, t, at, gas, modes):
+    """Let molecule i, which is where ``at`` says at time t, cross the boundary that it has reached; plan its next move.
 
     Returns
     -------
-    int
-        ``ENTERED`` or ``LEFT``; ``WALL`` or ``FULL``, with nothing changed, if it is a wall or a new cell has no room.
+    Crossed
+        What came of it.
     """
+    cells = gas.cells
     axis = what >> 1
     up = what & 1
     slot = np.int64(cells.slot[i, axis])
-    size, radius = size_and_radius(i, molecules, kinds, modes)
-    if axis == 0:
-        length, inverse, last, number = box.length_x, box.inverse_x, cells.last_slot_x, cells.number_x
-    elif axis == 1:
-        length, inverse, last, number = box.length_y, box.inverse_y, cells.last_slot_y, cells.number_y
-    else:
-        length, inverse, last, number = box.length_z, box.inverse_z, cells.last_slot_z, cells.number_z
-    if _is_wall(slot, axis, up, size, radius, length, inverse, last, cells, modes):
-        return WALL
+    size, radius = size_and_radius(i, gas, modes)
+    if _is_wall(slot, axis, up, size, radius, gas, modes):
+        return Crossed.WALL
+    # the next slot; beyond a periodic end it is the first or last, and the molecule goes on one length further
+    length, inverse = side(axis, gas.box)
     next_slot = slot + 2 * up - 1
     shift = 0.0
     if modes.periodic and inverse != 0.0:
+        last = cells.last_slot_x if axis == 0 else (cells.last_slot_y if axis == 1 else cells.last_slot_z)
         if next_slot < 0:
             next_slot = last
             shift = length
@@ -58,18 +73,21 @@ def cross(i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, cale
             next_slot = 0
             shift = -length
         if shift != 0.0:
-            x += shift if axis == 0 else 0.0
-            y += shift if axis == 1 else 0.0
-            z += shift if axis == 2 else 0.0
+            x = at.x + (shift if axis == 0 else 0.0)
+            y = at.y + (shift if axis == 1 else 0.0)
+            z = at.z + (shift if axis == 2 else 0.0)
+            at = Motion(x, y, z, at.vx, at.vy, at.vz)
+    # the one layer of cells, across this axis, that is entered or left: a longer span is entered, a shorter one left
     first, span = overlapped(slot, size, axis, cells, modes)
     next_first, next_span = overlapped(next_slot, size, axis, cells, modes)
     enter = next_span > span
     highest = next_first + next_span - 1 if enter else first + span - 1
     lowest = next_first if enter else first
     cell = highest if (up == 1) == enter else lowest
+    number = cells.number_x if axis == 0 else (cells.number_y if axis == 1 else cells.number_z)
     if modes.periodic and cell >= number:
         cell -= number
-    # the cells along the two other axes
+    # the cells of that layer which the sphere overlaps: their numbers along the two other axes, and their strides
     a1 = 1 if axis == 0 else 0
     a2 = 1 if axis == 2 else 2
     across = cells.number_y * cells.number_z
@@ -81,11 +99,11 @@ def cross(i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, cale
     first_2, span_2 = overlapped(np.int64(cells.slot[i, a2]), size, a2, cells, modes)
     base = cell * (across if axis == 0 else (cells.number_z if axis == 1 else 1))
     stride = cells.stride
-    event = events[i]
+    event = gas.events[i]
     contact_time = event.contact_time
+    # on entering: who of the new cells is met sooner than whoever is known? Nothing is changed until all have room
     if enter and modes.contacts:
-        soonest = contact_time - t
-        partner = -1
+        meeting = Meeting(contact_time - t, -1)
         full = False
         for q in range(first_1, first_1 + span_1):
             if modes.periodic and q >= number_1:
@@ -95,16 +113,14 @@ def cross(i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, cale
                     r -= number_2
                 c = base + q * step_1 + r * step_2
                 full |= np.int64(cells.row[(c * stride) & POSITIVE]) + 1 >= stride
-                soonest, partner = soonest_in_cell(
-                    c, i, t, x, y, z, vx, vy, vz, radius, soonest, partner, molecules, kinds, cells, box, modes
-                )
+                meeting = soonest_in_cell(c, i, t, at, radius, meeting, gas, modes)
         if full:
-            return FULL
-        if partner >= 0:
-            contact_time = t + soonest
+            return Crossed.FULL
+        if meeting.partner >= 0:
+            contact_time = t + meeting.after
             event.contact_time = contact_time
-            event.partner = partner
-            event.partner_count = molecules[partner].count
+            event.partner = meeting.partner
+            event.partner_count = gas.molecules[meeting.partner].count
     if modes.contacts:
         for q in range(first_1, first_1 + span_1):
             if modes.periodic and q >= number_1:
@@ -117,19 +133,20 @@ def cross(i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, cale
                     append(cells.row, start, i)
                 else:
                     remove(cells.row, start, i)
+    # the molecule itself is written only where it has gone round a periodic box
     if modes.periodic and shift != 0.0:
         if axis == 0:
-            molecules[i].x += shift
+            gas.molecules[i].x += shift
         elif axis == 1:
-            molecules[i].y += shift
+            gas.molecules[i].y += shift
         else:
-            molecules[i].z += shift
+            gas.molecules[i].z += shift
     cells.slot[i, axis] = next_slot
     slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
-    time, what = next_move(slots[0], slots[1], slots[2], t, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes)
+    time, what = next_move(slots, t, at, size, radius, gas, modes)
     time += t
     if contact_time < time:
         what = CONTACT
     event.what = what
-    schedule(calendar, i, min(time, contact_time))
-    return ENTERED if enter else LEFT
+    schedule(gas.calendar, i, min(time, contact_time))
+    return Crossed.ENTERED if enter else Crossed.LEFT

@@ -4,72 +4,69 @@ import math
 
 import numpy as np
 
-from atmosbox.engine.core.contact import resolve_contact, share_energy
+from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_image, resolve
 from atmosbox.engine.core.random import uniform
-from atmosbox.engine.core.walls import resolve_wall_hit
+from atmosbox.engine.core.state import Motion
+from atmosbox.engine.core.walls import bounce_off
 
-__all__ = ["hit", "meet", "position_at", "write"]
+__all__ = ["hit", "kind_of", "meet", "motion_at", "write"]
 
 
 @kernel
-def position_at(molecule, t, box, modes):
-    """Return position and velocity of a molecule at time t."""
+def motion_at(i, t, gas, modes):
+    """Return the `Motion` of molecule i at time t."""
+    molecule = gas.molecules[i]
     dt = t - molecule.clock
     vz = molecule.vz
     x = molecule.x + dt * molecule.vx
     y = molecule.y + dt * molecule.vy
     if modes.gravity:
-        z = molecule.z + dt * (vz - 0.5 * box.gravity * dt)
-        vz = vz - box.gravity * dt
+        z = molecule.z + dt * (vz - 0.5 * gas.box.gravity * dt)
+        vz = vz - gas.box.gravity * dt
     else:
         z = molecule.z + dt * vz
-    return x, y, z, molecule.vx, molecule.vy, vz
+    return Motion(x, y, z, molecule.vx, molecule.vy, vz)
 
 
 @kernel
-def write(molecule, t, x, y, z, vx, vy, vz):
-    """Give a molecule another place and velocity at time t; what was predicted of it is stale."""
-    molecule.x = x
-    molecule.y = y
-    molecule.z = z
-    molecule.vx = vx
-    molecule.vy = vy
-    molecule.vz = vz
+def write(i, t, at, gas):
+    """Give molecule i another place and velocity at time t; what was predicted of it is stale."""
+    molecule = gas.molecules[i]
+    molecule.x = at.x
+    molecule.y = at.y
+    molecule.z = at.z
+    molecule.vx = at.vx
+    molecule.vy = at.vy
+    molecule.vz = at.vz
     molecule.clock = t
     molecule.count += 1
 
 
 @kernel
-def meet(i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes):
-    """Resolve a contact; return the new states of both."""
-    px, py, pz, wx, wy, wz = position_at(molecules[j], t, box, modes)
-    rx = x - px
-    ry = y - py
-    rz = z - pz
-    if modes.periodic:
-        rx -= box.length_x * np.rint(rx * box.inverse_x)
-        ry -= box.length_y * np.rint(ry * box.inverse_y)
-        if not (modes.gravity or modes.piston):
-            rz -= box.length_z * np.rint(rz * box.inverse_z)
-    ux = vx - wx
-    uy = vy - wy
-    uz = vz - wz
-    mass = kinds.table[0].mass
-    other_mass = mass
-    rotation = kinds.table[0].rotation
-    other_rotation = rotation
-    if modes.mixed:
-        kind = kinds.table[molecules[i].kind]
-        other_kind = kinds.table[molecules[j].kind]
-        mass = kind.mass
-        other_mass = other_kind.mass
-        rotation = kind.rotation
-        other_rotation = other_kind.rotation
-    dx, dy, dz = resolve_contact(rx, ry, rz, ux, uy, uz, mass, other_mass)
+def kind_of(i, gas, modes):
+    """Return mass [mass], radius [length] and rotational degrees of freedom of molecule i."""
+    kind = gas.kinds.table[np.int64(gas.molecules[i].kind) if modes.mixed else 0]
+    return kind.mass, kind.radius, kind.rotation if modes.rotation else 0.0
+
+
+@kernel
+def meet(i, j, t, at, gas, modes):
+    """Resolve a meeting of molecule i, which is where ``at`` says, with j; return the `Motion` of both after it."""
+    box, tallies = gas.box, gas.tallies
+    other = motion_at(j, t, gas, modes)
+    rx, ry, rz = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, box, modes)
+    ux = at.vx - other.vx
+    uy = at.vy - other.vy
+    uz = at.vz - other.vz
+    mass, _, rotation = kind_of(i, gas, modes)
+    other_mass, _, other_rotation = kind_of(j, gas, modes)
+    dx, dy, dz = resolve(rx, ry, rz, ux, uy, uz, mass, other_mass)
+    # rotation takes part in some meetings: then the energy of the pair is shared anew
     if modes.rotation and (box.exchange >= 1.0 or uniform(tallies.random) < box.exchange):
         reduced_mass = mass * other_mass / (mass + other_mass)
-        spin = kinds.rotational_energy
+        spin = gas.kinds.rotational_energy
         relative = 0.5 * reduced_mass * (ux * ux + uy * uy + uz * uz)
         dimensions = 2.0 if box.planar else 3.0
         energy = relative + spin[i] + spin[j]
@@ -84,64 +81,49 @@ def meet(i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes):
         dx = (scale * (ux + share * dx) - ux) / share
         dy = (scale * (uy + share * dy) - uy) / share
         dz = (scale * (uz + share * dz) - uz) / share
-    back = mass / other_mass if modes.mixed else 1.0
-    layer = min(max(int((z - 0.5 * rz) * tallies.layer_scale), 0), tallies.virial.size - 1)
+    # the virial of the meeting belongs to the layer of the point midway between the two
+    layer = min(max(int((at.z - 0.5 * rz) * tallies.layer_scale), 0), tallies.virial.size - 1)
     tallies.virial[layer] += mass * (rx * dx + ry * dy + rz * dz)
-    write(molecules[i], t, x, y, z, vx + dx, vy + dy, vz + dz)
-    write(molecules[j], t, px, py, pz, wx - back * dx, wy - back * dy, wz - back * dz)
-    return vx + dx, vy + dy, vz + dz, px, py, pz, wx - back * dx, wy - back * dy, wz - back * dz
+    back = mass / other_mass if modes.mixed else 1.0
+    one = Motion(at.x, at.y, at.z, at.vx + dx, at.vy + dy, at.vz + dz)
+    two = Motion(other.x, other.y, other.z, other.vx - back * dx, other.vy - back * dy, other.vz - back * dz)
+    write(i, t, one, gas)
+    write(j, t, two, gas)
+    return one, two
 
 
 @kernel
-def hit(i, wall, t, x, y, z, vx, vy, vz, molecules, kinds, box, walls, tallies, modes):
-    """Resolve a hit on a wall or the piston; return the new state."""
-    mass = kinds.table[0].mass
-    radius = kinds.table[0].radius
-    rotation = kinds.table[0].rotation
-    if modes.mixed:
-        kind = kinds.table[molecules[i].kind]
-        mass = kind.mass
-        radius = kind.radius
-        rotation = kind.rotation
-    spin = kinds.rotational_energy[i] if modes.rotation else 0.0
-    if not modes.rotation:
-        rotation = 0.0
-    before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    since_start = walls.epoch[0] + t
-    axis = wall >> 1
+def hit(i, wall, t, at, gas, modes):
+    """Resolve a hit of molecule i on a wall or the piston; return its `Motion` after it."""
+    box, walls, tallies = gas.box, gas.walls, gas.tallies
+    mass, radius, rotation = kind_of(i, gas, modes)
+    spin = gas.kinds.rotational_energy[i] if modes.rotation else 0.0
+    before = 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz) + spin
+    velocity, spin, change = bounce_off(
+        wall, walls.epoch[0] + t, (at.vx, at.vy, at.vz), spin, (mass, rotation), walls, box.planar, tallies.random
+    )
+    vx, vy, vz = velocity
+    # the centre stands one radius from the wall to the last digit, whatever the flight has rounded
+    x, y, z = at.x, at.y, at.z
     high = wall & 1 == 1
-    if axis == 0:
-        came = vx
-        vx, vy, vz, spin = resolve_wall_hit(
-            walls, wall, since_start, vx, vy, vz, spin, mass, rotation, box.planar, tallies.random
-        )
-        went = vx
+    if wall >> 1 == 0:
         x = box.length_x - radius if high else radius
-    elif axis == 1:
-        came = vy
-        vy, vx, vz, spin = resolve_wall_hit(
-            walls, wall, since_start, vy, vx, vz, spin, mass, rotation, box.planar, tallies.random
-        )
-        went = vy
+    elif wall >> 1 == 1:
         y = box.length_y - radius if high else radius
+    elif modes.piston and high:
+        z = walls.piston[0] + walls.piston[1] * (t - walls.piston[2]) - radius
     else:
-        came = vz
-        vz, vx, vy, spin = resolve_wall_hit(
-            walls, wall, since_start, vz, vx, vy, spin, mass, rotation, box.planar, tallies.random
-        )
-        went = vz
-        if modes.piston and high:
-            z = walls.piston[0] + walls.piston[1] * (t - walls.piston[2]) - radius
-        else:
-            z = box.length_z - radius if high else radius
+        z = box.length_z - radius if high else radius
     if modes.rotation:
-        kinds.rotational_energy[i] = spin
+        gas.kinds.rotational_energy[i] = spin
+    # what the molecule gained, the wall gave: as work if it is the piston, else as heat
     gained = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
     tallies.hits[wall] += 1
-    tallies.impulse[wall] += mass * (came - went) if high else mass * (went - came)
+    tallies.impulse[wall] += -mass * change if high else mass * change
     if modes.piston and wall == 5:
         tallies.work[wall] += gained
     else:
         tallies.heat[wall] += gained
-    write(molecules[i], t, x, y, z, vx, vy, vz)
-    return x, y, z, vx, vy, vz
+    after = Motion(x, y, z, vx, vy, vz)
+    write(i, t, after, gas)
+    return after

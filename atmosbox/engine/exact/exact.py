@@ -13,36 +13,58 @@ the code of everything else does not exist.
 import functools
 import math
 from collections.abc import Callable
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel, prefetch
+from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.calendar import next_event, schedule
 from atmosbox.engine.exact.cells import append, overlapped, slot_at
-from atmosbox.engine.exact.crossing import ENTERED, FULL, LEFT, WALL, cross
-from atmosbox.engine.exact.encounter import hit, meet, position_at
-from atmosbox.engine.exact.prediction import CEILING, CONTACT, next_move, plan, size_and_radius
+from atmosbox.engine.exact.crossing import Crossed, cross
+from atmosbox.engine.exact.encounter import hit, meet, motion_at
+from atmosbox.engine.exact.prediction import CEILING, CONTACT, next_move, plan, side, size_and_radius
 
-__all__ = ["BUSY", "CROWDED", "DONE", "LOOK", "MET", "ROW_FULL", "STALLED", "piled_up", "proceed", "specialise"]
+__all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
 
-DONE, BUSY, ROW_FULL, STALLED, MET, CROWDED = range(6)
-"""Status: up to the time asked for; not yet; a row must grow; a pile-up; the next event is a molecule that meets
-liquid; one that evaporates finds no place."""
+
+class Status(IntEnum):
+    """Why the loop over events has stopped.
+
+    ``DONE`` the time asked for is reached; ``BUSY`` as many events are resolved as were asked for; ``ROW_FULL`` the
+    row of a cell must grow; ``STALLED`` events pile up without progress in time; ``MEETS_LIQUID`` the next event is a
+    molecule that meets a pool or a drop, which is left to the caller; ``CROWDED`` a molecule that evaporates finds no
+    free place.
+    """
+
+    DONE = 0
+    BUSY = 1
+    ROW_FULL = 2
+    STALLED = 3
+    MEETS_LIQUID = 4
+    CROWDED = 5
+
 
 _MANY = 4_000
-LOOK = 1024
-"""After how many events it is asked whether they pile up."""
-FLOOR = 4
+"""From how many molecules on it is memory that takes the time, so that it pays to fetch ahead."""
+CHECK_EVERY = 1024
+"""After how many events it is checked whether they pile up."""
+_FLOOR, _CEILING = 4, 5
 
 
 @kernel
-def _warm_up(calendar, cells, molecules, events, modes):
-    """Fetch what the runners-up of the tournament will need: at many molecules memory is what takes the time."""
+def _fetch_ahead(gas, modes):
+    """Fetch what the runners-up of the tournament will need: at many molecules memory is what takes the time.
+
+    The nodes 2 to 7 of the tournament hold those who have lost against the winner in the last rounds; one of them is
+    most often the next event but one.
+    """
+    calendar, cells, events = gas.calendar, gas.cells, gas.events
     for node in range(2, 8):
         i = np.int64(calendar.winner[node])
-        prefetch(molecules, i)
+        prefetch(gas.molecules, i)
         prefetch(events, i)
         prefetch(calendar.time, calendar.leaf + i)
         if node < 4 and not modes.spanning:
@@ -54,7 +76,7 @@ def _warm_up(calendar, cells, molecules, events, modes):
             cell = ((sx >> 1) * cells.number_y + (sy >> 1)) * cells.number_z + (sz >> 1)
             if what == CONTACT:
                 j = np.int64(event.partner)
-                prefetch(molecules, j)
+                prefetch(gas.molecules, j)
                 prefetch(events, j)
                 prefetch(calendar.time, calendar.leaf + j)
             else:
@@ -73,89 +95,105 @@ def _warm_up(calendar, cells, molecules, events, modes):
 
 
 @kernel
-def piled_up(t, events, molecules, box, tallies):
+def piled_up(t, events, gas):
     """Note so many events up to time t; tell whether there are too many in next to no time."""
-    progress = tallies.progress
-    if t - progress[0] > box.stall:
+    progress = gas.tallies.progress
+    if t - progress[0] > gas.box.stall:
         progress[0] = t
         progress[1] = 0.0
     progress[1] += events
-    return progress[1] > 100_000 + 64 * molecules
+    return progress[1] > 100_000 + 64 * gas.molecules.size
 
 
 @kernel
-def proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most, modes):
-    """Resolve events up to time ``until``, at most ``most`` of them; return a status and how many.
-
-    The status ``MET`` says that the next event is a molecule that falls into a pool, or hits a drop: it is left to the
-    caller.
-    """
+def proceed(gas, until, most, modes):
+    """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
+    tallies = gas.tallies
     done = 0
-    status = BUSY
-    many = molecules.size >= _MANY
+    status = Status.BUSY
+    many = gas.molecules.size >= _MANY
     contacts = entered = left = stale = wall_hits = 0
     while done < most:
-        i, t = next_event(calendar)
+        # whose event is next?
+        i, t = next_event(gas.calendar)
         if not t <= until:
-            status = DONE
+            status = Status.DONE
             break
-        if done & (LOOK - 1) == LOOK - 1 and piled_up(t, LOOK, molecules.size, box, tallies):
-            status = STALLED
+        if done & (CHECK_EVERY - 1) == CHECK_EVERY - 1 and piled_up(t, CHECK_EVERY, gas):
+            status = Status.STALLED
             break
         if many:
-            _warm_up(calendar, cells, molecules, events, modes)
-        event = events[i]
+            _fetch_ahead(gas, modes)
+        event = gas.events[i]
         what = np.int64(event.what)
-        x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
+        at = motion_at(i, t, gas, modes)
+        # a boundary between cells: the molecule flies on, and only its cells and its event change
         if what < CONTACT:
-            crossed = cross(
-                i, what, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes
-            )
-            if crossed == FULL:
-                status = ROW_FULL
+            crossed = cross(i, what, t, at, gas, modes)
+            if crossed == Crossed.FULL:
+                status = Status.ROW_FULL
                 break
-            if crossed != WALL:
-                entered += 1 if crossed == ENTERED else 0
-                left += 1 if crossed == LEFT else 0
+            if crossed != Crossed.WALL:
+                entered += 1 if crossed == Crossed.ENTERED else 0
+                left += 1 if crossed == Crossed.LEFT else 0
                 done += 1
                 continue
-            if modes.pool and what == FLOOR:
-                status = MET
+            if modes.pool and what == _FLOOR:
+                status = Status.MEETS_LIQUID
                 break
+        # a contact, if the partner is still on the way that was predicted; or a wall
         j = -1
-        px, py, pz, wx, wy, wz = x, y, z, vx, vy, vz
+        other = at
         if what == CONTACT:
             j = np.int64(event.partner)
-            if molecules[j].count == event.partner_count:
-                if modes.drops > 0 and max(np.int64(molecules[i].kind), np.int64(molecules[j].kind)) >= modes.drops:
-                    status = MET
+            if gas.molecules[j].count == event.partner_count:
+                if (
+                    modes.drops > 0
+                    and max(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops
+                ):
+                    status = Status.MEETS_LIQUID
                     break
-                vx, vy, vz, px, py, pz, wx, wy, wz = meet(
-                    i, j, t, x, y, z, vx, vy, vz, molecules, kinds, box, tallies, modes
-                )
+                at, other = meet(i, j, t, at, gas, modes)
                 contacts += 1
             else:
                 stale += 1
                 j = -1
         else:
-            wall = 5 if what == CEILING else what
-            x, y, z, vx, vy, vz = hit(i, wall, t, x, y, z, vx, vy, vz, molecules, kinds, box, walls, tallies, modes)
+            at = hit(i, _CEILING if what == CEILING else what, t, at, gas, modes)
             wall_hits += 1
         done += 1
+        # both plan anew; in one loop, so that the search for contacts is compiled into it once
         m = i
         while True:
-            plan(m, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
+            plan(m, t, at, gas, modes)
             if j < 0:
                 break
             m = j
             j = -1
-            x, y, z, vx, vy, vz = px, py, pz, wx, wy, wz
+            at = other
     tallies.count[0] += contacts
     tallies.count[1] += entered
     tallies.count[2] += left
     tallies.count[3] += stale
     tallies.count[4] += wall_hits
     return status, done
+
+
+@kernel
+def _into_box(i, axis, u, size, gas):
+    """Return a coordinate brought back into a periodic box, whose cells begin at the lowest boundary; write it down."""
+    length, inverse = side(axis, gas.box)
+    if inverse != 0.0:
+        turns = math.floor((u - gas.cells.boundary[size, axis, 0]) / length)
+        if turns != 0.0:
+            u -= turns * length
+            if axis == 0:
+                gas.molecules[i].x -= turns * length
+            elif axis == 1:
+                gas.molecules[i].y -= turns * length
+            else:
+                gas.molecules[i].z -= turns * length
+    return u
 
 
 @functools.cache
@@ -166,35 +204,19 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """
 
     @kernel(entry=True)
-    def place(molecules, events, kinds, cells, calendar, box, walls, now):
+    def place(gas, now):
         """Enter all molecules into their cells at time ``now`` and plan their events, unless a row is full."""
-        cells.row[:] = 0
+        cells = gas.cells
         row = cells.row
-        for i in range(molecules.size):
-            if modes.phases and math.isinf(molecules[i].clock):
+        row[:] = 0
+        for i in range(gas.molecules.size):
+            if modes.phases and math.isinf(gas.molecules[i].clock):
                 continue
-            x, y, z, vx, vy, vz = position_at(molecules[i], now, box, modes)
-            size, _ = size_and_radius(i, molecules, kinds, modes)
-            for axis in range(3):
-                if axis == 0:
-                    u, length, last = x, box.length_x, cells.last_slot_x
-                elif axis == 1:
-                    u, length, last = y, box.length_y, cells.last_slot_y
-                else:
-                    u, length, last = z, box.length_z, cells.last_slot_z
-                inverse = box.inverse_x if axis == 0 else (box.inverse_y if axis == 1 else box.inverse_z)
-                if inverse != 0.0:
-                    lowest = cells.boundary[size, axis, 0]
-                    turns = math.floor((u - lowest) / length)
-                    if turns != 0.0:
-                        u -= turns * length
-                        if axis == 0:
-                            molecules[i].x -= turns * length
-                        elif axis == 1:
-                            molecules[i].y -= turns * length
-                        else:
-                            molecules[i].z -= turns * length
-                cells.slot[i, axis] = slot_at(u, size, axis, last, cells, modes)
+            at = motion_at(i, now, gas, modes)
+            size, _ = size_and_radius(i, gas, modes)
+            cells.slot[i, 0] = slot_at(_into_box(i, 0, at.x, size, gas), size, 0, cells.last_slot_x, cells, modes)
+            cells.slot[i, 1] = slot_at(_into_box(i, 1, at.y, size, gas), size, 1, cells.last_slot_y, cells, modes)
+            cells.slot[i, 2] = slot_at(_into_box(i, 2, at.z, size, gas), size, 2, cells.last_slot_z, cells, modes)
             first_x, span_x = overlapped(np.int64(cells.slot[i, 0]), size, 0, cells, modes)
             first_y, span_y = overlapped(np.int64(cells.slot[i, 1]), size, 1, cells, modes)
             first_z, span_z = overlapped(np.int64(cells.slot[i, 2]), size, 2, cells, modes)
@@ -204,50 +226,44 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                         cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
                         start = (cell + c % cells.number_z) * cells.stride
                         if np.int64(row[start]) + 1 >= cells.stride:
-                            return ROW_FULL
+                            return Status.ROW_FULL
                         append(row, start, i)
-        for i in range(molecules.size):
-            if modes.phases and math.isinf(molecules[i].clock):
+        for i in range(gas.molecules.size):
+            if modes.phases and math.isinf(gas.molecules[i].clock):
                 continue
-            x, y, z, vx, vy, vz = position_at(molecules[i], now, box, modes)
-            plan(i, now, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
-        return DONE
+            plan(i, now, motion_at(i, now, gas, modes), gas, modes)
+        return Status.DONE
 
     @kernel(entry=True)
-    def replan_ceiling(molecules, events, kinds, cells, calendar, box, walls, now, lowest):
+    def replan_ceiling(gas, now, lowest):
         """Plan anew, at time ``now``, the moves of all that may meet the ceiling, or that were to meet it.
 
         Below ``lowest``, the lowest place of the ceiling before it is asked again, a molecule leaves its slot first.
         """
-        for i in range(molecules.size):
-            if modes.phases and math.isinf(molecules[i].clock):
+        for i in range(gas.molecules.size):
+            if modes.phases and math.isinf(gas.molecules[i].clock):
                 continue
-            event = events[i]
-            slot_z = np.int64(event.slot_z)
-            size, radius = size_and_radius(i, molecules, kinds, modes)
-            if cells.boundary[size, 2, slot_z + 1] < lowest - radius and np.int64(event.what) != CEILING:
+            event = gas.events[i]
+            slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
+            size, radius = size_and_radius(i, gas, modes)
+            if gas.cells.boundary[size, 2, slots[2] + 1] < lowest - radius and np.int64(event.what) != CEILING:
                 continue
-            x, y, z, vx, vy, vz = position_at(molecules[i], now, box, modes)
-            time, what = next_move(
-                np.int64(event.slot_x),
-                np.int64(event.slot_y),
-                slot_z,
-                now, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes,
-            )  # fmt: skip
+            time, what = next_move(slots, now, motion_at(i, now, gas, modes), size, radius, gas, modes)
             time += now
             if event.contact_time < time:
                 what = CONTACT
             event.what = what
-            schedule(calendar, i, min(time, event.contact_time))
+            schedule(gas.calendar, i, min(time, event.contact_time))
 
     @kernel(entry=True)
-    def advance(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most):
-        """Resolve events up to time ``until``, at most ``most`` of them; return a status and how many."""
-        return proceed(molecules, events, kinds, cells, calendar, box, walls, tallies, until, most, modes)
+    def advance(gas, until, most):
+        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
+        return proceed(gas, until, most, modes)
 
     @kernel(entry=True)
-    def overlap(molecules, kinds, cells, box):
+    def overlap(gas):
         """Return the deepest overlap, in diameters, and the two molecules; all clocks must read the same."""
+        cells = gas.cells
         deepest = -1.0
         first = -1
         second = -1
@@ -256,19 +272,14 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
             end = start + 1 + np.int64(cells.row[start])
             for p in range(start + 1, end):
                 i = np.int64(cells.row[p])
-                _, radius = size_and_radius(i, molecules, kinds, modes)
+                one = gas.molecules[i]
+                _, radius = size_and_radius(i, gas, modes)
                 for q in range(p + 1, end):
                     j = np.int64(cells.row[q])
-                    _, other_radius = size_and_radius(j, molecules, kinds, modes)
-                    rx = molecules[i].x - molecules[j].x
-                    ry = molecules[i].y - molecules[j].y
-                    rz = molecules[i].z - molecules[j].z
-                    if modes.periodic:
-                        rx -= box.length_x * np.rint(rx * box.inverse_x)
-                        ry -= box.length_y * np.rint(ry * box.inverse_y)
-                        if not (modes.gravity or modes.piston):
-                            rz -= box.length_z * np.rint(rz * box.inverse_z)
-                    distance = radius + other_radius
+                    two = gas.molecules[j]
+                    _, other_radius = size_and_radius(j, gas, modes)
+                    rx, ry, rz = nearest_image(one.x - two.x, one.y - two.y, one.z - two.z, gas.box, modes)
+                    distance = reach(radius, other_radius)
                     depth = 1.0 - math.sqrt(rx * rx + ry * ry + rz * rz) / distance if distance > 0.0 else -1.0
                     if depth > deepest:
                         deepest = depth

@@ -16,18 +16,17 @@ from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError
-from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Modes, aligned_records
+from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, choose_grid, new_cells
-from atmosbox.engine.exact.exact import BUSY, CROWDED, ROW_FULL, STALLED, specialise
+from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crushed, why_stalled
 
 __all__ = ["ParcelSet"]
 
 _CHUNK = 200_000
 _OVERLAP = 1e-9
-_ENDS = (STALLED, CROWDED)
 _WHY_CROWDED = "a molecule that evaporates finds no place among the others: lower the packing fraction"
 
 
@@ -67,7 +66,7 @@ class ParcelSet(Parcel):
         self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
         self._cells: Cells
         self._lay_out()
-        depth, i, j = self._overlap(self._molecules, self._kinds, self._cells, self._box)
+        depth, i, j = self._overlap(self._gas())
         if depth > _OVERLAP:
             raise RefusedError(
                 f"molecules {i} and {j} overlap at the start, by {depth:.3g} of their diameter: "
@@ -139,10 +138,7 @@ class ParcelSet(Parcel):
         lowest = self.ceiling
         if velocity < 0.0:
             lowest += velocity * self._driver.interval if self._driver is not None else -math.inf
-        self._replan(
-            self._molecules, self._events, self._kinds, self._cells, self._calendar, self._box, self._walls,
-            self._now, lowest,
-        )  # fmt: skip
+        self._replan(self._gas(), self._now, lowest)
 
     def _field_changes(self, gravity: float) -> None:
         _, position, velocity, _ = self.snapshot()
@@ -167,15 +163,15 @@ class ParcelSet(Parcel):
             while True:
                 status = self._proceed(stop)
                 self._now = max(self._now, min(stop, self._next_time()))
-                if status == ROW_FULL:
+                if status == Status.ROW_FULL:
                     self._grow_rows()
-                elif status in _ENDS:
+                elif status in (Status.STALLED, Status.CROWDED):
                     self._now = min(self._next_time(), stop)
-                    raise StalledError(why_stalled(self) if status == STALLED else _WHY_CROWDED)
+                    raise StalledError(why_stalled(self) if status == Status.STALLED else _WHY_CROWDED)
                 elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_crushed(self))
-                elif status == BUSY:
+                elif status == Status.BUSY:
                     if watch is not None:
                         watch(float(self._walls.epoch[0]) + self._next_time())
                 else:
@@ -184,13 +180,17 @@ class ParcelSet(Parcel):
         if crushed < local:
             raise StalledError(why_crushed(self))
 
-    def _proceed(self, until: float) -> int:
-        """Resolve a number of events up to a local time; return a status."""
-        status, _ = self._advance(
-            self._molecules, self._events, self._kinds, self._cells, self._calendar,
-            self._box, self._walls, self._tallies, until, _CHUNK,
+    def _proceed(self, until: float) -> Status:
+        """Resolve a number of events up to a local time; tell why it stopped."""
+        status, _ = self._advance(self._gas(), until, _CHUNK)
+        return Status(status)
+
+    def _gas(self) -> Gas:
+        """Return all that the kernels work on."""
+        return Gas(
+            self._molecules, self._events, self._kinds, self._cells,
+            self._calendar, self._box, self._walls, self._tallies,
         )  # fmt: skip
-        return int(status)
 
     def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
         """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
@@ -273,17 +273,7 @@ class ParcelSet(Parcel):
         while True:
             self._cells = new_cells(grid, slot, stride)
             self._calendar = new_calendar(n)
-            status = place(
-                self._molecules,
-                self._events,
-                self._kinds,
-                self._cells,
-                self._calendar,
-                self._box,
-                self._walls,
-                self._now,
-            )
-            if status != ROW_FULL:
+            if place(self._gas(), self._now) != Status.ROW_FULL:
                 return
             stride *= 2
 

@@ -1,111 +1,132 @@
-"""What lies ahead of a molecule: its next contact, its next boundary, its next wall."""
+"""What lies ahead of a molecule: its next contact, its next boundary, its next wall.
+
+All three are worked out when the molecule has met something, and only its cells are searched. What is soonest becomes
+its event in the calendar.
+"""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
+from atmosbox.engine.core.pair import approach, nearest_image, predict, reach
 from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.cells import overlapped
 
-__all__ = ["CEILING", "CONTACT", "next_move", "plan", "size_and_radius", "soonest_in_cell"]
+__all__ = ["CEILING", "CONTACT", "Meeting", "next_move", "plan", "side", "size_and_radius", "soonest_in_cell"]
 
 CONTACT, CEILING = 6, 7
 """What comes first: 0 to 5 is a boundary or wall (twice the axis, plus 1 for the upper side), then these."""
 
 
+class Meeting(NamedTuple):
+    """The soonest contact found so far: how long until then [time], and with which molecule, -1 for none."""
+
+    after: float
+    partner: int
+
+
 @kernel
-def size_and_radius(i, molecules, kinds, modes):
+def size_and_radius(i, gas, modes):
     """Return the size class and the radius [length] of molecule i."""
+    table = gas.kinds.table
     if modes.mixed:
-        kind = kinds.table[molecules[i].kind]
+        kind = table[gas.molecules[i].kind]
         return np.int64(kind.size_class), kind.radius
-    return np.int64(0), kinds.table[0].radius
+    return np.int64(0), table[0].radius
 
 
 @kernel
-def soonest_in_cell(cell, i, t, x, y, z, vx, vy, vz, radius, soonest, partner, molecules, kinds, cells, box, modes):
-    """Return the earlier of ``soonest`` and the first contact of molecule i with a member of a cell, and with whom.
+def side(axis, box):
+    """Return the length of the box along an axis [length], and its inverse if the axis is periodic, else 0."""
+    if axis == 0:
+        return box.length_x, box.inverse_x
+    if axis == 1:
+        return box.length_y, box.inverse_y
+    return box.length_z, box.inverse_z
 
-    It is `time_to_contact` written out: most pairs miss, so the discriminant is tested alone and all else
-    stands inside.
+
+@kernel
+def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
+    """Return the earlier of the `Meeting` known and the first contact of molecule i with a member of a cell.
+
+    The others are taken to time t, each from the time of its own clock; nothing is written.
     """
-    row = cells.row
-    start = (cell * cells.stride) & POSITIVE
-    diameter_squared = 4.0 * radius * radius
+    row = gas.cells.row
+    start = (cell * gas.cells.stride) & POSITIVE
+    soonest = known.after
+    partner = known.partner
     for q in range(np.int64(row[start])):
         j = np.int64(row[start + 1 + q])
-        other = molecules[j]
+        other = gas.molecules[j]
         dt = t - other.clock
         wx = other.vx
         wy = other.vy
         wz = other.vz
-        rx = x - other.x - dt * wx
-        ry = y - other.y - dt * wy
+        rx = at.x - other.x - dt * wx
+        ry = at.y - other.y - dt * wy
         if modes.gravity:
-            rz = z - other.z - dt * (wz - 0.5 * box.gravity * dt)
-            wz = wz - box.gravity * dt
+            rz = at.z - other.z - dt * (wz - 0.5 * gas.box.gravity * dt)
+            wz = wz - gas.box.gravity * dt
         else:
-            rz = z - other.z - dt * wz
-        if modes.periodic:
-            rx -= box.length_x * np.rint(rx * box.inverse_x)
-            ry -= box.length_y * np.rint(ry * box.inverse_y)
-            if not (modes.gravity or modes.piston):
-                rz -= box.length_z * np.rint(rz * box.inverse_z)
-        if modes.mixed:
-            distance = radius + kinds.table[other.kind].radius
-            diameter_squared = distance * distance
-        ux = vx - wx
-        uy = vy - wy
-        uz = vz - wz
-        b = rx * ux + ry * uy + rz * uz
-        speed_squared = ux * ux + uy * uy + uz * uz
-        c = rx * rx + ry * ry + rz * rz - diameter_squared
-        closing = min(b, 0.0)
-        discriminant = closing * closing - speed_squared * c
+            rz = at.z - other.z - dt * wz
+        rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
+        distance = reach(radius, gas.kinds.table[other.kind].radius if modes.mixed else radius)
+        ux = at.vx - wx
+        uy = at.vy - wy
+        uz = at.vz - wz
+        discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
+        # most pairs miss: all else stands inside this one branch; a pair that overlaps by rounding and parts has b >= 0
         if discriminant > 0.0:
-            s = max(c / (math.sqrt(discriminant) - b), 0.0)
-            if s < soonest and b < 0.0 and i != j:
-                soonest = s
+            after = predict(discriminant, b, c)
+            if after < soonest and b < 0.0 and i != j:
+                soonest = after
                 partner = j
-    return soonest, partner
+    return Meeting(soonest, partner)
 
 
 @kernel
-def _limits(slot, axis, size, radius, length, inverse, cells, modes):
+def _limits(slot, axis, size, radius, gas, modes):
     """Return the interval in which the centre stays before it changes slot or hits a wall."""
-    low = cells.boundary[size, axis, slot]
-    high = cells.boundary[size, axis, slot + 1]
-    if modes.spanning and inverse == 0.0:
-        low = max(low, radius)
-        high = min(high, length - radius)
+    low = gas.cells.boundary[size, axis, slot]
+    high = gas.cells.boundary[size, axis, slot + 1]
+    if modes.spanning:
+        length, inverse = side(axis, gas.box)
+        if inverse == 0.0:
+            low = max(low, radius)
+            high = min(high, length - radius)
     return low, high
 
 
 @kernel
-def next_move(slot_x, slot_y, slot_z, t, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes):
-    """Return when a molecule next crosses a boundary or hits a wall [time from now], and which."""
-    low, high = _limits(slot_x, 0, size, radius, box.length_x, box.inverse_x, cells, modes)
-    time, up = time_to_leave(x, vx, low, high)
+def next_move(slots, t, at, size, radius, gas, modes):
+    """Return when a molecule next crosses a boundary or hits a wall [time from now], and which.
+
+    ``slots`` are its slots along x, y and z, ``size`` its size class.
+    """
+    low, high = _limits(slots[0], 0, size, radius, gas, modes)
+    time, up = time_to_leave(at.x, at.vx, low, high)
     what = up
-    low, high = _limits(slot_y, 1, size, radius, box.length_y, box.inverse_y, cells, modes)
-    time_y, up = time_to_leave(y, vy, low, high)
+    low, high = _limits(slots[1], 1, size, radius, gas, modes)
+    time_y, up = time_to_leave(at.y, at.vy, low, high)
     if time_y < time:
         what = 2 + up
     time = min(time, time_y)
-    low, high = _limits(slot_z, 2, size, radius, box.length_z, box.inverse_z, cells, modes)
+    low, high = _limits(slots[2], 2, size, radius, gas, modes)
     if modes.gravity:
-        time_z, up = time_to_leave_in_gravity(z, vz, low, high, box.gravity)
+        time_z, up = time_to_leave_in_gravity(at.z, at.vz, low, high, gas.box.gravity)
     else:
-        time_z, up = time_to_leave(z, vz, low, high)
+        time_z, up = time_to_leave(at.z, at.vz, low, high)
     if time_z < time:
         what = 4 + up
     time = min(time, time_z)
     if modes.piston:
-        speed = walls.piston[1]
-        ceiling = walls.piston[0] + speed * (t - walls.piston[2])
-        time_c = time_to_ceiling(ceiling - radius - z, vz - speed, box.gravity)
+        piston = gas.walls.piston
+        speed = piston[1]
+        ceiling = piston[0] + speed * (t - piston[2])
+        time_c = time_to_ceiling(ceiling - radius - at.z, at.vz - speed, gas.box.gravity)
         if time_c < time:
             what = CEILING
         time = min(time, time_c)
@@ -113,18 +134,18 @@ def next_move(slot_x, slot_y, slot_z, t, x, y, z, vx, vy, vz, size, radius, cell
 
 
 @kernel
-def plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes):
-    """Plan everything anew for a molecule that is at (x, y, z) at time t."""
-    slot_x = np.int64(events[i].slot_x)
-    slot_y = np.int64(events[i].slot_y)
-    slot_z = np.int64(events[i].slot_z)
-    size, radius = size_and_radius(i, molecules, kinds, modes)
-    soonest = math.inf
-    partner = -1
+def plan(i, t, at, gas, modes):
+    """Work out anew all that lies ahead of molecule i, which is where ``at`` says at time t; write it down."""
+    cells = gas.cells
+    event = gas.events[i]
+    slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
+    size, radius = size_and_radius(i, gas, modes)
+    meeting = Meeting(math.inf, -1)
     if modes.contacts:
-        first_x, span_x = overlapped(slot_x, size, 0, cells, modes)
-        first_y, span_y = overlapped(slot_y, size, 1, cells, modes)
-        first_z, span_z = overlapped(slot_z, size, 2, cells, modes)
+        # the members of every cell that the sphere overlaps, one to eight of them
+        first_x, span_x = overlapped(slots[0], size, 0, cells, modes)
+        first_y, span_y = overlapped(slots[1], size, 1, cells, modes)
+        first_z, span_z = overlapped(slots[2], size, 2, cells, modes)
         for cx in range(first_x, first_x + span_x):
             if modes.periodic and cx >= cells.number_x:
                 cx -= cells.number_x
@@ -135,17 +156,14 @@ def plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, b
                     if modes.periodic and cz >= cells.number_z:
                         cz -= cells.number_z
                     cell = (cx * cells.number_y + cy) * cells.number_z + cz
-                    soonest, partner = soonest_in_cell(
-                        cell, i, t, x, y, z, vx, vy, vz, radius, soonest, partner,
-                        molecules, kinds, cells, box, modes,
-                    )  # fmt: skip
-    time, what = next_move(slot_x, slot_y, slot_z, t, x, y, z, vx, vy, vz, size, radius, cells, box, walls, modes)
-    event = events[i]
-    event.contact_time = t + soonest
-    if partner >= 0:
-        event.partner = partner
-        event.partner_count = molecules[partner].count
-    if soonest < time:
+                    meeting = soonest_in_cell(cell, i, t, at, radius, meeting, gas, modes)
+    time, what = next_move(slots, t, at, size, radius, gas, modes)
+    event.contact_time = t + meeting.after
+    if meeting.partner >= 0:
+        event.partner = meeting.partner
+        # a prediction is stale as soon as its partner has met somebody else, which its count will tell
+        event.partner_count = gas.molecules[meeting.partner].count
+    if meeting.after < time:
         what = CONTACT
     event.what = what
-    schedule(calendar, i, t + min(time, soonest))
+    schedule(gas.calendar, i, t + min(time, meeting.after))

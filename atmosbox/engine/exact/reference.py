@@ -3,7 +3,7 @@ r"""The definition of the model, slow and obvious: what the exact engine must ag
 Before every event everything that lies ahead is worked out from scratch, for all pairs and all walls; the
 list is sorted, all molecules fly to the first event in it, and that one is resolved. There are no cells, no
 calendar, no clocks and nothing remembered, so there is little to get wrong. What a contact and a wall do to
-velocities is not written twice: `resolve_contact`, `share_energy` and `resolve_wall_hit` are the engine's
+velocities is not written twice: `pair.resolve`, `share_energy` and `resolve_wall_hit` are the engine's
 own, and so are the random numbers, drawn in the same order.
 
 Every encounter is the closing of a gap. The gap between two spheres, taken as
@@ -19,7 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.contact import resolve_contact, share_energy
+from atmosbox.engine.core.hard_sphere import share_energy
+from atmosbox.engine.core.pair import nearest_along, reach, resolve
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls, resolve_wall_hit
 
@@ -208,7 +209,7 @@ class Reference:
         images = self.length * np.array(list(itertools.product(*turns)))
         for i in range(self.number):
             for j in range(i + 1, self.number):
-                distance = 0.5 * (self.diameter[i] + self.diameter[j])
+                distance = reach(0.5 * self.diameter[i], 0.5 * self.diameter[j])
                 if distance == 0.0:
                     continue  # points never meet
                 v = self.velocity[i] - self.velocity[j]
@@ -264,10 +265,10 @@ class Reference:
         r = self.position[i] - self.position[j]
         for axis in range(3):
             if self.periodic[axis]:
-                r[axis] -= self.length[axis] * round(r[axis] / self.length[axis])
+                r[axis] = nearest_along(r[axis], self.length[axis], 1.0 / self.length[axis])
         before = self.velocity[i] - self.velocity[j]
         mass, other_mass = self.mass[i], self.mass[j]
-        after = before + (1.0 + mass / other_mass) * np.array(resolve_contact(*r, *before, mass, other_mass))
+        after = before + (1.0 + mass / other_mass) * np.array(resolve(*r, *before, mass, other_mass))
         if self.rotation.any() and (self.exchange >= 1.0 or uniform(self.random) < self.exchange):
             relative = 0.5 * mass * other_mass / (mass + other_mass) * (before @ before)
             shared, self.rotational_energy[i], self.rotational_energy[j] = share_energy(

@@ -17,23 +17,15 @@ from typing import Any
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.random import uniform
-from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
-from atmosbox.engine.exact.encounter import position_at, write
-from atmosbox.engine.exact.exact import BUSY, DONE, LOOK, MET, ROW_FULL, STALLED, piled_up, proceed
+from atmosbox.engine.exact.encounter import kind_of, motion_at, write
+from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import plan
-from atmosbox.engine.liquid.drop_shape import (
-    DropRecords,
-    about,
-    nearest,
-    placed,
-    radius_of,
-    resize,
-    surface_left,
-    within,
-)
-from atmosbox.engine.liquid.insertion import NO_ROOM, TAKEN, has_room, move_to, room_at
+from atmosbox.engine.liquid.drop_shape import DropRecords, about, placed, radius_of, resize, surface_left, within
+from atmosbox.engine.liquid.insertion import Place, has_room, move_to, place_at
 from atmosbox.engine.liquid.moist import ceiling_at, renew
 from atmosbox.engine.liquid.phase import enter, take_out, withdraw
 from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave
@@ -44,113 +36,117 @@ _LEAVES = 1
 
 
 @kernel
-def _renew(t, drops, tallies, ledger):
+def _renew(t, gas, drops, reservoir):
     """Sum the surface anew, and draw when the next molecule leaves."""
     surface = 0.0
     for k in range(drops.record.size):
         surface += surface_left(drops, k)
-    ledger.surface[0] = surface
-    renew(t, tallies, ledger)
+    reservoir.surface[0] = surface
+    renew(t, gas.tallies.random, reservoir)
 
 
 @kernel
-def _may_grow(i, j, k, t, x, y, z, molecules, events, kinds, cells, box, walls, drops, modes):
-    """Tell whether drop k has room for one molecule more: neither a wall nor anybody but molecule i stands there."""
+def _may_grow(i, j, k, t, at, gas, drops, modes):
+    """Tell whether drop k, record j, has room for one molecule more: no wall and no molecule but i is in the way."""
+    box = gas.box
     radius = radius_of(drops, k, drops.held[k] + 1)
-    if box.inverse_x == 0.0 and not radius <= x <= box.length_x - radius:
+    if box.inverse_x == 0.0 and not radius <= at.x <= box.length_x - radius:
         return False
-    if box.inverse_y == 0.0 and not radius <= y <= box.length_y - radius:
+    if box.inverse_y == 0.0 and not radius <= at.y <= box.length_y - radius:
         return False
-    if box.inverse_z == 0.0 and not radius <= z <= ceiling_at(t, box, walls, modes)[0] - radius:
+    if box.inverse_z == 0.0 and not radius <= at.z <= ceiling_at(t, gas, modes)[0] - radius:
         return False
-    return has_room(i, j, t, x, y, z, radius, molecules, events, kinds, cells, box, modes)
+    return has_room(i, j, t, at, radius, gas, modes)
 
 
 @kernel
-def _merge(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes):
-    """Let the smaller of two drops be swallowed by the larger one; return a status and the number of that one."""
-    a = np.int64(molecules[i].kind) - modes.drops
-    b = np.int64(molecules[j].kind) - modes.drops
-    if kinds.table[modes.drops + b].mass > kinds.table[modes.drops + a].mass:
+def _merge(i, j, t, gas, drops, reservoir, modes):
+    """Let the smaller of two drops be swallowed by the larger one; return a `Status` and the number of that one."""
+    box, table = gas.box, gas.kinds.table
+    a = np.int64(gas.molecules[i].kind) - modes.drops
+    b = np.int64(gas.molecules[j].kind) - modes.drops
+    if table[modes.drops + b].mass > table[modes.drops + a].mass:
         i, j = j, i
         a, b = b, a
-    x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
-    px, py, pz, wx, wy, wz = position_at(molecules[j], t, box, modes)
-    mass = kinds.table[modes.drops + a].mass
-    other = kinds.table[modes.drops + b].mass
+    one = motion_at(i, t, gas, modes)
+    two = motion_at(j, t, gas, modes)
+    mass = table[modes.drops + a].mass
+    other = table[modes.drops + b].mass
     share = other / (mass + other)
-    ux, uy, uz = wx - vx, wy - vy, wz - vz
-    x += share * nearest(px - x, box.length_x, box.inverse_x)
-    y += share * nearest(py - y, box.length_y, box.inverse_y)
-    z += share * nearest(pz - z, box.length_z, box.inverse_z)
+    ux, uy, uz = two.vx - one.vx, two.vy - one.vy, two.vz - one.vz
+    # the new drop stands at the centre of mass of both, as far as the walls allow
+    rx, ry, rz = nearest_image(two.x - one.x, two.y - one.y, two.z - one.z, box, modes)
+    x, y, z = one.x + share * rx, one.y + share * ry, one.z + share * rz
     radius = (drops.cube[a] + drops.cube[b] + (drops.held[a] + drops.held[b]) * drops.molecule_cube) ** (1.0 / 3.0)
     x = within(x, radius, box.length_x, box.inverse_x)
     y = within(y, radius, box.length_y, box.inverse_y)
-    z = within(z, radius, ceiling_at(t, box, walls, modes)[0], box.inverse_z)
-    x, y, z, moved = move_to(i, x, y, z, molecules, events, kinds, cells, box, modes)
+    z = within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
+    x, y, z, moved = move_to(i, x, y, z, gas, modes)
     if not moved:
-        return ROW_FULL, i
-    ledger.energy[THERMAL] += 0.5 * mass * share * (ux * ux + uy * uy + uz * uz)
+        return Status.ROW_FULL, i
+    reservoir.energy[THERMAL] += 0.5 * mass * share * (ux * ux + uy * uy + uz * uz)
     drops.held[a] += drops.held[b]
     drops.cube[a] += drops.cube[b]
     drops.core[a] += drops.core[b]
     drops.held[b] = 0
     drops.alive[b] = 0
     drops.merged[0] += 1
-    take_out(j, molecules, events, kinds, cells, calendar, modes)
-    resize(drops, a, kinds, modes)
-    write(molecules[i], t, x, y, z, vx + share * ux, vy + share * uy, vz + share * uz)
-    return DONE, i
+    take_out(j, gas, modes)
+    resize(drops, a, gas.kinds, modes)
+    write(i, t, Motion(x, y, z, one.vx + share * ux, one.vy + share * uy, one.vz + share * uz), gas)
+    return Status.DONE, i
 
 
 @kernel
-def _hit(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes):
+def _hit(i, j, t, gas, drops, reservoir, modes):
     """Let molecule i hit drop j."""
-    k = np.int64(molecules[j].kind) - modes.drops
-    number = np.int64(molecules[i].kind)
-    mass = kinds.table[number].mass
-    rotation = kinds.table[number].rotation if modes.rotation else 0.0
+    box, kinds, state = gas.box, gas.kinds, gas.tallies.random
+    k = np.int64(gas.molecules[j].kind) - modes.drops
+    mass, _, rotation = kind_of(i, gas, modes)
     heavy = kinds.table[modes.drops + k].mass
-    x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
-    px, py, pz, wx, wy, wz = position_at(molecules[j], t, box, modes)
-    ux, uy, uz = vx - wx, vy - wy, vz - wz
+    at = motion_at(i, t, gas, modes)
+    drop = motion_at(j, t, gas, modes)
+    # the pair's relative energy, in the frame in which the two have no momentum; c is the velocity of that frame
+    ux, uy, uz = at.vx - drop.vx, at.vy - drop.vy, at.vz - drop.vz
     light = mass / (mass + heavy)
-    cx, cy, cz = wx + light * ux, wy + light * uy, wz + light * uz
+    cx, cy, cz = drop.vx + light * ux, drop.vy + light * uy, drop.vz + light * uz
     reduced = heavy * light
     spin = kinds.rotational_energy[i] if modes.rotation else 0.0
     energy = 0.5 * reduced * (ux * ux + uy * uy + uz * uz) + spin
-    sticks = number == ledger.kind and (ledger.sticking >= 1.0 or uniform(tallies.random) < ledger.sticking)
-    if sticks and _may_grow(i, j, k, t, px, py, pz, molecules, events, kinds, cells, box, walls, drops, modes):
-        condense(ledger, energy)
-        withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes)
+    is_vapour = np.int64(gas.molecules[i].kind) == reservoir.kind
+    sticks = is_vapour and (reservoir.sticking >= 1.0 or uniform(state) < reservoir.sticking)
+    wx, wy, wz = cx, cy, cz
+    if sticks and _may_grow(i, j, k, t, drop, gas, drops, modes):
+        condense(reservoir, energy)
+        withdraw(i, gas, reservoir, modes)
         drops.held[k] += 1
         resize(drops, k, kinds, modes)
-        wx, wy, wz = cx, cy, cz
     else:
-        flight, spin = exchange(ledger, energy, rotation, tallies.random)
-        ledger.energy[THERMAL] += energy - flight - spin
-        ledger.count[AIR_MET] += 1
-        nx = nearest(x - px, box.length_x, box.inverse_x)
-        ny = nearest(y - py, box.length_y, box.inverse_y)
-        nz = nearest(z - pz, box.length_z, box.inverse_z)
+        flight, spin = exchange(reservoir, energy, rotation, state)
+        reservoir.energy[THERMAL] += energy - flight - spin
+        reservoir.count[AIR_MET] += 1
+        nx, ny, nz = nearest_image(at.x - drop.x, at.y - drop.y, at.z - drop.z, box, modes)
         long = math.sqrt(nx * nx + ny * ny + nz * nz)
-        ex, ey, ez = about(nx / long, ny / long, nz / long, tallies.random)
+        ex, ey, ez = about(nx / long, ny / long, nz / long, state)
         speed = math.sqrt(2.0 * flight / reduced)
         vx, vy, vz = cx + (1.0 - light) * speed * ex, cy + (1.0 - light) * speed * ey, cz + (1.0 - light) * speed * ez
         wx, wy, wz = cx - light * speed * ex, cy - light * speed * ey, cz - light * speed * ez
         if modes.rotation:
             kinds.rotational_energy[i] = spin
-        write(molecules[i], t, x, y, z, vx, vy, vz)
-        plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
-    write(molecules[j], t, px, py, pz, wx, wy, wz)
-    _renew(t, drops, tallies, ledger)
+        after = Motion(at.x, at.y, at.z, vx, vy, vz)
+        write(i, t, after, gas)
+        plan(i, t, after, gas, modes)
+    write(j, t, Motion(drop.x, drop.y, drop.z, wx, wy, wz), gas)
+    _renew(t, gas, drops, reservoir)
 
 
 @kernel
-def _emit(t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes):
-    """Let a molecule leave one of the drops, unless something stands there; return a status and the drop's number."""
+def _emit(t, gas, drops, reservoir, modes):
+    """Let a molecule leave one of the drops, unless it has no place; return a `Status` and the drop's number."""
+    box, table, state = gas.box, gas.kinds.table, gas.tallies.random
+    # which drop: in proportion to the surface that the molecule leaves behind
     k = 0
-    left = uniform(tallies.random) * ledger.surface[0]
+    left = uniform(state) * reservoir.surface[0]
     for each in range(drops.record.size):
         surface = surface_left(drops, each)
         if surface > 0.0:
@@ -158,46 +154,45 @@ def _emit(t, molecules, events, kinds, cells, calendar, box, walls, drops, talli
             if left < surface:
                 break
             left -= surface
-    i = ledger.absent[ledger.top[0] - 1]
+    i = reservoir.absent[reservoir.top[0] - 1]
     j = drops.record[k]
-    px, py, pz, wx, wy, wz = position_at(molecules[j], t, box, modes)
+    drop = motion_at(j, t, gas, modes)
     drops.held[k] -= 1
-    resize(drops, k, kinds, modes)
+    resize(drops, k, gas.kinds, modes)
+    # where on it: anywhere, just outside
     radius = drops.molecule_radius
-    reach = (kinds.table[modes.drops + k].radius + radius) * (1.0 + 1e-12)
-    nz = 2.0 * uniform(tallies.random) - 1.0
+    distance = (table[modes.drops + k].radius + radius) * (1.0 + 1e-12)
+    nz = 2.0 * uniform(state) - 1.0
     across = math.sqrt(1.0 - nz * nz)
-    angle = 2.0 * math.pi * uniform(tallies.random)
+    angle = 2.0 * math.pi * uniform(state)
     nx, ny = across * math.cos(angle), across * math.sin(angle)
-    size = kinds.table[ledger.kind].size_class
-    x, inside_x = placed(px + reach * nx, radius, box.length_x, box.inverse_x, cells.boundary[size, 0, 0])
-    y, inside_y = placed(py + reach * ny, radius, box.length_y, box.inverse_y, cells.boundary[size, 1, 0])
-    top = ceiling_at(t, box, walls, modes)[0]
-    z, inside_z = placed(pz + reach * nz, radius, top, box.inverse_z, cells.boundary[size, 2, 0])
-    found = TAKEN
+    size, lowest = table[reservoir.kind].size_class, gas.cells.boundary
+    x, inside_x = placed(drop.x + distance * nx, radius, box.length_x, box.inverse_x, lowest[size, 0, 0])
+    y, inside_y = placed(drop.y + distance * ny, radius, box.length_y, box.inverse_y, lowest[size, 1, 0])
+    top = ceiling_at(t, gas, modes)[0]
+    z, inside_z = placed(drop.z + distance * nz, radius, top, box.inverse_z, lowest[size, 2, 0])
+    found = Place.TAKEN
     if inside_x and inside_y and inside_z:
-        found = room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes)
-    if found in (TAKEN, NO_ROOM):
+        found = place_at(i, t, x, y, z, gas, modes)
+    if found != Place.FREE:
         drops.held[k] += 1
-        resize(drops, k, kinds, modes)
-        if found == NO_ROOM:
-            return ROW_FULL, j
-        _renew(t, drops, tallies, ledger)
-        return DONE, j
-    mass, heavy = drops.molecule_mass, kinds.table[modes.drops + k].mass
+        resize(drops, k, gas.kinds, modes)
+        if found == Place.ROW_FULL:
+            return Status.ROW_FULL, j
+        _renew(t, gas, drops, reservoir)
+        return Status.DONE, j
+    mass, heavy = drops.molecule_mass, table[modes.drops + k].mass
     light = mass / (mass + heavy)
-    flight, spin = evaporate(ledger, tallies.random)
-    leave(ledger, flight + spin)
+    flight, spin = evaporate(reservoir, state)
+    leave(reservoir, flight + spin)
     speed = math.sqrt(2.0 * flight / (heavy * light))
-    ex, ey, ez = about(nx, ny, nz, tallies.random)
+    ex, ey, ez = about(nx, ny, nz, state)
     a, b = (1.0 - light) * speed, light * speed
-    enter(
-        i, t, x, y, z, wx + a * ex, wy + a * ey, wz + a * ez, spin,
-        molecules, events, kinds, cells, calendar, box, walls, ledger, modes,
-    )  # fmt: skip
-    write(molecules[j], t, px, py, pz, wx - b * ex, wy - b * ey, wz - b * ez)
-    _renew(t, drops, tallies, ledger)
-    return DONE, j
+    free = Motion(x, y, z, drop.vx + a * ex, drop.vy + a * ey, drop.vz + a * ez)
+    enter(i, t, free, spin, gas, reservoir, modes)
+    write(j, t, Motion(drop.x, drop.y, drop.z, drop.vx - b * ex, drop.vy - b * ey, drop.vz - b * ez), gas)
+    _renew(t, gas, drops, reservoir)
+    return Status.DONE, j
 
 
 @functools.cache
@@ -205,56 +200,50 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Return the kernels of one set of modes: ``begin``, which draws the first time, and ``advance``."""
 
     @kernel(entry=True)
-    def begin(kinds, drops, tallies, ledger, now):
+    def begin(gas, drops, reservoir, now):
         """Make each drop as large as it is, and draw at time ``now`` when the next molecule leaves."""
         for k in range(drops.record.size):
-            resize(drops, k, kinds, modes)
-        _renew(now, drops, tallies, ledger)
+            resize(drops, k, gas.kinds, modes)
+        _renew(now, gas, drops, reservoir)
 
     @kernel(entry=True)
-    def advance(molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, until, most):
-        """Resolve events of molecules and drops up to time ``until``; return a status and how many."""
+    def advance(gas, drops, reservoir, until, most):
+        """Resolve events of molecules and drops up to time ``until``; return a `Status` and how many."""
         done = 0
-        looked = 0
+        checked = 0
         while done < most:
-            due = ledger.clock[_LEAVES]
-            status, some = proceed(
-                molecules, events, kinds, cells, calendar, box, walls, tallies, min(until, due), most - done, modes
-            )
+            # the molecules and drops go on until a drop loses one, or is met
+            due = reservoir.clock[_LEAVES]
+            status, some = proceed(gas, min(until, due), most - done, modes)
             done += some + 1
-            if done - looked >= LOOK:
-                _, t = next_event(calendar)
-                if piled_up(min(t, due), done - looked, molecules.size, box, tallies):
-                    return STALLED, done
-                looked = done
+            if done - checked >= CHECK_EVERY:
+                _, t = next_event(gas.calendar)
+                if piled_up(min(t, due), done - checked, gas):
+                    return Status.STALLED, done
+                checked = done
             j = -1
             t = due
-            if status == MET:
-                i, t = next_event(calendar)
-                j = np.int64(events[i].partner)
-                if min(np.int64(molecules[i].kind), np.int64(molecules[j].kind)) >= modes.drops:
-                    status, j = _merge(
-                        i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes
-                    )
-                    if status != DONE:
+            if status == Status.MEETS_LIQUID:
+                i, t = next_event(gas.calendar)
+                j = np.int64(gas.events[i].partner)
+                if min(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops:
+                    status, j = _merge(i, j, t, gas, drops, reservoir, modes)
+                    if status != Status.DONE:
                         return status, done
-                    _renew(t, drops, tallies, ledger)
+                    _renew(t, gas, drops, reservoir)
                 else:
-                    if np.int64(molecules[i].kind) >= modes.drops:
+                    if np.int64(gas.molecules[i].kind) >= modes.drops:
                         i, j = j, i
-                    _hit(i, j, t, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes)
-            elif status == BUSY:
+                    _hit(i, j, t, gas, drops, reservoir, modes)
+            elif status == Status.BUSY:
                 continue
-            elif status != DONE or due > until:
+            elif status != Status.DONE or due > until:
                 return status, done
             else:
-                status, j = _emit(
-                    due, molecules, events, kinds, cells, calendar, box, walls, drops, tallies, ledger, modes
-                )
-                if status != DONE:
+                status, j = _emit(due, gas, drops, reservoir, modes)
+                if status != Status.DONE:
                     return status, done
-            x, y, z, vx, vy, vz = position_at(molecules[j], t, box, modes)
-            plan(j, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
-        return BUSY, done
+            plan(j, t, motion_at(j, t, gas, modes), gas, modes)
+        return Status.BUSY, done
 
     return begin, advance

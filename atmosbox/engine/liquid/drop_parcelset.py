@@ -10,6 +10,7 @@ from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import KIND, MOLECULE, Kinds, aligned_records
 from atmosbox.engine.exact.cells import size_classes
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.liquid import drop
 from atmosbox.engine.liquid.drop import DropRecords
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
@@ -39,7 +40,7 @@ class DropParcelSet(MoistParcelSet):
     def _draw(self, speed: float) -> None:
         """Draw anew when the next molecule leaves a drop."""
         begin = drop.specialise(self._modes)[0]
-        begin(self._kinds, self._drops, self._tallies, self._ledger, self._now)
+        begin(self._gas(), self._drops, self._reservoir, self._now)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write down the molecules of the gas, behind them those of the liquid, and at the end the drops."""
@@ -94,8 +95,8 @@ class DropParcelSet(MoistParcelSet):
         )
         alike = self._is_vapour()
         first = int(kind[np.argmax(alike)]) if alike.any() else -1
-        self._open_ledger(np.arange(self._first_drop) == first, kind)
-        self._ledger.surface[0] = 0.0
+        self._open_reservoir(np.arange(self._first_drop) == first, kind)
+        self._reservoir.surface[0] = 0.0
 
     def _is_vapour(self) -> NDArray[np.bool_]:
         """Tell which molecules are as the substance of the liquid says."""
@@ -123,12 +124,9 @@ class DropParcelSet(MoistParcelSet):
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return np.append(self.present, np.zeros(len(self._drops.record), np.bool_))
 
-    def _proceed(self, until: float) -> int:
-        status, _ = self._drop_advance(
-            self._molecules, self._events, self._kinds, self._cells, self._calendar,
-            self._box, self._walls, self._drops, self._tallies, self._ledger, until, _CHUNK,
-        )  # fmt: skip
-        return int(status)
+    def _proceed(self, until: float) -> Status:
+        status, _ = self._drop_advance(self._gas(), self._drops, self._reservoir, until, _CHUNK)
+        return Status(status)
 
     def _lay_out(self) -> None:
         super()._lay_out()

@@ -3,15 +3,12 @@
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import uniform
 
 __all__ = [
     "DropRecords",
     "about",
-    "nearest",
     "placed",
     "radius_of",
     "resize",
@@ -65,12 +62,6 @@ def surface_left(drops, k):
     reach = radius_of(drops, k, drops.held[k] - 1) + drops.molecule_radius
     heavy = drops.core[k] + (drops.held[k] - 1) * drops.molecule_mass
     return 4.0 * math.pi * reach * reach * math.sqrt(1.0 + drops.molecule_mass / heavy)
-
-
-@kernel
-def nearest(r, length, inverse):
-    """Return a distance along an axis, to the nearest image if the axis is periodic."""
-    return r - length * np.rint(r * inverse) if inverse != 0.0 else r
 
 
 @kernel

@@ -1,50 +1,60 @@
-"""Where there is room for a molecule, and the rows of cells in which it then stands."""
+"""Where a molecule may be inserted without overlap, and the rows of cells in which it then stands."""
 
 import math
+from enum import IntEnum
 
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.exact.cells import append, overlapped, remove, slot_at
 from atmosbox.engine.exact.prediction import size_and_radius
 
-__all__ = ["FREE", "NO_ROOM", "STRIKE", "TAKEN", "WRITE", "enlist", "has_room", "look_for_room", "move_to", "room_at"]
+__all__ = ["Place", "Rows", "find_place", "has_room", "in_rows", "move_to", "place_at"]
 
-FREE, TAKEN, NO_ROOM = 0, 1, 2
-"""Whether there is room at a place: yes; somebody is there; a row of molecules must grow first."""
-LOOK, STRIKE, WRITE = range(3)
-"""What `enlist` does."""
+
+class Place(IntEnum):
+    """Whether a molecule may stand at a place.
+
+    ``FREE`` it may; ``TAKEN`` it would overlap another; ``ROW_FULL`` the row of a cell must grow first.
+    """
+
+    FREE = 0
+    TAKEN = 1
+    ROW_FULL = 2
+
+
+class Rows(IntEnum):
+    """What `in_rows` does: ``TEST`` whether the rows have room, ``REMOVE`` a molecule from them, or ``ADD`` it."""
+
+    TEST = 0
+    REMOVE = 1
+    ADD = 2
 
 
 @kernel
-def _is_near(j, t, x, y, z, reach, molecules, box, modes):
-    """Tell whether the centre of molecule j is nearer to a place than ``reach`` [length]; there is no gravity."""
-    other = molecules[j]
+def _is_near(j, t, x, y, z, distance, gas, modes):
+    """Tell whether the centre of molecule j is nearer to a place than a distance [length]; there is no gravity."""
+    other = gas.molecules[j]
     dt = t - other.clock
     rx = x - other.x - dt * other.vx
     ry = y - other.y - dt * other.vy
     rz = z - other.z - dt * other.vz
-    if modes.periodic:
-        rx -= box.length_x * np.rint(rx * box.inverse_x)
-        ry -= box.length_y * np.rint(ry * box.inverse_y)
-        if not modes.piston:
-            rz -= box.length_z * np.rint(rz * box.inverse_z)
-    return rx * rx + ry * ry + rz * rz < reach * reach
+    rx, ry, rz = nearest_image(rx, ry, rz, gas.box, modes)
+    return rx * rx + ry * ry + rz * rz < distance * distance
 
 
 @kernel
-def room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes):
-    """Tell whether molecule i may stand at a place, and note there its slots: ``FREE``, ``TAKEN`` or ``NO_ROOM``.
-
-    ``NO_ROOM`` is a row of molecules that must grow first.
-    """
-    size, radius = size_and_radius(i, molecules, kinds, modes)
+def place_at(i, t, x, y, z, gas, modes):
+    """Tell whether molecule i may stand at a place, a `Place`, and note its slots there."""
+    cells = gas.cells
+    size, radius = size_and_radius(i, gas, modes)
     cells.slot[i, 0] = slot_at(x, size, 0, cells.last_slot_x, cells, modes)
     cells.slot[i, 1] = slot_at(y, size, 1, cells.last_slot_y, cells, modes)
     cells.slot[i, 2] = slot_at(z, size, 2, cells.last_slot_z, cells, modes)
     if not modes.contacts:
-        return FREE
+        return Place.FREE
     full = False
     row = cells.row
     first_x, span_x = overlapped(np.int64(cells.slot[i, 0]), size, 0, cells, modes)
@@ -59,20 +69,22 @@ def room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes):
                 full |= members + 1 >= cells.stride
                 for q in range(members):
                     j = np.int64(row[start + 1 + q])
-                    _, other_radius = size_and_radius(j, molecules, kinds, modes)
-                    if _is_near(j, t, x, y, z, radius + other_radius, molecules, box, modes):
-                        return TAKEN
-    return NO_ROOM if full else FREE
+                    _, other_radius = size_and_radius(j, gas, modes)
+                    if _is_near(j, t, x, y, z, reach(radius, other_radius), gas, modes):
+                        return Place.TAKEN
+    return Place.ROW_FULL if full else Place.FREE
 
 
 @kernel
-def has_room(i, j, t, x, y, z, radius, molecules, events, kinds, cells, box, modes):
-    """Tell whether nobody but molecule i is nearer to drop j, in its cells, than if that had another radius."""
+def has_room(i, j, t, at, radius, gas, modes):
+    """Tell whether drop j, which is where ``at`` says, would overlap no molecule but i if it had another radius."""
+    cells = gas.cells
     row = cells.row
-    size = np.int64(kinds.table[molecules[j].kind].size_class)
-    first_x, span_x = overlapped(np.int64(events[j].slot_x), size, 0, cells, modes)
-    first_y, span_y = overlapped(np.int64(events[j].slot_y), size, 1, cells, modes)
-    first_z, span_z = overlapped(np.int64(events[j].slot_z), size, 2, cells, modes)
+    table = gas.kinds.table
+    size = np.int64(table[gas.molecules[j].kind].size_class)
+    first_x, span_x = overlapped(np.int64(gas.events[j].slot_x), size, 0, cells, modes)
+    first_y, span_y = overlapped(np.int64(gas.events[j].slot_y), size, 1, cells, modes)
+    first_z, span_z = overlapped(np.int64(gas.events[j].slot_z), size, 2, cells, modes)
     for a in range(first_x, first_x + span_x):
         for b in range(first_y, first_y + span_y):
             for c in range(first_z, first_z + span_z):
@@ -82,15 +94,15 @@ def has_room(i, j, t, x, y, z, radius, molecules, events, kinds, cells, box, mod
                     other = np.int64(row[start + 1 + q])
                     if other in (i, j):
                         continue
-                    reach = radius + kinds.table[molecules[other].kind].radius
-                    if _is_near(other, t, x, y, z, reach, molecules, box, modes):
+                    distance = reach(radius, table[gas.molecules[other].kind].radius)
+                    if _is_near(other, t, at.x, at.y, at.z, distance, gas, modes):
                         return False
     return True
 
 
 @kernel
-def enlist(what, i, size, slots, cells, modes):
-    """Strike molecule i from all cells of three slots, or write it there; tell whether one of them is full."""
+def in_rows(what, i, size, slots, cells, modes):
+    """Do one of `Rows` with molecule i in all cells of three slots; tell whether one of them is full."""
     first_x, span_x = overlapped(np.int64(slots[0]), size, 0, cells, modes)
     first_y, span_y = overlapped(np.int64(slots[1]), size, 1, cells, modes)
     first_z, span_z = overlapped(np.int64(slots[2]), size, 2, cells, modes)
@@ -100,51 +112,54 @@ def enlist(what, i, size, slots, cells, modes):
             for c in range(first_z, first_z + span_z):
                 cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
                 start = (cell + c % cells.number_z) * cells.stride
-                if what == STRIKE:
+                if what == Rows.REMOVE:
                     remove(cells.row, start, i)
-                elif what == WRITE:
+                elif what == Rows.ADD:
                     append(cells.row, start, i)
                 full |= np.int64(cells.row[start]) + 1 >= cells.stride
     return full
 
 
 @kernel
-def move_to(i, x, y, z, molecules, events, kinds, cells, box, modes):
+def move_to(i, x, y, z, gas, modes):
     """Bring molecule i to the cells of another place; return that place, in a periodic box, and whether it has room."""
-    size, _ = size_and_radius(i, molecules, kinds, modes)
+    cells, box = gas.cells, gas.box
+    size, _ = size_and_radius(i, gas, modes)
     if box.inverse_x != 0.0:
         x -= math.floor((x - cells.boundary[size, 0, 0]) / box.length_x) * box.length_x
     if box.inverse_y != 0.0:
         y -= math.floor((y - cells.boundary[size, 1, 0]) / box.length_y) * box.length_y
     if box.inverse_z != 0.0:
         z -= math.floor((z - cells.boundary[size, 2, 0]) / box.length_z) * box.length_z
-    old = np.int64(events[i].slot_x), np.int64(events[i].slot_y), np.int64(events[i].slot_z)
+    event = gas.events[i]
+    old = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
     new = (
         slot_at(x, size, 0, cells.last_slot_x, cells, modes),
         slot_at(y, size, 1, cells.last_slot_y, cells, modes),
         slot_at(z, size, 2, cells.last_slot_z, cells, modes),
     )
-    if enlist(LOOK, i, size, new, cells, modes):
+    if in_rows(Rows.TEST, i, size, new, cells, modes):
         return x, y, z, False
-    enlist(STRIKE, i, size, old, cells, modes)
-    enlist(WRITE, i, size, new, cells, modes)
+    in_rows(Rows.REMOVE, i, size, old, cells, modes)
+    in_rows(Rows.ADD, i, size, new, cells, modes)
     cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = new
     return x, y, z, True
 
 
 @kernel
-def _place(low, high, state):
+def _between(low, high, state):
     """Return a coordinate between two, at random."""
     return low + (high - low) * uniform(state)
 
 
 @kernel
-def look_for_room(i, t, ceiling, molecules, events, kinds, cells, box, tallies, modes):
-    """Find a place for molecule i, which is not in the box, at random; return ``FREE`` or why not, and the place.
+def find_place(i, t, ceiling, gas, modes):
+    """Find a place for molecule i, which is not in the box, at random; return a `Place`, and its x, y and z.
 
     With a pool it is on the floor, otherwise anywhere.
     """
-    size, radius = size_and_radius(i, molecules, kinds, modes)
+    cells, box, state = gas.cells, gas.box, gas.tallies.random
+    size, radius = size_and_radius(i, gas, modes)
     low_x, high_x = radius, box.length_x - radius
     low_y, high_y = radius, box.length_y - radius
     low_z, high_z = radius, ceiling - radius
@@ -159,12 +174,12 @@ def look_for_room(i, t, ceiling, molecules, events, kinds, cells, box, tallies, 
             low_z = cells.boundary[size, 2, 0]
             high_z = low_z + ceiling
     x = y = z = 0.0
-    found = TAKEN
+    found = Place.TAKEN
     for _ in range(1000):
-        x = _place(low_x, high_x, tallies.random)
-        y = _place(low_y, high_y, tallies.random)
-        z = low_z if modes.pool else _place(low_z, high_z, tallies.random)
-        found = room_at(i, t, x, y, z, molecules, events, kinds, cells, box, modes)
-        if found != TAKEN:
+        x = _between(low_x, high_x, state)
+        y = _between(low_y, high_y, state)
+        z = low_z if modes.pool else _between(low_z, high_z, state)
+        found = place_at(i, t, x, y, z, gas, modes)
+        if found != Place.TAKEN:
             break
     return found, x, y, z

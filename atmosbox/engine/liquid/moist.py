@@ -2,9 +2,9 @@
 
 Three clocks run beside the calendar of the molecules: when one of them may meet the mist, when one leaves the
 liquid, and when one rains out. Each is a Poisson process, drawn anew whenever the liquid has changed, which its
-lack of memory allows. A molecule of speed w relative to the air meets the mist at the rate A w Z / 4 V, Z because
-molecules crowd at any surface as they do at a wall; drawn is the time for the fastest of all, and what is drawn
-is accepted in proportion to the speed.
+lack of memory allows. A molecule of speed w relative to the air meets the mist at the rate A w Z / 4 V; Z, the
+compressibility factor, because molecules are denser by it at any surface, as at a wall. The time is drawn for the
+fastest of all, and what is drawn is accepted in proportion to the speed.
 """
 
 import functools
@@ -16,12 +16,12 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import uniform
-from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
-from atmosbox.engine.exact.encounter import position_at, write
-from atmosbox.engine.exact.exact import BUSY, CROWDED, DONE, LOOK, MET, ROW_FULL, STALLED, piled_up, proceed
+from atmosbox.engine.exact.encounter import kind_of, motion_at, write
+from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import plan
-from atmosbox.engine.liquid.insertion import FREE, TAKEN, look_for_room
+from atmosbox.engine.liquid.insertion import Place, find_place
 from atmosbox.engine.liquid.phase import enter, withdraw
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
@@ -43,143 +43,142 @@ _MAY_MEET, _LEAVES, _RAINS = range(3)
 
 
 @kernel
-def ceiling_at(t, box, walls, modes):
+def ceiling_at(t, gas, modes):
     """Return how high the box is [length] and how fast its ceiling moves [length/time]."""
     if modes.piston:
-        return walls.piston[0] + walls.piston[1] * (t - walls.piston[2]), walls.piston[1]
-    return box.length_z, 0.0
+        piston = gas.walls.piston
+        return piston[0] + piston[1] * (t - piston[2]), piston[1]
+    return gas.box.length_z, 0.0
 
 
 @kernel
-def _volume(t, diameter, box, walls, ledger, number, modes):
+def _volume(t, diameter, gas, reservoir, modes):
     """Return the volume that the centres of molecules can reach, over Z [length^3].
 
-    At any surface molecules crowd as at a wall, Z times as densely as in open space: that is what a pressure of n k T Z
+    At any surface molecules are Z times as dense as in open space, as at a wall: that is what a pressure of n k T Z
     means (Carnahan and Starling 1969, doi:10.1063/1.1672048). Z is that of spheres of one size.
     """
-    height, _ = ceiling_at(t, box, walls, modes)
+    box = gas.box
+    number = gas.molecules.size - reservoir.top[0]
+    height, _ = ceiling_at(t, gas, modes)
     volume = box.length_x - (diameter if box.inverse_x == 0.0 else 0.0)
     volume *= box.length_y - (diameter if box.inverse_y == 0.0 else 0.0)
     volume *= height - (diameter if box.inverse_z == 0.0 else 0.0)
-    filled = number * math.pi / 6.0 * ledger.mean_cube / (box.length_x * box.length_y * height)
+    filled = number * math.pi / 6.0 * reservoir.mean_cube / (box.length_x * box.length_y * height)
     return volume * (1.0 - filled) ** 3 / (1.0 + filled + filled * filled - filled * filled * filled)
 
 
 @kernel
-def renew(t, tallies, ledger):
+def renew(t, state, reservoir):
     """Draw anew when the next molecule leaves the liquid, and when the next rains."""
-    ledger.clock[_LEAVES] = t + wait(evaporation_rate(ledger), tallies.random)
-    ledger.clock[_RAINS] = t + wait(ledger.rain * (ledger.count[LIQUID] - ledger.keeps), tallies.random)
+    reservoir.clock[_LEAVES] = t + wait(evaporation_rate(reservoir), state)
+    reservoir.clock[_RAINS] = t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
 
 
 @kernel
-def _next_meeting(t, molecules, box, walls, tallies, ledger, modes):
+def _next_meeting(t, gas, reservoir, modes):
     """Draw when the next molecule may meet the mist."""
     if modes.pool:
         return
-    present = molecules.size - ledger.top[0]
-    volume = _volume(t, ledger.diameter, box, walls, ledger, present, modes)
-    ledger.bound[1] = volume
-    rate = molecules.size * ledger.area * ledger.bound[0] / (4.0 * volume)
-    ledger.clock[_MAY_MEET] = t + wait(rate, tallies.random)
+    volume = _volume(t, reservoir.diameter, gas, reservoir, modes)
+    reservoir.bound[1] = volume
+    rate = gas.molecules.size * reservoir.area * reservoir.bound[0] / (4.0 * volume)
+    reservoir.clock[_MAY_MEET] = t + wait(rate, gas.tallies.random)
 
 
 @kernel
-def _touch(
-    i, t, x, y, z, vx, vy, vz, flow, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes
-):
+def _touch(i, t, at, flow, gas, reservoir, modes):
     """Let molecule i meet the liquid, which flows upwards with the air: it stays, or leaves with another energy."""
-    number = np.int64(molecules[i].kind)
-    kind = kinds.table[number]
-    mass = kind.mass
-    spin = kinds.rotational_energy[i] if modes.rotation else 0.0
-    rotation = kind.rotation if modes.rotation else 0.0
-    energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
+    tallies = gas.tallies
+    mass, radius, rotation = kind_of(i, gas, modes)
+    spin = gas.kinds.rotational_energy[i] if modes.rotation else 0.0
+    energy = 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz) + spin
     if modes.pool:
         tallies.hits[4] += 1
         tallies.count[4] += 1
-        tallies.impulse[4] -= mass * vz
-    if number == ledger.kind and (ledger.sticking >= 1.0 or uniform(tallies.random) < ledger.sticking):
-        condense(ledger, energy)
-        withdraw(i, molecules, events, kinds, cells, calendar, ledger, modes)
-        renew(t, tallies, ledger)
+        tallies.impulse[4] -= mass * at.vz
+    # vapour sticks, always or with a chance
+    is_vapour = np.int64(gas.molecules[i].kind) == reservoir.kind
+    if is_vapour and (reservoir.sticking >= 1.0 or uniform(tallies.random) < reservoir.sticking):
+        condense(reservoir, energy)
+        withdraw(i, gas, reservoir, modes)
+        renew(t, tallies.random, reservoir)
         return
-    speed = math.sqrt(2.0 / mass)
-    relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
-    flight, new_spin = exchange(ledger, relative, rotation, tallies.random)
+    # all others leave again, with a share of the energy that they and the liquid have, relative to the flow
+    relative = energy - 0.5 * mass * (at.vz * at.vz - (at.vz - flow) * (at.vz - flow))
+    flight, new_spin = exchange(reservoir, relative, rotation, tallies.random)
     ex, ey, ez = direction(modes.pool, tallies.random)
-    speed *= math.sqrt(flight)
+    speed = math.sqrt(2.0 / mass) * math.sqrt(flight)
     wx, wy, wz = speed * ex, speed * ey, speed * ez + flow
     given = 0.5 * mass * (wx * wx + wy * wy + wz * wz) + new_spin - energy
-    if ledger.energy[THERMAL] - given >= 0.0:
-        ledger.energy[THERMAL] -= given
-        ledger.count[AIR_MET] += 1
+    vx, vy, vz = at.vx, at.vy, at.vz
+    if reservoir.energy[THERMAL] - given >= 0.0:
+        reservoir.energy[THERMAL] -= given
+        reservoir.count[AIR_MET] += 1
         vx, vy, vz = wx, wy, wz
         if modes.rotation:
-            kinds.rotational_energy[i] = new_spin
-        renew(t, tallies, ledger)
+            gas.kinds.rotational_energy[i] = new_spin
+        renew(t, tallies.random, reservoir)
     elif modes.pool:
         vz = -vz
+    z = at.z
     if modes.pool:
         tallies.impulse[4] += mass * vz
-        z = kind.radius
-    write(molecules[i], t, x, y, z, vx, vy, vz)
-    plan(i, t, x, y, z, vx, vy, vz, molecules, events, kinds, cells, calendar, box, walls, modes)
+        z = radius
+    after = Motion(at.x, at.y, z, vx, vy, vz)
+    write(i, t, after, gas)
+    plan(i, t, after, gas, modes)
 
 
 @kernel
-def _may_meet(t, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes):
+def _may_meet(t, gas, reservoir, modes):
     """Let a molecule, drawn at random, meet the mist with a chance in proportion to its speed."""
-    i = min(int(uniform(tallies.random) * molecules.size), molecules.size - 1)
-    chance = uniform(tallies.random)
-    if math.isinf(molecules[i].clock):
+    state = gas.tallies.random
+    i = min(int(uniform(state) * gas.molecules.size), gas.molecules.size - 1)
+    chance = uniform(state)
+    if math.isinf(gas.molecules[i].clock):
         return
-    x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
-    height, rise = ceiling_at(t, box, walls, modes)
-    flow = rise * z / height
-    speed = math.sqrt(vx * vx + vy * vy + (vz - flow) * (vz - flow))
-    diameter = 2.0 * kinds.table[molecules[i].kind].radius
-    volume = _volume(t, diameter, box, walls, ledger, molecules.size - ledger.top[0], modes)
-    speed *= ledger.bound[1] / volume
-    accepted = chance * ledger.bound[0] < speed
-    ledger.bound[0] = max(ledger.bound[0], speed)
+    at = motion_at(i, t, gas, modes)
+    height, rise = ceiling_at(t, gas, modes)
+    flow = rise * at.z / height
+    speed = math.sqrt(at.vx * at.vx + at.vy * at.vy + (at.vz - flow) * (at.vz - flow))
+    _, radius, _ = kind_of(i, gas, modes)
+    speed *= reservoir.bound[1] / _volume(t, 2.0 * radius, gas, reservoir, modes)
+    accepted = chance * reservoir.bound[0] < speed
+    reservoir.bound[0] = max(reservoir.bound[0], speed)
     if accepted:
-        _touch(
-            i, t, x, y, z, vx, vy, vz, flow,
-            molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes,
-        )  # fmt: skip
+        _touch(i, t, at, flow, gas, reservoir, modes)
 
 
 @kernel
-def _emit(t, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes):
-    """Let a molecule leave the liquid; return a status."""
-    i = ledger.absent[ledger.top[0] - 1]
-    height, rise = ceiling_at(t, box, walls, modes)
-    found, x, y, z = look_for_room(i, t, height, molecules, events, kinds, cells, box, tallies, modes)
-    if found != FREE:
-        return CROWDED if found == TAKEN else ROW_FULL
-    mass = kinds.table[ledger.kind].mass
+def _emit(t, gas, reservoir, modes):
+    """Let a molecule leave the liquid; return a `Status`."""
+    state = gas.tallies.random
+    i = reservoir.absent[reservoir.top[0] - 1]
+    height, rise = ceiling_at(t, gas, modes)
+    found, x, y, z = find_place(i, t, height, gas, modes)
+    if found != Place.FREE:
+        return Status.CROWDED if found == Place.TAKEN else Status.ROW_FULL
+    mass = gas.kinds.table[reservoir.kind].mass
     flow = 0.0 if modes.pool else rise * z / height
-    flight, spin = evaporate(ledger, tallies.random)
+    flight, spin = evaporate(reservoir, state)
     speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = direction(modes.pool, tallies.random)
+    ex, ey, ez = direction(modes.pool, state)
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if flow != 0.0 and energy + ledger.binding_energy > ledger.energy[THERMAL]:
+    if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
         # only the last molecule can lack what the flow of the air adds: it leaves as if the air were at rest
         vz = speed * ez
         energy = flight + spin
-    leave(ledger, energy)
+    leave(reservoir, energy)
     if modes.pool:
-        tallies.impulse[4] += mass * vz
-    enter(
-        i, t, x, y, z, vx, vy, vz, spin, molecules, events, kinds, cells, calendar, box, walls, ledger, modes
-    )  # fmt: skip
-    renew(t, tallies, ledger)
-    if speed > ledger.bound[0]:
-        ledger.bound[0] = speed
-        _next_meeting(t, molecules, box, walls, tallies, ledger, modes)
-    return DONE
+        gas.tallies.impulse[4] += mass * vz
+    enter(i, t, Motion(x, y, z, vx, vy, vz), spin, gas, reservoir, modes)
+    renew(t, state, reservoir)
+    if speed > reservoir.bound[0]:
+        reservoir.bound[0] = speed
+        _next_meeting(t, gas, reservoir, modes)
+    return Status.DONE
 
 
 @functools.cache
@@ -187,51 +186,46 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Return the kernels of one set of modes: ``begin``, which draws the first times, and ``advance``."""
 
     @kernel(entry=True)
-    def begin(molecules, box, walls, tallies, ledger, now, speed):
+    def begin(gas, reservoir, now, speed):
         """Draw the times of the liquid at time ``now``, when molecules may be as fast as ``speed`` [length/time]."""
-        ledger.bound[0] = speed
-        _next_meeting(now, molecules, box, walls, tallies, ledger, modes)
-        renew(now, tallies, ledger)
+        reservoir.bound[0] = speed
+        _next_meeting(now, gas, reservoir, modes)
+        renew(now, gas.tallies.random, reservoir)
 
     @kernel(entry=True)
-    def advance(molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, until, most):
-        """Resolve events of molecules and of the liquid up to time ``until``; return a status and how many."""
+    def advance(gas, reservoir, until, most):
+        """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
         done = 0
-        looked = 0
-        clock = ledger.clock
+        checked = 0
+        clock = reservoir.clock
         while done < most:
+            # the molecules go on until the liquid does something
             due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
-            status, some = proceed(
-                molecules, events, kinds, cells, calendar, box, walls, tallies, min(until, due), most - done, modes
-            )
+            status, some = proceed(gas, min(until, due), most - done, modes)
             done += some + 1
-            if done - looked >= LOOK:
-                _, t = next_event(calendar)
-                if piled_up(min(t, due), done - looked, molecules.size, box, tallies):
-                    return STALLED, done
-                looked = done
-            if modes.pool and status == MET:
-                i, t = next_event(calendar)
-                x, y, z, vx, vy, vz = position_at(molecules[i], t, box, modes)
-                _touch(
-                    i, t, x, y, z, vx, vy, vz, 0.0,
-                    molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes,
-                )  # fmt: skip
+            if done - checked >= CHECK_EVERY:
+                _, t = next_event(gas.calendar)
+                if piled_up(min(t, due), done - checked, gas):
+                    return Status.STALLED, done
+                checked = done
+            if modes.pool and status == Status.MEETS_LIQUID:
+                i, t = next_event(gas.calendar)
+                _touch(i, t, motion_at(i, t, gas, modes), 0.0, gas, reservoir, modes)
                 continue
-            if status == BUSY:
+            if status == Status.BUSY:
                 continue
-            if status != DONE or due > until:
+            if status != Status.DONE or due > until:
                 return status, done
             if clock[_MAY_MEET] == due:
-                _may_meet(due, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes)
-                _next_meeting(due, molecules, box, walls, tallies, ledger, modes)
+                _may_meet(due, gas, reservoir, modes)
+                _next_meeting(due, gas, reservoir, modes)
             elif clock[_LEAVES] == due:
-                status = _emit(due, molecules, events, kinds, cells, calendar, box, walls, tallies, ledger, modes)
-                if status != DONE:
+                status = _emit(due, gas, reservoir, modes)
+                if status != Status.DONE:
                     return status, done
             else:
-                rain_out(ledger)
-                renew(due, tallies, ledger)
-        return BUSY, done
+                rain_out(reservoir)
+                renew(due, gas.tallies.random, reservoir)
+        return Status.BUSY, done
 
     return begin, advance

@@ -15,8 +15,8 @@ from atmosbox.engine.liquid.reservoir import (
     RAINED,
     RAINED_ENERGY,
     THERMAL,
-    Ledger,
-    new_ledger,
+    Reservoir,
+    new_reservoir,
 )
 from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
@@ -26,12 +26,12 @@ __all__ = ["MoistAccount"]
 class MoistAccount(Parcel):
     """A box with liquid in it: what the engines have in common that can hold one.
 
-    Every molecule has a number. First come those that are in the box at the start, then those of the liquid; the ledger
-    knows which of them are absent.
+    Every molecule has a number. First come those that are in the box at the start, then those of the liquid; the
+    reservoir knows which of them are absent.
     """
 
     _liquid: Liquid
-    _ledger: Ledger
+    _reservoir: Reservoir
     _vapours: int
     _turns: float
 
@@ -58,7 +58,7 @@ class MoistAccount(Parcel):
         self._rotates = self._rotates or (bool(more) and substance.rotation > 0.0)
         self._same_size = bool(len(self._diameter)) and np.ptp(self._diameter) == 0.0
 
-    def _open_ledger(self, alike: NDArray[np.bool_], kind: NDArray[np.integer]) -> None:
+    def _open_reservoir(self, alike: NDArray[np.bool_], kind: NDArray[np.integer]) -> None:
         """Begin the account of the liquid.
 
         ``alike : (kind,)`` tells which kinds are as the substance of the liquid, ``kind : (molecule,)`` of which kind
@@ -76,63 +76,63 @@ class MoistAccount(Parcel):
             area = float(sides[0] * sides[1])
         present = len(kind) - int(liquid.number)
         rotation = float(substance.rotation) if self._rotates else 0.0
-        ledger = new_ledger(liquid, area, len(kind), present, vapour, cube)
-        self._ledger = ledger._replace(rotation=rotation)
+        reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)
+        self._reservoir = reservoir._replace(rotation=rotation)
         self._turns = float(self._rotation.sum())
 
     @property
     def number(self) -> int:
         """Number of molecules of the gas."""
-        return len(self._mass) - int(self._ledger.top[0])
+        return len(self._mass) - int(self._reservoir.top[0])
 
     @property
     def liquid(self) -> int:
         """Number of molecules in the liquid."""
-        return int(self._ledger.count[LIQUID])
+        return int(self._reservoir.count[LIQUID])
 
     @property
     def vapour(self) -> int:
         """Number of molecules of the vapour."""
-        return self._vapours - int(self._ledger.top[0])
+        return self._vapours - int(self._reservoir.top[0])
 
     @property
     def condensed(self) -> int:
         """How many molecules have come into the liquid since the start."""
-        return int(self._ledger.count[CONDENSED])
+        return int(self._reservoir.count[CONDENSED])
 
     @property
     def evaporated(self) -> int:
         """How many molecules have left the liquid for the vapour since the start."""
-        return int(self._ledger.count[EVAPORATED])
+        return int(self._reservoir.count[EVAPORATED])
 
     @property
     def rained(self) -> int:
         """How many molecules have left the box as rain since the start."""
-        return int(self._ledger.count[RAINED])
+        return int(self._reservoir.count[RAINED])
 
     @property
     def liquid_energy(self) -> float:
         """Thermal energy of the liquid [energy]."""
-        return float(self._ledger.energy[THERMAL])
+        return float(self._reservoir.energy[THERMAL])
 
     @property
     def liquid_kT(self) -> float:
         """Temperature of the liquid [energy], NaN where there is none and no nuclei."""
-        capacity = self._ledger.molecule_capacity * self.liquid + self._ledger.nuclei
+        capacity = self._reservoir.molecule_capacity * self.liquid + self._reservoir.nuclei
         return self.liquid_energy / capacity if capacity > 0.0 else math.nan
 
     @property
     def condensed_energy(self) -> float:
         """Energy of the liquid, of its vapour's binding and of the rain [energy]."""
-        return self._ledger.binding_energy * self.vapour + float(
-            self._ledger.energy[THERMAL] + self._ledger.energy[RAINED_ENERGY]
+        return self._reservoir.binding_energy * self.vapour + float(
+            self._reservoir.energy[THERMAL] + self._reservoir.energy[RAINED_ENERGY]
         )
 
     @property
     def present(self) -> NDArray[np.bool_]:
         """Which of the molecules that the box has ever held are in the gas now."""
         inside = np.ones(len(self._mass), np.bool_)
-        inside[self._ledger.absent[: self._ledger.top[0]]] = False
+        inside[self._reservoir.absent[: self._reservoir.top[0]]] = False
         return inside
 
     @property
@@ -148,15 +148,15 @@ class MoistAccount(Parcel):
     @property
     def degrees_of_freedom(self) -> float:
         """Translational and rotational degrees of freedom per molecule of the gas, on average."""
-        rotation = self._turns - self._ledger.rotation * int(self._ledger.top[0])
+        rotation = self._turns - self._reservoir.rotation * int(self._reservoir.top[0])
         return 3.0 + rotation / max(self.number, 1)
 
     @property
     def emitted_energy(self) -> tuple[Array, NDArray[np.int64]]:
         """Edges of energy [energy], and how many molecules left with so much beyond the binding energy."""
-        edges = self._ledger.bin_width * np.arange(len(self._ledger.spectrum) + 1.0)
-        return edges, np.array(self._ledger.spectrum)
+        edges = self._reservoir.bin_width * np.arange(len(self._reservoir.spectrum) + 1.0)
+        return edges, np.array(self._reservoir.spectrum)
 
-    def _ledger_memory(self) -> int:
-        """Return the bytes that the ledger takes."""
-        return int(self._ledger.absent.nbytes + self._ledger.spectrum.nbytes)
+    def _reservoir_memory(self) -> int:
+        """Return the bytes that the reservoir takes."""
+        return int(self._reservoir.absent.nbytes + self._reservoir.spectrum.nbytes)

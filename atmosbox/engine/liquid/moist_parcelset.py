@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.parcel import Arrangement, Array
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.parcelset import ParcelSet
 from atmosbox.engine.liquid import moist
 from atmosbox.engine.liquid.moist_account import MoistAccount
@@ -62,17 +63,17 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     def _draw(self, speed: float) -> None:
         """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
         begin = moist.specialise(self._modes)[0]
-        begin(self._molecules, self._box, self._walls, self._tallies, self._ledger, self._now, speed)
+        begin(self._gas(), self._reservoir, self._now, speed)
 
     def _piston_turned(self) -> None:
         super()._piston_turned()
         speed = 2.0 * abs(self.piston_velocity)
-        if speed > float(self._ledger.bound[0]):  # it may wake molecules at rest
+        if speed > float(self._reservoir.bound[0]):  # it may wake molecules at rest
             self._draw(speed)
 
     def _bath_changes(self, kT: float) -> None:
         speed = math.sqrt(8.0 * kT / self._liquid.substance.mass)
-        if speed > float(self._ledger.bound[0]):
+        if speed > float(self._reservoir.bound[0]):
             self._draw(speed)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
@@ -89,30 +90,27 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         self._fields["clock"][present:] = np.inf
         alike = (self._kinds.table["mass"] == substance.mass) & (self._kinds.table["rotation"] == substance.rotation)
         alike &= self._kinds.table["radius"] == 0.5 * substance.diameter
-        self._open_ledger(alike, self._fields["kind"])
+        self._open_reservoir(alike, self._fields["kind"])
 
     @property
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return self.present
 
     def memory(self) -> int:
-        """Return the bytes that molecules, events, cells, calendar and ledger take."""
-        return super().memory() + self._ledger_memory()
+        """Return the bytes that molecules, events, cells, calendar and reservoir take."""
+        return super().memory() + self._reservoir_memory()
 
-    def _proceed(self, until: float) -> int:
-        status, _ = self._moist_advance(
-            self._molecules, self._events, self._kinds, self._cells, self._calendar,
-            self._box, self._walls, self._tallies, self._ledger, until, _CHUNK,
-        )  # fmt: skip
-        return int(status)
+    def _proceed(self, until: float) -> Status:
+        status, _ = self._moist_advance(self._gas(), self._reservoir, until, _CHUNK)
+        return Status(status)
 
     def _lay_out(self) -> None:
         super()._lay_out()
         self._moist_advance = moist.specialise(self._modes)[1]
 
     def _next_time(self) -> float:
-        return min(super()._next_time(), float(self._ledger.clock.min()))
+        return min(super()._next_time(), float(self._reservoir.clock.min()))
 
     def _rebase(self, step: float) -> None:
         super()._rebase(step)
-        self._ledger.clock[:] -= step
+        self._reservoir.clock[:] -= step

@@ -1,4 +1,4 @@
-r"""Liquid water: a ledger of molecules and energy, and the laws by which vapour and air exchange with it.
+r"""Liquid water: a reservoir of molecules and energy, and the laws by which vapour and air exchange with it.
 
 No molecule of the liquid is followed. What is known of it is how many they are, n, and their thermal energy
 U; their heat capacity is :math:`C = c_l n + C_n` (in units of k), that of the nuclei on which the droplets sit
@@ -42,10 +42,10 @@ __all__ = [
     "LIQUID",
     "RAINED",
     "Drops",
-    "Ledger",
     "Liquid",
     "Mist",
     "Pool",
+    "Reservoir",
     "Substance",
     "condense",
     "direction",
@@ -54,22 +54,22 @@ __all__ = [
     "exchange",
     "heat_capacity",
     "leave",
-    "new_ledger",
+    "new_reservoir",
     "rain_out",
     "wait",
 ]
 
 LIQUID, CONDENSED, EVAPORATED, RAINED, AIR_MET = range(5)
-"""What a ledger counts: molecules in the liquid now; since the start, those that came, left and rained; other hits."""
+"""What is counted: molecules in the liquid now; since the start, those that came, left and rained; other hits."""
 
 THERMAL, RAINED_ENERGY = range(2)
-"""The energies of a ledger [energy]: of the liquid now, and what the rain took away."""
+"""The energies of a reservoir [energy]: of the liquid now, and what the rain took away."""
 
 _BINS = 60
 _WIDEST = 12.0
 
 
-class Ledger(NamedTuple):
+class Reservoir(NamedTuple):
     """The liquid, as the kernels know it.
 
     ``energy : (2,)`` [energy] and ``count : (5,)``: see `THERMAL` and `LIQUID`; ``clock : (3,)`` when a molecule
@@ -103,8 +103,10 @@ class Ledger(NamedTuple):
     kind: int
 
 
-def new_ledger(liquid: Liquid, area: float, capacity: int, present: int, kind: int, mean_cube: float = 0.0) -> Ledger:
-    """Return the ledger of a liquid.
+def new_reservoir(
+    liquid: Liquid, area: float, capacity: int, present: int, kind: int, mean_cube: float = 0.0
+) -> Reservoir:
+    """Return the reservoir of a liquid.
 
     Parameters
     ----------
@@ -122,8 +124,8 @@ def new_ledger(liquid: Liquid, area: float, capacity: int, present: int, kind: i
     Examples
     --------
     >>> water = Substance(0.62, 1.0, 20.0, 9.0, 1e6)
-    >>> ledger = new_ledger(Pool(water, number=5, kT=2.0), 1.0, 8, 3, 0)
-    >>> float(ledger.energy[0]), ledger.absent.tolist(), int(ledger.top[0])
+    >>> reservoir = new_reservoir(Pool(water, number=5, kT=2.0), 1.0, 8, 3, 0)
+    >>> float(reservoir.energy[0]), reservoir.absent.tolist(), int(reservoir.top[0])
     (90.0, [7, 6, 5, 4, 3, 0, 0, 0], 5)
     """
     substance = liquid.substance
@@ -134,7 +136,7 @@ def new_ledger(liquid: Liquid, area: float, capacity: int, present: int, kind: i
     count[LIQUID] = liquid.number
     heat = (substance.heat_capacity * liquid.number + liquid.nuclei) * liquid.kT
     flux = liquid.sticking * area * substance.volatility / math.sqrt(2.0 * math.pi * substance.mass)
-    return Ledger(
+    return Reservoir(
         energy=np.array([heat, 0.0]),
         count=count,
         clock=np.full(3, math.inf),
@@ -160,26 +162,26 @@ def new_ledger(liquid: Liquid, area: float, capacity: int, present: int, kind: i
 
 
 @kernel
-def heat_capacity(ledger):
+def heat_capacity(reservoir):
     """Return the heat capacity of the liquid with its nuclei, in units of k."""
-    return ledger.molecule_capacity * ledger.count[LIQUID] + ledger.nuclei
+    return reservoir.molecule_capacity * reservoir.count[LIQUID] + reservoir.nuclei
 
 
 @kernel
-def evaporation_rate(ledger):
+def evaporation_rate(reservoir):
     """Return how many molecules leave the liquid per time [1/time]; see the head of this file."""
-    if ledger.count[LIQUID] < 1:
+    if reservoir.count[LIQUID] < 1:
         return 0.0
-    energy = ledger.energy[THERMAL]
-    left = energy - ledger.binding_energy
+    energy = reservoir.energy[THERMAL]
+    left = energy - reservoir.binding_energy
     if not left > 0.0:
         return 0.0
-    shape = 2.0 + 0.5 * ledger.rotation
-    capacity = heat_capacity(ledger)
-    rest = max(capacity - ledger.molecule_capacity, 0.0)
-    logarithm = ledger.log_rate + (rest + shape - 1.0) * math.log(left) - math.lgamma(rest + shape)
+    shape = 2.0 + 0.5 * reservoir.rotation
+    capacity = heat_capacity(reservoir)
+    rest = max(capacity - reservoir.molecule_capacity, 0.0)
+    logarithm = reservoir.log_rate + (rest + shape - 1.0) * math.log(left) - math.lgamma(rest + shape)
     logarithm += math.lgamma(capacity) - (capacity - 1.0) * math.log(energy)
-    return ledger.surface[0] * math.exp(min(logarithm, 600.0))
+    return reservoir.surface[0] * math.exp(min(logarithm, 600.0))
 
 
 @kernel
@@ -198,56 +200,56 @@ def direction(pool, state):
 
 
 @kernel
-def condense(ledger, energy):
+def condense(reservoir, energy):
     """Let a molecule of this kinetic and rotational energy join the liquid."""
-    ledger.energy[THERMAL] += energy + ledger.binding_energy
-    ledger.count[LIQUID] += 1
-    ledger.count[CONDENSED] += 1
+    reservoir.energy[THERMAL] += energy + reservoir.binding_energy
+    reservoir.count[LIQUID] += 1
+    reservoir.count[CONDENSED] += 1
 
 
 @kernel
-def evaporate(ledger, state):
+def evaporate(reservoir, state):
     r"""Return with which energies of flight and of rotation the next molecule leaves; `leave` takes them out.
 
     Together they are to what stays behind as :math:`\Gamma(g) : \Gamma(C')`, to each other as :math:`\Gamma(2) :
     \Gamma(\zeta/2)`: those that fly fast arrive at a surface more often, and leave it so.
     """
-    left = ledger.energy[THERMAL] - ledger.binding_energy
-    rest = max(heat_capacity(ledger) - ledger.molecule_capacity, 0.0)
+    left = reservoir.energy[THERMAL] - reservoir.binding_energy
+    rest = max(heat_capacity(reservoir) - reservoir.molecule_capacity, 0.0)
     flight = gamma(4.0, state)
-    spin = gamma(ledger.rotation, state)
+    spin = gamma(reservoir.rotation, state)
     scale = left / (flight + spin + gamma_of_shape(rest, state))
-    last = ledger.spectrum.size - 1
-    ledger.spectrum[int(min(scale * (flight + spin) / ledger.bin_width, float(last)))] += 1
+    last = reservoir.spectrum.size - 1
+    reservoir.spectrum[int(min(scale * (flight + spin) / reservoir.bin_width, float(last)))] += 1
     return scale * flight, scale * spin
 
 
 @kernel
-def leave(ledger, energy):
+def leave(reservoir, energy):
     """Strike a molecule that leaves with this kinetic and rotational energy."""
-    ledger.energy[THERMAL] -= energy + ledger.binding_energy
-    ledger.count[LIQUID] -= 1
-    ledger.count[EVAPORATED] += 1
+    reservoir.energy[THERMAL] -= energy + reservoir.binding_energy
+    reservoir.count[LIQUID] -= 1
+    reservoir.count[EVAPORATED] += 1
 
 
 @kernel
-def exchange(ledger, energy, rotation, state):
+def exchange(reservoir, energy, rotation, state):
     r"""Return with which energies of flight and of rotation a molecule goes that met the liquid and did not stay.
 
     What it had and the liquid's own energy are shared as :math:`\Gamma(2) : \Gamma(\zeta/2) : \Gamma(C)`.
     """
     flight = gamma(4.0, state)
     spin = gamma(rotation, state)
-    scale = (ledger.energy[THERMAL] + energy) / (flight + spin + gamma_of_shape(heat_capacity(ledger), state))
+    scale = (reservoir.energy[THERMAL] + energy) / (flight + spin + gamma_of_shape(heat_capacity(reservoir), state))
     return scale * flight, scale * spin
 
 
 @kernel
-def rain_out(ledger):
+def rain_out(reservoir):
     """Let one molecule of the liquid fall out of the box, with its share of the thermal energy."""
-    capacity = heat_capacity(ledger)
-    taken = ledger.energy[THERMAL] * ledger.molecule_capacity / capacity
-    ledger.energy[THERMAL] -= taken
-    ledger.energy[RAINED_ENERGY] += taken
-    ledger.count[LIQUID] -= 1
-    ledger.count[RAINED] += 1
+    capacity = heat_capacity(reservoir)
+    taken = reservoir.energy[THERMAL] * reservoir.molecule_capacity / capacity
+    reservoir.energy[THERMAL] -= taken
+    reservoir.energy[RAINED_ENERGY] += taken
+    reservoir.count[LIQUID] -= 1
+    reservoir.count[RAINED] += 1

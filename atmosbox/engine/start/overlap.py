@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_along
 
 __all__ = ["push_apart"]
 
@@ -12,15 +13,9 @@ __all__ = ["push_apart"]
 @kernel
 def _push_pair(x, radius, low, high, turn, gap, moves, i, j):
     """Push two molecules apart if they overlap; return whether they did."""
-    dx = x[j, 0] - x[i, 0]
-    dy = x[j, 1] - x[i, 1]
-    dz = x[j, 2] - x[i, 2]
-    if turn[0] > 0.0:
-        dx -= turn[0] * np.rint(dx / turn[0])
-    if turn[1] > 0.0:
-        dy -= turn[1] * np.rint(dy / turn[1])
-    if turn[2] > 0.0:
-        dz -= turn[2] * np.rint(dz / turn[2])
+    dx = nearest_along(x[j, 0] - x[i, 0], turn[0], 1.0 / turn[0] if turn[0] > 0.0 else 0.0)
+    dy = nearest_along(x[j, 1] - x[i, 1], turn[1], 1.0 / turn[1] if turn[1] > 0.0 else 0.0)
+    dz = nearest_along(x[j, 2] - x[i, 2], turn[2], 1.0 / turn[2] if turn[2] > 0.0 else 0.0)
     touching = radius[i] + radius[j]
     square = dx * dx + dy * dy + dz * dz
     if square >= (touching * (1.0 + 0.5 * gap)) ** 2:

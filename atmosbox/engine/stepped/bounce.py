@@ -23,7 +23,7 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
-from atmosbox.engine.core.walls import SPECULAR, resolve_wall_hit
+from atmosbox.engine.core.walls import SPECULAR, bounce_off
 from atmosbox.engine.stepped.flight import EULER, PARABOLA, SEMI_IMPLICIT
 
 __all__ = ["CLAMP", "FLIP", "FOLD", "MIRROR", "REWIND", "bounce"]
@@ -149,30 +149,19 @@ def bounce(p, state, kinds, step, box, walls, tallies, modes):
         before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
         now = step.time + step.length - left
         high = wall & 1 == 1
+        velocity, spin, change = bounce_off(
+            wall, now, (vx, vy, vz), spin, (mass, rotation), walls, box.planar, tallies.random
+        )
+        vx, vy, vz = velocity
         if wall < 2:
-            came = vx
-            vx, vy, vz, spin = resolve_wall_hit(
-                walls, wall, now, vx, vy, vz, spin, mass, rotation, box.planar, tallies.random
-            )
-            went = vx
             x = box.length_x - radius if high else radius
         elif wall < 4:
-            came = vy
-            vy, vx, vz, spin = resolve_wall_hit(
-                walls, wall, now, vy, vx, vz, spin, mass, rotation, box.planar, tallies.random
-            )
-            went = vy
             y = box.length_y - radius if high else radius
         else:
-            came = vz
-            vz, vx, vy, spin = resolve_wall_hit(
-                walls, wall, now, vz, vx, vy, spin, mass, rotation, box.planar, tallies.random
-            )
-            went = vz
             z = step.ceiling + step.ceiling_velocity * (step.length - left) - radius if high else radius
         gained = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
         made -= gained
-        _book(wall, mass * (went - came), gained, tallies, modes)
+        _book(wall, mass * change, gained, tallies, modes)
     if modes.gravity and step.motion == EULER:
         vz -= box.gravity * step.length
     came_x, came_y, came_z = vx, vy, vz

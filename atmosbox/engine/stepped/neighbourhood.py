@@ -9,6 +9,7 @@ time in each of these rows, in single precision.
 import numpy as np
 
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.stepped.window import LANES, lowest_bit, within
 
 __all__ = ["find_pairs"]
@@ -44,14 +45,9 @@ def _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pa
                 first = q + 1 if own and turn == 0 else np.int64(records.start[row + left])
                 for r in range(first, np.int64(records.start[row + right + 1])):
                     k = r & 0x7FFFFFFF
-                    rx = records.x[k] - at_x
-                    ry = records.y[k] - at_y
-                    rz = records.z[k] - at_z
-                    if modes.periodic:
-                        rx -= np.float32(box.length_x * np.rint(rx * box.inverse_x))
-                        ry -= np.float32(box.length_y * np.rint(ry * box.inverse_y))
-                        if not (modes.gravity or modes.piston):
-                            rz -= np.float32(box.length_z * np.rint(rz * box.inverse_z))
+                    rx, ry, rz = nearest_image(
+                        records.x[k] - at_x, records.y[k] - at_y, records.z[k] - at_z, box, modes
+                    )
                     near = reach
                     if radius is not None:
                         near = near + radius[k]

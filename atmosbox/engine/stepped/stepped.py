@@ -32,8 +32,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.contact import resolve_contact, share_energy
+from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.jit import kernel, prange
+from atmosbox.engine.core.pair import nearest_image, reach, resolve
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.stepped.bounce import MIRROR, bounce
@@ -90,19 +91,12 @@ def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, mode
     """
     x = state.position
     v = state.velocity
-    rx = x[0, p] - x[0, q]
-    ry = x[1, p] - x[1, q]
-    rz = x[2, p] - x[2, q]
-    if modes.periodic:
-        rx -= box.length_x * np.rint(rx * box.inverse_x)
-        ry -= box.length_y * np.rint(ry * box.inverse_y)
-        if not (modes.gravity or modes.piston):
-            rz -= box.length_z * np.rint(rz * box.inverse_z)
+    rx, ry, rz = nearest_image(x[0, p] - x[0, q], x[1, p] - x[1, q], x[2, p] - x[2, q], box, modes)
     i = np.int64(state.name[p])
     j = np.int64(state.name[q])
     kind = kinds.table[i if modes.mixed else 0]
     other = kinds.table[j if modes.mixed else 0]
-    contact = kind.radius + other.radius
+    contact = reach(kind.radius, other.radius)
     if rx * rx + ry * ry + rz * rz >= contact * contact:
         return
     ux = v[0, p] - v[0, q]
@@ -113,7 +107,7 @@ def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, mode
         seen[0] += 1
         if approaching or closing == 0.0:
             return
-    dx, dy, dz = resolve_contact(rx, ry, rz, ux, uy, uz, kind.mass, other.mass)
+    dx, dy, dz = resolve(rx, ry, rz, ux, uy, uz, kind.mass, other.mass)
     if modes.rotation and (box.exchange >= 1.0 or uniform(tallies.random) < box.exchange):
         spin = kinds.rotational_energy
         square = ux * ux + uy * uy + uz * uz

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from atmosbox.engine.core.contact import resolve_contact, share_energy, time_to_contact
+from atmosbox.engine.core.hard_sphere import resolve_contact, share_energy, time_to_contact
 
 NUMBERS = st.floats(-10.0, 10.0)
 VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)

@@ -1,4 +1,4 @@
-r"""Two molecules meet: when, and what becomes of their velocities.
+r"""The law of hard spheres: when two of them touch, and what becomes of their velocities.
 
 Gravity accelerates both alike, so their relative motion is a straight line with or without it.
 """
@@ -8,7 +8,28 @@ import math
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma
 
-__all__ = ["resolve_contact", "share_energy", "time_to_contact"]
+__all__ = ["earlier_root", "quadratic", "resolve_contact", "share_energy", "time_to_contact"]
+
+
+@kernel(early=True)
+def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
+    r"""Return discriminant, b and c of :math:`v^2 t^2 + 2 b t + c = 0`, the contact of two molecules.
+
+    :math:`b = r \cdot v` is below zero while they approach, :math:`c = r^2 - \sigma^2`. The discriminant is formed with
+    min(b, 0): it is not above zero for nearly all pairs that miss, so that one test dismisses them. Arguments as for
+    `time_to_contact`.
+    """
+    b = rx * vx + ry * vy + rz * vz
+    speed_squared = vx * vx + vy * vy + vz * vz
+    c = rx * rx + ry * ry + rz * rz - diameter_squared
+    closing = min(b, 0.0)
+    return closing * closing - speed_squared * c, b, c
+
+
+@kernel(early=True)
+def earlier_root(discriminant, b, c):
+    """Return the earlier root of that `quadratic` [time], 0 if it is past: for a discriminant above zero, b below."""
+    return max(c / (math.sqrt(discriminant) - b), 0.0)
 
 
 @kernel
@@ -34,8 +55,7 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
     Notes
     -----
     The root is c / (-b + sqrt(d)), which keeps its digits when the two nearly touch. A pair that overlaps
-    by rounding and still approaches touches at once, one that parts never does [1]_. Most pairs miss: the
-    discriminant is formed with min(b, 0) and tested alone, so that the one branch is rarely taken.
+    by rounding and still approaches touches at once, one that parts never does [1]_.
 
     References
     ----------
@@ -50,14 +70,8 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
     >>> time_to_contact(3.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
     inf
     """
-    b = rx * vx + ry * vy + rz * vz
-    speed_squared = vx * vx + vy * vy + vz * vz
-    c = rx * rx + ry * ry + rz * rz - diameter_squared
-    closing = min(b, 0.0)
-    discriminant = closing * closing - speed_squared * c
-    if discriminant > 0.0 and b < 0.0:
-        return max(c / (math.sqrt(discriminant) - b), 0.0)
-    return math.inf
+    discriminant, b, c = quadratic(rx, ry, rz, vx, vy, vz, diameter_squared)
+    return earlier_root(discriminant, b, c) if discriminant > 0.0 and b < 0.0 else math.inf
 
 
 @kernel

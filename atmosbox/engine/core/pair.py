@@ -1,0 +1,87 @@
+"""Pairs of molecules: how far they feel each other, when they meet, and what becomes of them.
+
+Everything that asks about a pair asks here: the exact engine and the time-stepped one, drops, and the checks for
+overlap. The law itself stands in a file of its own, `hard_sphere`. A second law is a second such file and a branch on
+a mode in `reach`, `approach`, `predict` and `resolve`; nothing else of the engine changes.
+"""
+
+import numpy as np
+
+from atmosbox.engine.core.hard_sphere import earlier_root, quadratic, resolve_contact
+from atmosbox.engine.core.jit import kernel
+
+__all__ = ["approach", "nearest_along", "nearest_image", "predict", "reach", "resolve"]
+
+
+@kernel
+def reach(radius, other_radius):
+    """Return how far apart two centres are when the pair begins to feel each other [length].
+
+    Examples
+    --------
+    >>> reach(0.5, 0.7)
+    1.2
+    """
+    return radius + other_radius
+
+
+@kernel
+def nearest_along(r, length, inverse):
+    """Return a distance along one axis [length] to the nearest image; ``inverse`` is 1/length, or 0 between walls.
+
+    Examples
+    --------
+    In a periodic box of length 10, a molecule 9 to the right is 1 to the left:
+
+    >>> float(nearest_along(9.0, 10.0, 0.1)), float(nearest_along(9.0, 10.0, 0.0))
+    (-1.0, 9.0)
+    """
+    return r - length * np.rint(r * inverse)
+
+
+@kernel
+def nearest_image(rx, ry, rz, box, modes):
+    """Return the position of a molecule relative to another [length], taken to its nearest periodic image."""
+    if modes.periodic:
+        rx = nearest_along(rx, box.length_x, box.inverse_x)
+        ry = nearest_along(ry, box.length_y, box.inverse_y)
+        # floor and ceiling are walls where there is gravity or a piston
+        if not (modes.gravity or modes.piston):
+            rz = nearest_along(rz, box.length_z, box.inverse_z)
+    return rx, ry, rz
+
+
+@kernel(early=True)
+def approach(rx, ry, rz, ux, uy, uz, distance):
+    """Return how a pair approaches: a discriminant, not above zero if it misses, and two numbers for `predict`.
+
+    Most pairs miss, so the question when a pair meets is asked in two steps, of which the second is rare. The first of
+    the two numbers is below zero while the pair approaches.
+
+    Parameters
+    ----------
+    rx, ry, rz, ux, uy, uz
+        Position [length] and velocity [length/time] of one molecule relative to the other.
+    distance
+        Distance of the centres at which they meet, `reach` [length].
+
+    Examples
+    --------
+    Three diameters apart, closing at unit speed:
+
+    >>> predict(*approach(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0))
+    2.0
+    """
+    return quadratic(rx, ry, rz, ux, uy, uz, distance * distance)
+
+
+@kernel(early=True)
+def predict(discriminant, b, c):
+    """Return how long it takes a pair to meet [time from now] that approaches so and does not miss."""
+    return earlier_root(discriminant, b, c)
+
+
+@kernel
+def resolve(rx, ry, rz, ux, uy, uz, mass, other_mass):
+    """Return the change of velocity that a meeting gives the first molecule [length/time]: see `resolve_contact`."""
+    return resolve_contact(rx, ry, rz, ux, uy, uz, mass, other_mass)
