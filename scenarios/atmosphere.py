@@ -55,7 +55,7 @@ ladder = (
     Series("exact", "duration", (50, 100), {"plane": True, "knudsen": 0.05}),
     Series("classic", "delta", (8, 4, 2), {"plane": True, "knudsen": 0.05, "duration": 50}),
 )
-"""What is worth comparing: a column that is left alone forgives much, but not a fall that makes energy."""
+"""What is worth comparing: a column at rest is hardly sensitive to errors, except to a fall that makes energy."""
 
 
 class Settings(SceneSettings):

@@ -161,7 +161,7 @@ def _faces(settings: Settings, start: MoistBox) -> float:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return saturation at the walls' warmth, and the rate at which its vapour meets the liquid."""
+    """Return saturation at the temperature of the walls, and the rate at which its vapour meets the liquid."""
     start = _start(settings, ideal=used(dataset).ideal)
     walls = dataset.wall_temperature.values[:, 0]
     warmths, which = np.unique(walls, return_inverse=True)

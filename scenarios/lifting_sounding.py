@@ -8,7 +8,7 @@ Modelled: hard molecules of air and water; droplets too fine to draw, of one tem
 the environment as it was measured, hydrostatic; buoyancy of virtual temperatures. Reversible: the droplets stay in the
 parcel, but their weight is not counted, as is usual for CAPE; with rain=on the cloud holds a gram per kilogram. Left
 out: ice, the curvature of droplets; mixing with the environment, which weakens every real cloud; the parcel's own
-motion: it is lifted at a steady pace, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within
+motion: it is lifted at a steady rate, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within
 nanoseconds.
 """
 

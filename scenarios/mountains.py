@@ -131,14 +131,14 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     noise = successive_error(misfit, block=BLOCK)[-1], finite_size.walk(ascent, pressure)[-1] * arrival
     scatter = math.hypot(*noise, finite_size.warmth_of(lost, cold))
     humidity = float(law.vapor_pressure(ascent.pressure, path.vapor[-1]) / law.saturation_vapor_pressure(arrival))
-    hurried = ascent.temperature * finite_size.finite_rate(ascent).finite_speed(ascent.top_pressure)
+    warmth = ascent.temperature * finite_size.finite_rate(ascent).finite_speed(ascent.top_pressure)
     found = [
         Headline(
             "arrival_temperature",
             arrival + float(misfit[late].mean()),
             scatter,
             arrival if finite_size.comparable(ascent) else None,
-            hurried + finite_size.haze(ascent, humidity, 0.0, arrival),
+            warmth + finite_size.haze(ascent, humidity, 0.0, arrival),
             "the way is not infinitely slow, and some molecules are clustered in clear air",
             "K",
             "degC",

@@ -2,7 +2,7 @@
 
 Molecules of real air at real density, in a cube some nanometres wide whose six walls are kept warm. They
 start cold; the walls send every molecule that hits them back at their own temperature, and within a
-fraction of a nanosecond the gas is as warm as they. The speeds are then those of Maxwell, and the blows
+fraction of a nanosecond the gas is as warm as they. The speeds are then those of Maxwell, and their impacts
 on the walls add up to the pressure n k T Z.
 
 Modelled: hard spheres of the mass and the diameter of air, fully accommodating walls. Left out: gravity
@@ -145,7 +145,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return Maxwell's curve, the pressure n k T Z and the noise of a small thermometer, all at the walls' warmth."""
+    """Return Maxwell's curve, n k T Z and the noise of a small thermometer, at the temperature of the walls."""
     scale, density, _, factor = _start(settings, ideal=used(dataset).ideal)
     walls = dataset.wall_temperature.values[:, 0]
     pressure = density * factor * scale.pressure

@@ -78,7 +78,9 @@ def mixing_ratio(vapor_pressure: ArrayLike, pressure: ArrayLike) -> FloatArray:
     e = checked_not_negative(as_floats(vapor_pressure), "vapor_pressure")
     p = checked_positive(as_floats(pressure), "pressure")
     if not np.all(e < p):
-        raise ValueError("vapor_pressure must be below pressure: there would be no air, water of that warmth boils.")
+        raise ValueError(
+            "vapor_pressure must be below pressure: there would be no air, water of that temperature boils."
+        )
     ratio: FloatArray = MASS_RATIO * e / (p - e)
     return ratio
 

@@ -140,7 +140,7 @@ def lag(ascent: MoistAscent, pressure: float) -> float:
     Vapour is left over for the time :math:`4 V / A \bar c_v` that it takes to meet liquid, while saturation falls at
     the rate at which the parcel rises. The heat that it has not yet given up is missing, to air and vapour. And what
     has condensed makes the droplets warmer than the air, until the molecules of air that hit them have taken its heat
-    along, 3 k for each degree: so the droplets let more vapour go, and more is left over, by :math:`x \ell^2/3` times
+    along, 3 k for each degree: so more evaporates from them, and more vapour is left, by :math:`x \ell^2/3` times
     the time :math:`4 V / A \bar c_a`.
     """
     if pressure >= ascent.base:
