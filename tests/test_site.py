@@ -1,6 +1,7 @@
 """The site: it is built without a warning, needs no network, and everything in it leads somewhere."""
 
 import importlib
+import json
 import logging
 import os
 import posixpath
@@ -16,6 +17,7 @@ import pytest
 from docutils import nodes
 
 from atmosbox import scenarios
+from atmosbox.file.netcdf import read
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -197,8 +199,9 @@ def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path):
     text = (DOCS / "own-scene.md").read_text(encoding="utf-8")
     (scene,) = re.findall(r"<!-- table:own-scene.source -->\n```python\n(.*?)```", text, re.DOTALL)
     (tmp_path / "my_scene.py").write_text(scene, encoding="utf-8")
-    typed = re.findall(r"```sh\n(.*?)```", text, re.DOTALL)[0].splitlines()
-    assert [line.split()[:2] for line in typed] == [["atmosbox", "run"], ["atmosbox", "plot"]]
+    blocks = [block.splitlines() for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)]
+    typed = [line for block in blocks for line in block]
+    assert [line.split()[:2] for line in typed] == [["atmosbox", verb] for verb in ("run", "plot", "run")]
     said = []
     for line in typed:
         command = [sys.executable, "-m", "atmosbox", *shlex.split(line)[1:]]
@@ -212,8 +215,14 @@ def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path):
     assert command == f"$ {typed[0]}"
     assert said[0].splitlines()[0].split() == header.split()
     label = re.split(r"\s{2,}", row)[0]
-    assert re.search(rf"^{re.escape(label)} .* yes$", said[0], re.MULTILINE)
+    for run in (said[0], said[2]):  # on the exact engine, and on another
+        assert re.search(rf"^{re.escape(label)} .* yes$", run, re.MULTILINE)
+    engines = [
+        json.loads(read(tmp_path / name).atmosbox_parameters)["engine"] for name in ("my_scene.nc", "flask-dsmc.nc")
+    ]
+    assert engines == ["exact", "dsmc"]
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
+        "flask-dsmc.nc",
         "my_scene.nc",
         "my_scene.png",
         "my_scene.py",

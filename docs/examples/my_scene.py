@@ -7,7 +7,7 @@ without meeting. Each takes heat from the hot wall to the cold one; half as many
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, ParcelSet, Specular, maxwell_velocities
+from atmosbox.engine import HeatBath, Specular, maxwell_velocities
 from atmosbox.scene import Air, Headline, Line, Panel, Scale, SceneSettings, Setup, block_average, setting
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -34,13 +34,13 @@ def answer(settings):
     return law.free_molecular_slab(hot, cold, density, DRY_AIR.molecule_mass, rotational_dof=2), scale
 
 
-def build(settings):
-    """Return the box: a cube of points, which never meet, between the walls."""
+def build(settings, engine):
+    """Return the box: a cube of points, which never meet, between the walls; the engine that was asked for makes it."""
     n, scale = settings.molecules, answer(settings)[1]
     rng = np.random.default_rng(settings.seed)
     bath = [HeatBath(scale.reduced_temperature(wall)) for wall in (settings.si.hot, settings.si.cold)]
     start = rng.random((n, 3)), maxwell_velocities(1.0, np.ones(n), rng)
-    parcel = ParcelSet(
+    parcel = engine.make(
         *start, length=(1, 1, 1), walls=[Specular()] * 4 + bath, diameter=0.0, rotation=2, seed=settings.seed
     )
     return Setup(parcel, scale, duration=450.0, frames=450, instruments=(Air(),), settle=SETTLE, time_unit="s")
