@@ -1,4 +1,4 @@
-"""Direct simulation Monte Carlo keeps its books, keeps its molecules at home, and does the same on any
+"""Direct simulation Monte Carlo keeps its counters, keeps its molecules at home, and does the same on any
 number of threads; what chance has no hand in, it does as the exact engine does.
 """
 
@@ -51,7 +51,7 @@ def everything(number=12_000, **changes):
     )  # fmt: skip
 
 
-def books(parcel):
+def counters(parcel):
     """Return all that a run leaves, as bytes."""
     now = parcel.snapshot()
     told = (*now[1:], parcel.wall_heat, parcel.wall_impulse, parcel.wall_hits, [parcel.work, parcel.contacts, now.time])
@@ -90,17 +90,17 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
     for threads in (1, 2, 3, 7):
         gas = everything(threads=threads)
         gas.advance(30.0)
-        runs.append(books(gas))
+        runs.append(counters(gas))
     gas = everything()
     for time in np.linspace(0.0, 30.0, 37):
         gas.advance(time)
-    runs.append(books(gas))
+    runs.append(counters(gas))
     assert gas.steps > 65
     assert gas.contacts > 10_000
     assert len(set(runs)) == 1
     other = everything(seed=8)
     other.advance(30.0)
-    assert books(other) not in runs
+    assert counters(other) not in runs
 
 
 @pytest.mark.parametrize("walls", [SMOOTH, TURNING, (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05))])

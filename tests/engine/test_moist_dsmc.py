@@ -1,4 +1,4 @@
-"""Air with water in it keeps its books step by step, does the same on any number of threads and however it is cut.
+"""Air with water in it keeps its counters step by step, does the same on any number of threads and however it is cut.
 
 The boxes below need six sets of kernels in all: each new set costs seconds of compilation.
 """
@@ -112,16 +112,16 @@ def is_lawful(parcel, waters):
     assert min(parcel.liquid, parcel.vapour, parcel.condensed, parcel.evaporated, parcel.rained) >= 0
     assert parcel.liquid + parcel.vapour + parcel.rained == waters
     assert len(now.position) == n == len(parcel.mass) == len(parcel.diameter) == parcel.present.sum()
-    names = parcel._swarm.identity[:n]
+    names = parcel._columns.identity[:n]
     assert np.array_equal(np.sort(names), np.flatnonzero(parcel.present))
     # each kind of molecule keeps its number: what stands in the columns is what the list says of it
-    assert np.array_equal(parcel._gas.masses[parcel._swarm.kind[:n]], parcel._mass[names])
+    assert np.array_equal(parcel._gas.masses[parcel._columns.kind[:n]], parcel._mass[names])
     # what rounding leaves when the last molecule takes all
     assert parcel.liquid_energy >= -1e-11
     assert parcel.ledger() < 1e-10
 
 
-# ------------------------------------------------------------------ its books, step by step
+# ------------------------------------------------------------------ its counters, step by step
 
 
 @by_name
@@ -203,7 +203,7 @@ def test_unlike_molecules_come_to_one_temperature():
     parcel = moist(still, 3000, 3000, sides=(30.0, 30.0, 30.0), walls=TURNING, kT=1.0)
     is_vapour = parcel.mass < 0.9
     # all the energy of rotation is given to the air's flight
-    parcel._swarm.vx[:6000][~is_vapour] *= 2.0
+    parcel._columns.vx[:6000][~is_vapour] *= 2.0
     parcel.advance(100.0)
     rows = []
     for k in range(400):

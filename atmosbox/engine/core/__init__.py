@@ -11,9 +11,8 @@
 `inputs`        what is refused
 `packing`       which part of the space molecules fill
 `account`       what a box has counted, and whether its energy adds up
-`arrangement`   what a box may be given, and what may move its piston
 `adjustment`    what may be changed while time passes
-`parcel`        the box: what it is given, holds and tells
+`parcel`        the box: what it is given, holds and tells; what may move its piston
 `box`           the box, as the kernels know it
 `kind`          molecules that are alike
 `marching`      the box, advanced in equal time steps

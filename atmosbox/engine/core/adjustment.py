@@ -15,7 +15,7 @@ class Adjustable(Account):
     """A box whose piston, heat baths and gravity may be changed between two advances; `Parcel` is one.
 
     What was planned for the old walls or in the old field is planned anew, and what a change gives to the molecules
-    is entered in the ledger. A box that nobody changes is the same as if it could not be.
+    is entered in the ledger. A box that is left unchanged gives the same bytes as one that cannot be changed.
     """
 
     _now: float

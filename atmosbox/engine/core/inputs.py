@@ -176,7 +176,7 @@ def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravit
 
 
 def sum_of_squares(column: Array) -> float:
-    """Return the sum of the squares of a column, without a second column of its size: of millions, that takes room.
+    """Return the sum of the squares of a column, without a second column of its size in memory.
 
     Examples
     --------

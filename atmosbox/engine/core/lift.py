@@ -1,4 +1,4 @@
-r"""A piston that follows a given pressure, as a parcel follows that of the air around it.
+r"""A piston that follows a given pressure, as a parcel follows that of its environment.
 
 Every interval the ceiling gets the velocity
 

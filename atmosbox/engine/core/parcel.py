@@ -3,20 +3,46 @@
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar
+from typing import ClassVar, Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.account import Array, Snapshot
 from atmosbox.engine.core.adjustment import Adjustable
-from atmosbox.engine.core.arrangement import Arrangement, Driver
 from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, whole
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import Tallies
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls
 
 __all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
+
+
+class Driver(Protocol):
+    """What moves the piston: asked for its velocity at every multiple of ``interval``."""
+
+    interval: float
+
+    def velocity(self, parcel: "Parcel") -> float:
+        """Return the velocity [length/time] from now until the next multiple of the interval."""
+
+
+class Arrangement(TypedDict, total=False):
+    """What a `Parcel` may be given by name: see there."""
+
+    length: Sequence[float]
+    walls: Sequence[Wall]
+    mass: ArrayLike
+    diameter: ArrayLike
+    rotation: ArrayLike
+    rotational_energy: ArrayLike | None
+    gravity: float
+    planar: bool
+    collision_number: float
+    layers: int
+    seed: int
+    driver: Driver | None
+    collisions: bool
 
 
 class Parcel(Adjustable):

@@ -1,4 +1,4 @@
-"""Molecules in columns, and sorted into cells: what the engines hold that do not care who exactly meets whom.
+"""Molecules in columns, and sorted into cells: what an engine holds that draws its partners of collisions at random.
 
 Each property of all molecules is one array, so that a loop over molecules reads memory straight on and the
 compiler does eight of them at once. A cell must know its molecules: every step they are *counted* by cell
@@ -19,18 +19,18 @@ from atmosbox.engine.core.jit import kernel, prange
 
 __all__ = [
     "BLOCK",
-    "Desk",
-    "Gas",
+    "Columns",
     "Grid",
-    "Swarm",
+    "MoleculeKinds",
+    "Workspace",
     "cells_per_length",
     "count_by_cell",
     "find_cell",
     "index_by_cell",
     "new_columns",
-    "new_desk",
     "new_gather",
     "new_grid",
+    "new_workspace",
     "number_present",
     "reserve_places",
     "share_cells",
@@ -44,7 +44,7 @@ _EVEN_EMPTY = 8  # pairs' worth of work is a cell
 _LINE, _PAGE = 8, 512  # of the cache, of memory, in numbers
 
 
-class Swarm(NamedTuple):
+class Columns(NamedTuple):
     """All molecules, as columns.
 
     ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` their
@@ -81,7 +81,7 @@ class Grid(NamedTuple):
     fastest: Any
 
 
-class Gas(NamedTuple):
+class MoleculeKinds(NamedTuple):
     """What all molecules are: mass [mass], radius [length], rotational degrees of freedom.
 
     Where there are several kinds, ``masses``, ``rotations : (kind,)`` say what each of them is, and ``mass`` is that of
@@ -95,11 +95,11 @@ class Gas(NamedTuple):
     rotations: Any
 
 
-class Desk(NamedTuple):
-    """What a step writes on and forgets.
+class Workspace(NamedTuple):
+    """Scratch memory of one step.
 
     ``mark : (thread, BLOCK)`` for which of a block walls make a difference, ``queue : (thread, BLOCK)`` a list
-    of them, ``random : (thread, 8)`` states of random numbers; ``books : (block, 3, wall)``
+    of them, ``random : (thread, 8)`` states of random numbers; ``counters : (block, 3, wall)``
     what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts; ``cut :
     (thread + 1,)`` the first cell of each thread's share of them; ``left : (slot,)`` for how long molecules that wait
     on a pool have yet to fly [time], if there is one.
@@ -108,7 +108,7 @@ class Desk(NamedTuple):
     mark: Any
     queue: Any
     random: Any
-    books: Any
+    counters: Any
     met: Any
     cut: Any
     left: Any
@@ -131,13 +131,13 @@ def new_columns(number: int, many: int) -> list[Any]:
     return [room[start + k * stride : start + k * stride + number] for k in range(many)]
 
 
-def new_desk(number: int, cells: int, threads: int, waiting: int = 1) -> Desk:
-    """Return an empty desk for so many molecules, cells and threads, and so many molecules that may wait on a pool."""
-    return Desk(
+def new_workspace(number: int, cells: int, threads: int, waiting: int = 1) -> Workspace:
+    """Return a workspace for numbers of molecules, cells and threads, and of molecules that may wait on a pool."""
+    return Workspace(
         mark=np.zeros((threads, BLOCK), np.int32),
         queue=np.zeros((threads, BLOCK), np.int32),
         random=np.zeros((threads, 8), np.uint64),
-        books=np.zeros((-(-number // BLOCK), 3, 6)),
+        counters=np.zeros((-(-number // BLOCK), 3, 6)),
         met=np.zeros((threads, 8), np.int64),
         cut=np.linspace(0, cells, threads + 1).astype(np.int64),
         left=np.zeros(waiting),
@@ -169,9 +169,9 @@ def share_of(thread, threads, number):
 
 
 @kernel
-def number_present(swarm, water):
+def number_present(columns, water):
     """Return how many molecules are in the box: they stand in the first slots, those of the liquid in none."""
-    return swarm.x.size - water.reservoir.top[0]
+    return columns.x.size - water.reservoir.top[0]
 
 
 @kernel
@@ -186,16 +186,16 @@ def cells_per_length(top, grid, gas, box):
 
 
 @kernel
-def find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box):
+def find_cell(p, per_x, per_y, per_z, columns, grid, gas, box):
     """Write down in which cell the molecule of a slot is."""
     r = gas.radius
     low_x = 0.0 if box.inverse_x > 0.0 else r
     low_y = 0.0 if box.inverse_y > 0.0 else r
     low_z = 0.0 if box.inverse_z > 0.0 else r
-    ix = min(np.int64((swarm.x[p] - low_x) * per_x), grid.number_x - 1)
-    iy = min(np.int64((swarm.y[p] - low_y) * per_y), grid.number_y - 1)
-    iz = min(np.int64((swarm.z[p] - low_z) * per_z), grid.number_z - 1)
-    swarm.cell[p] = (iz * grid.number_y + iy) * grid.number_x + ix
+    ix = min(np.int64((columns.x[p] - low_x) * per_x), grid.number_x - 1)
+    iy = min(np.int64((columns.y[p] - low_y) * per_y), grid.number_y - 1)
+    iz = min(np.int64((columns.z[p] - low_z) * per_z), grid.number_z - 1)
+    columns.cell[p] = (iz * grid.number_y + iy) * grid.number_x + ix
 
 
 @kernel

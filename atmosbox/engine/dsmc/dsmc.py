@@ -1,10 +1,10 @@
 r"""Direct simulation Monte Carlo: molecules fly freely for a step, then collide with whom chance chooses nearby.
 
-In a dilute gas it matters only that molecules collide as often as they should, with partners from where they
-are. So nobody asks who hits whom: cells, smaller than a mean free path, hold some ten molecules each, and after
-every step of free flight, shorter than a mean free time, pairs are drawn within each cell [1]_. A pair with
-relative speed c sweeps the volume :math:`\pi\sigma^2 c\,\Delta t` during the step, so it collides with
-probability
+In a dilute gas it matters only that molecules collide as often as they should, with partners from where they are.
+So the scheme does not ask which molecules hit each other: cells, smaller than a mean free path, hold some ten
+molecules each, and after every step of free flight, shorter than a mean free time, pairs are drawn within each cell
+[1]_. A pair with relative speed c sweeps the volume :math:`\pi\sigma^2 c\,\Delta t` during the step, so it collides
+with probability
 
 .. math:: P = \frac{\pi \sigma^2 c\, \Delta t}{V_{cell}}.
 
@@ -21,7 +21,7 @@ run is the same for any number of threads.
 
 References
 ----------
-.. [1] Bird, G. A. (1994), Molecular Gas Dynamics and the Direct Simulation of Gas Flows, Oxford.
+.. [1] Bird, G. A. (1994), Molecular MoleculeKinds Dynamics and the Direct Simulation of MoleculeKinds Flows, Oxford.
 .. [2] Bird, G. A. (1989), Prog. Astronaut. Aeronaut. 118, 211, doi:10.2514/5.9781600865923.0211.0226.
 """
 
@@ -104,11 +104,28 @@ def densest_layer(x: NDArray[np.float64], low: float, side: float, layers: int) 
 
 @kernel
 def _move(
-    first, last, count, start, dt, ceiling, top, key, swarm, grid, gas, box, walls, thread, desk, rotates, mixed, pool
+    first,
+    last,
+    count,
+    start,
+    dt,
+    ceiling,
+    top,
+    key,
+    columns,
+    grid,
+    gas,
+    box,
+    walls,
+    thread,
+    workspace,
+    rotates,
+    mixed,
+    pool,
 ):
     """Move a share of the molecules, block by block, and count them by cell."""
     count[:] = 0
-    queue, state = desk.queue[thread], desk.random[thread]
+    queue, state = workspace.queue[thread], workspace.random[thread]
     r = gas.radius
     nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
     high_x, high_y, high_z = box.length_x - r, box.length_y - r, top - r
@@ -117,9 +134,9 @@ def _move(
     smooth_y = walls.law[2] == SPECULAR and walls.law[3] == SPECULAR
     for b in range(first, last, BLOCK):
         e = min(b + BLOCK, last)
-        x, y, z, cell = swarm.x[b:e], swarm.y[b:e], swarm.z[b:e], swarm.cell[b:e]
-        vx, vy, vz = swarm.vx[b:e], swarm.vy[b:e], swarm.vz[b:e]
-        mark = desk.mark[thread, : e - b]
+        x, y, z, cell = columns.x[b:e], columns.y[b:e], columns.z[b:e], columns.cell[b:e]
+        vx, vy, vz = columns.vx[b:e], columns.vy[b:e], columns.vz[b:e]
+        mark = workspace.mark[thread, : e - b]
         mark[:] = 0
         cell[:] = 0
         # who waits must be known before anybody moves: floor and ceiling come last of what makes wait
@@ -147,33 +164,48 @@ def _move(
         for q in range(e - b):  # a list, without a branch
             queue[marked] = q
             marked += np.uint32(mark[q] != 0)
-        books = desk.books[b // BLOCK]
-        books[:] = 0.0
+        counters = workspace.counters[b // BLOCK]
+        counters[:] = 0.0
         for k in range(marked):
             q = np.int64(queue[k])
             p = b + q
             if mark[q] >= WAITS:
                 state[0] = scramble(key ^ (np.uint64(p) * _MIX_1))
-                bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, desk.left, rotates, mixed, pool)
-            mass = gas.masses[swarm.kind[p]] if mixed else gas.mass
+                bounce(
+                    p,
+                    start,
+                    dt,
+                    ceiling,
+                    columns,
+                    gas,
+                    box,
+                    walls,
+                    state,
+                    counters,
+                    workspace.left,
+                    rotates,
+                    mixed,
+                    pool,
+                )
+            mass = gas.masses[columns.kind[p]] if mixed else gas.mass
             if mark[q] & 1:
-                mirror(p, swarm.x, swarm.vx, 0, r, high_x, mass, books)
+                mirror(p, columns.x, columns.vx, 0, r, high_x, mass, counters)
             if mark[q] & 2:
-                mirror(p, swarm.y, swarm.vy, 2, r, high_y, mass, books)
-            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
+                mirror(p, columns.y, columns.vy, 2, r, high_y, mass, counters)
+            find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
         for q in range(e - b):
             count[np.uint32(cell[q])] += np.uint32(1)
 
 
 @kernel
-def _settle(desk, tallies, threads, piston):
+def _settle(workspace, tallies, threads, piston):
     """Add up what walls and contacts did, in an order that no number of threads can change."""
     for wall in range(6):
         impulse = given = hits = 0.0
-        for block in range(desk.books.shape[0]):
-            impulse += desk.books[block, 0, wall]
-            given += desk.books[block, 1, wall]
-            hits += desk.books[block, 2, wall]
+        for block in range(workspace.counters.shape[0]):
+            impulse += workspace.counters[block, 0, wall]
+            given += workspace.counters[block, 1, wall]
+            hits += workspace.counters[block, 2, wall]
         tallies.impulse[wall] += impulse
         tallies.hits[wall] += np.int64(hits)
         tallies.count[4] += np.int64(hits)
@@ -182,7 +214,7 @@ def _settle(desk, tallies, threads, piston):
         else:
             tallies.heat[wall] += given
     for t in range(threads):
-        tallies.count[0] += desk.met[t, 0]
+        tallies.count[0] += workspace.met[t, 0]
 
 
 @functools.cache
@@ -200,11 +232,11 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
 
     @kernel(entry=True, allocates=parallel, parallel=parallel)
     def march(
-        first_step, steps, dt, ceilings, swarm, grid, gas, cross_section, box, walls, tallies, desk, tries, water
+        first_step, steps, dt, ceilings, columns, grid, gas, cross_section, box, walls, tallies, workspace, tries, water
     ):  # fmt: skip
         """Advance by so many steps; ``ceilings : (step + 1,)`` is how high the ceiling is before and after each."""
         threads = grid.place.shape[0] if parallel else 1
-        number = swarm.x.size
+        number = columns.x.size
         cells = grid.number_x * grid.number_y * grid.number_z
         r = gas.radius
         wide_x = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
@@ -216,33 +248,35 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
             wall_key = scramble(tallies.random[0] + np.uint64(first_step + k) * _MIX_1)
             cell_key = scramble(wall_key)
             if wet:
-                number = number_present(swarm, water)
-                desk.books[(number + BLOCK - 1) // BLOCK :] = 0.0
+                number = number_present(columns, water)
+                workspace.counters[(number + BLOCK - 1) // BLOCK :] = 0.0
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
                 _move(
-                    first, last, grid.place[t], start, dt, ceiling, top, wall_key, swarm, grid, gas, box, walls,
-                    t, desk, rotates, wet, pool,
+                    first, last, grid.place[t], start, dt, ceiling, top, wall_key, columns, grid, gas, box, walls,
+                    t, workspace, rotates, wet, pool,
                 )  # fmt: skip
             if wet:
                 if pool:
-                    pool_step(start, dt, ceiling, top, cell_key, swarm, grid, gas, box, walls, desk, water, rotates)
+                    pool_step(
+                        start, dt, ceiling, top, cell_key, columns, grid, gas, box, walls, workspace, water, rotates
+                    )
                 else:
-                    mist_step(dt, ceiling, top, cell_key, swarm, grid, gas, box, water, rotates)
-                number = number_present(swarm, water)
+                    mist_step(dt, ceiling, top, cell_key, columns, grid, gas, box, water, rotates)
+                number = number_present(columns, water)
                 for t in prange(threads):
                     first, last = share_of(t, threads, number)
-                    count_by_cell(swarm.cell, grid.place[t], first, last)
+                    count_by_cell(columns.cell, grid.place[t], first, last)
             reserve_places(grid, cells)
             if parallel and k % _SHARED == 0:
-                share_cells(grid.first, cells, desk.cut)
+                share_cells(grid.first, cells, workspace.cut)
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
-                index_by_cell(swarm.cell, swarm.order, grid.place[t], first, last)
+                index_by_cell(columns.cell, columns.order, grid.place[t], first, last)
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
             sweep = 0.5 * cross_section * dt / volume
             for t in prange(threads):
-                collide(t, sweep, cell_key, swarm, grid, gas, box.exchange, desk, tries, rotates, wet)
-            _settle(desk, tallies, threads, walls.law[5] == 3)
+                collide(t, sweep, cell_key, columns, grid, gas, box.exchange, workspace, tries, rotates, wet)
+            _settle(workspace, tallies, threads, walls.law[5] == 3)
 
     return march

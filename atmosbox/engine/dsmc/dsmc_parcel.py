@@ -13,7 +13,7 @@ from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError
-from atmosbox.engine.dsmc.columns import Gas, Swarm, new_columns, new_desk, new_gather, new_grid
+from atmosbox.engine.dsmc.columns import Columns, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
 from atmosbox.engine.dsmc.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
 from atmosbox.engine.dsmc.pairing import new_tries
 
@@ -117,7 +117,7 @@ class DsmcParcel(MarchingParcel):
             return Resolution(0.0, 0.0)
         sides = self._open_sides()
         numbers = (grid.number_x, grid.number_y, grid.number_z)
-        crowding = max(map(densest_layer, (x[:n] for x in self._swarm[:3]), self._low, sides, numbers))
+        crowding = max(map(densest_layer, (x[:n] for x in self._columns[:3]), self._low, sides, numbers))
         path = self._path(float(math.prod(sides))) / crowding
         speed = math.sqrt(8.0 / math.pi * self._mean_square_speed() / 3.0)
         longest = max(side / cells for side, cells in zip(sides, numbers, strict=True))
@@ -125,7 +125,7 @@ class DsmcParcel(MarchingParcel):
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are after the last step, each at its own place in the list."""
-        s = self._swarm
+        s = self._columns
         position, velocity = np.empty((self._number, 3)), np.empty((self._number, 3))
         for axis in range(3):
             position[s.identity, axis] = s[axis]
@@ -138,12 +138,12 @@ class DsmcParcel(MarchingParcel):
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
         kinetic = 0.5 * self._gas.mass * self._number * self._mean_square_speed()
-        potential = self.gravity * self._gas.mass * float(np.sum(self._swarm.z)) if self.gravity else 0.0
-        return kinetic, float(np.sum(self._swarm.spin)) if self._rotates else 0.0, potential
+        potential = self.gravity * self._gas.mass * float(np.sum(self._columns.z)) if self.gravity else 0.0
+        return kinetic, float(np.sum(self._columns.spin)) if self._rotates else 0.0, potential
 
     def memory(self) -> int:
         """Return the bytes that molecules, cells and the sorting of the ones into the others take."""
-        arrays = (*self._swarm, self._spare, *self._grid[3:], *self._desk, *self._tries)
+        arrays = (*self._columns, self._spare, *self._grid[3:], *self._workspace, *self._tries)
         return sum(int(a.nbytes) for a in arrays)
 
     # ------------------------------------------------------------------ how
@@ -177,7 +177,7 @@ class DsmcParcel(MarchingParcel):
         spin = np.zeros(room if self._rotates else 1)
         spin[:n] = rotational_energy if self._rotates else 0.0
         cell, order = np.zeros(room, np.uint32), np.zeros(room, np.uint32)
-        self._swarm = Swarm(x, y, z, vx, vy, vz, spin, np.arange(room, dtype=np.uint32), cell, order, kind)
+        self._columns = Columns(x, y, z, vx, vy, vz, spin, np.arange(room, dtype=np.uint32), cell, order, kind)
         self._round = _REGROUP_MANY if room >= _MANY else _REGROUP
         self._workers = self._threads if room >= _THREADED else 1
         self._lay_out(sides)
@@ -190,7 +190,7 @@ class DsmcParcel(MarchingParcel):
         # however rarely molecules meet, a step is shorter than their hops on the floor
         self._time_step = min(step, 0.5 * fastest / self._gravity) if self._gravity > 0.0 and fastest > 0.0 else step
 
-    def _classify(self) -> tuple[Gas, Any]:
+    def _classify(self) -> tuple[MoleculeKinds, Any]:
         """Return what the molecules are, and the column of their kinds, which means nothing: they are all alike."""
         n = self._number
         if n and not self._alike:
@@ -199,7 +199,7 @@ class DsmcParcel(MarchingParcel):
             )
         first = [float(a[0]) if n else b for a, b in ((self._mass, 1.0), (self._diameter, 0.0), (self._rotation, 0.0))]
         self._mass, self._diameter, self._rotation = (np.broadcast_to(np.float64(value), n) for value in first)
-        return Gas(first[0], 0.5 * first[1], first[2], np.zeros(1), np.zeros(1)), np.zeros(1, np.uint8)
+        return MoleculeKinds(first[0], 0.5 * first[1], first[2], np.zeros(1), np.zeros(1)), np.zeros(1, np.uint8)
 
     @property
     def _room(self) -> int:
@@ -216,7 +216,7 @@ class DsmcParcel(MarchingParcel):
         asked = f"occupancy = {self._occupancy:g}" if self._cell is None else f"cell = {self._cell:g} mean free paths"
         numbers = numbers_of_cells(n, sides, edge, asked)
         self._grid = new_grid(numbers, self._workers)
-        self._desk = new_desk(self._room, math.prod(numbers), self._workers)
+        self._workspace = new_workspace(self._room, math.prod(numbers), self._workers)
         self._tries = new_tries(self._workers)
 
     def _march(self, steps: int) -> None:
@@ -250,21 +250,21 @@ class DsmcParcel(MarchingParcel):
         if self._workers > 1:
             use_threads(self._workers)
         self._march_kernel(
-            first, many, self._time_step, ceilings, self._swarm, self._grid, self._gas, self._cross_section,
-            self._box, self._walls, self._tallies, self._desk, self._tries, self._water,
+            first, many, self._time_step, ceilings, self._columns, self._grid, self._gas, self._cross_section,
+            self._box, self._walls, self._tallies, self._workspace, self._tries, self._water,
         )  # fmt: skip
 
     def _regroup(self) -> None:
         """Put the columns in the order of cells, and let cells forget the fastest pair that they ever saw."""
         changed: dict[str, Any] = {}
-        order = self._swarm.order[: self._number]
+        order = self._columns.order[: self._number]
         for name in _COLUMNS[: 7 if self._rotates else 6]:
-            column = getattr(self._swarm, name)
+            column = getattr(self._columns, name)
             self._gather(column[: self._number], order, self._spare, self._workers)
             changed[name], self._spare = self._spare, column
         # every step writes the column of cells anew
-        self._gather(self._swarm.identity[: self._number], order, self._swarm.cell, self._workers)
-        self._swarm = self._swarm._replace(identity=self._swarm.cell, cell=self._swarm.identity, **changed)
+        self._gather(self._columns.identity[: self._number], order, self._columns.cell, self._workers)
+        self._columns = self._columns._replace(identity=self._columns.cell, cell=self._columns.identity, **changed)
         usual = _FASTEST * self._thermal_speed()
         np.maximum(self._grid.fastest * _FORGET, usual, out=self._grid.fastest)
 
@@ -288,7 +288,7 @@ class DsmcParcel(MarchingParcel):
         kT = self._warmest(self._gas.mass * self._mean_square_speed() / 3.0)
         if kT > 0.0:
             return math.sqrt(kT / self._gas.mass)
-        fall = self._gravity * float(np.mean(self._swarm.z)) * 2.0 / 3.0
+        fall = self._gravity * float(np.mean(self._columns.z)) * 2.0 / 3.0
         return max(math.sqrt(fall), abs(self.piston_velocity))
 
     def _thermal_speed(self) -> float:
@@ -297,4 +297,4 @@ class DsmcParcel(MarchingParcel):
 
     def _mean_square_speed(self) -> float:
         """Return the mean of the squared speed [length^2/time^2]."""
-        return sum(sum_of_squares(v) for v in self._swarm[3:6]) / max(self._number, 1)
+        return sum(sum_of_squares(v) for v in self._columns[3:6]) / max(self._number, 1)

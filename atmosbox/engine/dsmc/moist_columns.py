@@ -54,41 +54,41 @@ class Water(NamedTuple):
 
 
 def new_water(reservoir: Reservoir, waiting: int) -> Water:
-    """Return the liquid of a swarm, of which so many molecules may wait on a pool."""
+    """Return the liquid of many molecules, of which so many molecules may wait on a pool."""
     return Water(
         reservoir, new_calendar(waiting), np.zeros(waiting, np.int64), np.zeros(1, np.int64), np.zeros(1, np.uint64)
     )
 
 
 @kernel
-def copy_slot(source, p, swarm, rotates):
+def copy_slot(source, p, columns, rotates):
     """Write what stands in one slot into another."""
-    swarm.x[p], swarm.y[p], swarm.z[p] = swarm.x[source], swarm.y[source], swarm.z[source]
-    swarm.vx[p], swarm.vy[p], swarm.vz[p] = swarm.vx[source], swarm.vy[source], swarm.vz[source]
+    columns.x[p], columns.y[p], columns.z[p] = columns.x[source], columns.y[source], columns.z[source]
+    columns.vx[p], columns.vy[p], columns.vz[p] = columns.vx[source], columns.vy[source], columns.vz[source]
     if rotates:
-        swarm.spin[p] = swarm.spin[source]
-    swarm.identity[p] = swarm.identity[source]
-    swarm.kind[p] = swarm.kind[source]
-    swarm.cell[p] = swarm.cell[source]
+        columns.spin[p] = columns.spin[source]
+    columns.identity[p] = columns.identity[source]
+    columns.kind[p] = columns.kind[source]
+    columns.cell[p] = columns.cell[source]
 
 
 @kernel
-def strike(p, swarm, reservoir):
+def strike(p, columns, reservoir):
     """Note that the molecule of a slot is not in the box any more."""
-    reservoir.absent[reservoir.top[0]] = swarm.identity[p]
+    reservoir.absent[reservoir.top[0]] = columns.identity[p]
     reservoir.top[0] += 1
 
 
 @kernel
-def touch(p, flow, swarm, gas, reservoir, state, rotates, pool):
+def touch(p, flow, columns, gas, reservoir, state, rotates, pool):
     """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
 
     Otherwise it leaves with another energy.
     """
-    kind = np.int64(swarm.kind[p])
+    kind = np.int64(columns.kind[p])
     mass = gas.masses[kind]
-    vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p]
-    spin = swarm.spin[p] if rotates else 0.0
+    vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
+    spin = columns.spin[p] if rotates else 0.0
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if kind == reservoir.kind and (reservoir.sticking >= 1.0 or uniform(state) < reservoir.sticking):
         condense(reservoir, energy)
@@ -102,16 +102,16 @@ def touch(p, flow, swarm, gas, reservoir, state, rotates, pool):
     if reservoir.energy[THERMAL] - given >= 0.0:
         reservoir.energy[THERMAL] -= given
         reservoir.count[AIR_MET] += 1
-        swarm.vx[p], swarm.vy[p], swarm.vz[p] = wx, wy, wz
+        columns.vx[p], columns.vy[p], columns.vz[p] = wx, wy, wz
         if rotates:
-            swarm.spin[p] = new_spin
+            columns.spin[p] = new_spin
     elif pool:
-        swarm.vz[p] = -vz
+        columns.vz[p] = -vz
     return False
 
 
 @kernel
-def emit(p, x, y, z, flow, swarm, gas, reservoir, state, rotates, pool):
+def emit(p, x, y, z, flow, columns, gas, reservoir, state, rotates, pool):
     """Let a molecule leave the liquid, into a slot that is free."""
     mass = gas.masses[reservoir.kind]
     flight, spin = evaporate(reservoir, state)
@@ -124,13 +124,13 @@ def emit(p, x, y, z, flow, swarm, gas, reservoir, state, rotates, pool):
         vz = speed * ez
         energy = flight + spin
     leave(reservoir, energy)
-    swarm.x[p], swarm.y[p], swarm.z[p] = x, y, z
-    swarm.vx[p], swarm.vy[p], swarm.vz[p] = vx, vy, vz
+    columns.x[p], columns.y[p], columns.z[p] = x, y, z
+    columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
     if rotates:
-        swarm.spin[p] = spin
-    swarm.kind[p] = reservoir.kind
+        columns.spin[p] = spin
+    columns.kind[p] = reservoir.kind
     reservoir.top[0] -= 1
-    swarm.identity[p] = reservoir.absent[reservoir.top[0]]
+    columns.identity[p] = reservoir.absent[reservoir.top[0]]
 
 
 @kernel
@@ -141,10 +141,10 @@ def place(radius, length, inverse, state):
 
 
 @kernel
-def _fastest(number, swarm):
+def _fastest(number, columns):
     """Return the highest speed of all molecules [length/time]; four at a time, for maxima wait for each other."""
     a = b = c = d = 0.0
-    vx, vy, vz = swarm.vx, swarm.vy, swarm.vz
+    vx, vy, vz = columns.vx, columns.vy, columns.vz
     whole = number - number % 4
     for p in range(0, whole, 4):
         a = max(a, vx[p] * vx[p] + vy[p] * vy[p] + vz[p] * vz[p])
@@ -163,11 +163,11 @@ def next_rain(t, reservoir, state):
 
 
 @kernel(entry=True)
-def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
+def mist_step(dt, ceiling, top, key, columns, grid, gas, box, water, rotates):
     """Let a mist, carried along by the air, do what it does in a step."""
     reservoir, state = water.reservoir, water.random
     state[0] = scramble(~key)
-    number = number_present(swarm, water)
+    number = number_present(columns, water)
     r = gas.radius
     per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
     volume = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
@@ -175,7 +175,7 @@ def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
     volume *= 0.5 * (ceiling + top) - (2.0 * r if box.inverse_z == 0.0 else 0.0)
     often = reservoir.area / (4.0 * volume)
     rise = (top - ceiling) / dt
-    bound = _fastest(number, swarm) + abs(rise)
+    bound = _fastest(number, columns) + abs(rise)
     meets = wait(number * often * bound, state)
     leaves = wait(evaporation_rate(reservoir), state)
     rains = next_rain(0.0, reservoir, state)
@@ -185,18 +185,18 @@ def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
             break
         if t == meets:
             p = min(np.int64(uniform(state) * number), number - 1)
-            flow = rise * swarm.z[p] / top
-            vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
+            flow = rise * columns.z[p] / top
+            vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
             enough = uniform(state) * bound
             if enough * enough >= vx * vx + vy * vy + vz * vz:
                 meets = t + wait(number * often * bound, state)
                 continue
-            if touch(p, flow, swarm, gas, reservoir, state, rotates, False):
+            if touch(p, flow, columns, gas, reservoir, state, rotates, False):
                 number -= 1
-                strike(p, swarm, reservoir)
-                copy_slot(number, p, swarm, rotates)
+                strike(p, columns, reservoir)
+                copy_slot(number, p, columns, rotates)
             else:
-                vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
+                vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
                 bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
         elif t == leaves:
             p = number
@@ -204,10 +204,10 @@ def mist_step(dt, ceiling, top, key, swarm, grid, gas, box, water, rotates):
             y = place(r, box.length_y, box.inverse_y, state)
             z = place(r, top, box.inverse_z, state)
             flow = rise * z / top
-            emit(p, x, y, z, flow, swarm, gas, reservoir, state, rotates, False)
-            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
+            emit(p, x, y, z, flow, columns, gas, reservoir, state, rotates, False)
+            find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
             number += 1
-            vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p] - flow
+            vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
             bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
         else:
             rain_out(reservoir)

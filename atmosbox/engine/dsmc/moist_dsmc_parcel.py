@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.dsmc.columns import BLOCK, Gas, new_desk
+from atmosbox.engine.dsmc.columns import BLOCK, MoleculeKinds, new_workspace
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.dsmc.moist_columns import Water, new_water
 from atmosbox.engine.liquid.moist_account import MoistAccount
@@ -83,7 +83,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
 
     def snapshot(self) -> Snapshot:
         """Return all molecules of the gas as they are after the last step, in the order of the list."""
-        s, n = self._swarm, self._number
+        s, n = self._columns, self._number
         order = np.argsort(s.identity[:n])
         position, velocity = (np.stack([column[order] for column in s[k : k + 3]], axis=1) for k in (0, 3))
         return Snapshot(self.time, position, velocity, s.spin[order] if self._rotates else np.zeros(n))
@@ -91,13 +91,13 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     def energy(self) -> tuple[float, float, float]:
         """Return kinetic, rotational and potential energy now [energy]."""
         n = self._number
-        rotational = float(np.sum(self._swarm.spin[:n])) if self._rotates else 0.0
+        rotational = float(np.sum(self._columns.spin[:n])) if self._rotates else 0.0
         return self._kinetic(), rotational, 0.0
 
     def memory(self) -> int:
         """Return the bytes that molecules, cells, the sorting of the ones into the others and the liquid take."""
         calendar = self._water.calendar
-        arrays = (self._swarm.kind, self._spare_kind, self._water.hole, calendar.time, calendar.winner)
+        arrays = (self._columns.kind, self._spare_kind, self._water.hole, calendar.time, calendar.winner)
         return super().memory() + self._reservoir_memory() + sum(int(array.nbytes) for array in arrays)
 
     # ------------------------------------------------------------------ how
@@ -111,11 +111,11 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         substance = self._liquid.substance
         alike = (self._gas.masses == substance.mass) & (self._gas.rotations == substance.rotation)
         alike &= 2.0 * self._gas.radius == substance.diameter
-        self._open_reservoir(alike, self._swarm.kind)
+        self._open_reservoir(alike, self._columns.kind)
         self._water = new_water(self._reservoir, self._room if self._pool else 1)
-        self._spare_kind = np.empty_like(self._swarm.kind)
+        self._spare_kind = np.empty_like(self._columns.kind)
 
-    def _classify(self) -> tuple[Gas, Any]:
+    def _classify(self) -> tuple[MoleculeKinds, Any]:
         """Return what the molecules of gas and liquid are, and of which kind each is."""
         self._append_liquid()
         kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
@@ -130,7 +130,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         masses, rotations = (np.array(kinds.table[name]) for name in ("mass", "rotation"))
         if not self._rotates:
             rotations[:] = 0.0
-        return Gas(float(masses.min()), float(radii[0]), 0.0, masses, rotations), kind.astype(np.uint8)
+        return MoleculeKinds(float(masses.min()), float(radii[0]), 0.0, masses, rotations), kind.astype(np.uint8)
 
     def _effort(self) -> int:
         return self._room
@@ -138,17 +138,17 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     def _lay_out(self, sides: Sequence[float]) -> None:
         super()._lay_out(sides)
         cells = self._grid.number_x * self._grid.number_y * self._grid.number_z
-        # one block more, for the books of the pool
-        self._desk = new_desk(self._room + BLOCK, cells, self._workers, self._room if self._pool else 1)
+        # one block more, for the counters of the pool
+        self._workspace = new_workspace(self._room + BLOCK, cells, self._workers, self._room if self._pool else 1)
 
     def _resolve(self, first: int, many: int, ceilings: Array) -> None:
         super()._resolve(first, many, ceilings)
         self._number = self.number
 
     def _regroup(self) -> None:
-        n, kind = self._number, self._swarm.kind
-        self._gather(kind[:n], self._swarm.order[:n], self._spare_kind, self._workers)
-        self._swarm, self._spare_kind = self._swarm._replace(kind=self._spare_kind), kind
+        n, kind = self._number, self._columns.kind
+        self._gather(kind[:n], self._columns.order[:n], self._spare_kind, self._workers)
+        self._columns, self._spare_kind = self._columns._replace(kind=self._spare_kind), kind
         super()._regroup()
 
     def _fastest(self) -> float:
@@ -163,7 +163,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
 
     def _mean_square_speed(self) -> float:
         n = self._number
-        return sum(float(np.sum(v[:n] * v[:n])) for v in self._swarm[3:6]) / max(n, 1)
+        return sum(float(np.sum(v[:n] * v[:n])) for v in self._columns[3:6]) / max(n, 1)
 
     def _kT(self) -> float:
         """Return the kinetic temperature [energy]."""
@@ -171,5 +171,5 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
 
     def _kinetic(self) -> float:
         n = self._number
-        vx, vy, vz = (v[:n] for v in self._swarm[3:6])
-        return 0.5 * float(np.sum(self._gas.masses[self._swarm.kind[:n]] * (vx * vx + vy * vy + vz * vz)))
+        vx, vy, vz = (v[:n] for v in self._columns[3:6])
+        return 0.5 * float(np.sum(self._gas.masses[self._columns.kind[:n]] * (vx * vx + vy * vy + vz * vz)))

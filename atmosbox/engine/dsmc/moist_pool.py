@@ -21,7 +21,7 @@ _GONE = -1.0
 
 
 @kernel
-def fill_holes(last, swarm, left, water, rotates):
+def fill_holes(last, columns, left, water, rotates):
     """Put the last molecules into the holes before them; ``last`` is the slot after the last that is in use.
 
     Examples
@@ -30,11 +30,11 @@ def fill_holes(last, swarm, left, water, rotates):
 
     >>> import numpy as np
     >>> from atmosbox.engine.dsmc.moist_columns import Water
-    >>> from atmosbox.engine.dsmc.columns import Swarm
-    >>> swarm = Swarm(*(np.arange(4.0) for _ in range(7)), *(np.arange(4) for _ in range(4)))
+    >>> from atmosbox.engine.dsmc.columns import Columns
+    >>> columns = Columns(*(np.arange(4.0) for _ in range(7)), *(np.arange(4) for _ in range(4)))
     >>> left, gone = np.array([-1.0, 0.0, -1.0, 0.0]), (np.array([0, 2]), np.array([2]))
-    >>> fill_holes(4, swarm, left, Water(None, None, *gone, None), True)
-    >>> swarm.x[:2], left
+    >>> fill_holes(4, columns, left, Water(None, None, *gone, None), True)
+    >>> columns.x[:2], left
     (array([3., 1.]), array([0., 0., 0., 0.]))
     """
     for k in range(water.holes[0]):
@@ -44,18 +44,18 @@ def fill_holes(last, swarm, left, water, rotates):
         p = water.hole[k]
         if p < last:
             last -= 1
-            copy_slot(last, p, swarm, rotates)
+            copy_slot(last, p, columns, rotates)
             left[p] = 0.0
     water.holes[0] = 0
 
 
 @kernel(entry=True)
-def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, water, rotates):
+def pool_step(start, dt, ceiling, top, key, columns, grid, gas, box, walls, workspace, water, rotates):
     """Let a pool on the floor do what it does in a step, with those that wait on it."""
-    reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, desk.left
+    reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, workspace.left
     state[0] = scramble(~key)
-    number = number_present(swarm, water)
-    books = desk.books[desk.books.shape[0] - 1]
+    number = number_present(columns, water)
+    counters = workspace.counters[workspace.counters.shape[0] - 1]
     rise = (top - ceiling) / dt
     per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
     for p in range(number):
@@ -72,12 +72,12 @@ def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, 
         if t == comes:
             schedule(calendar, p, math.inf)
             left[p] = 0.0
-            mass = gas.masses[swarm.kind[p]]
-            books[0, 4] -= mass * swarm.vz[p]
-            books[2, 4] += 1.0
-            flies = not touch(p, 0.0, swarm, gas, reservoir, state, rotates, True)
+            mass = gas.masses[columns.kind[p]]
+            counters[0, 4] -= mass * columns.vz[p]
+            counters[2, 4] += 1.0
+            flies = not touch(p, 0.0, columns, gas, reservoir, state, rotates, True)
             if not flies:
-                strike(p, swarm, reservoir)
+                strike(p, columns, reservoir)
                 left[p] = _GONE
                 water.hole[water.holes[0]] = p
                 water.holes[0] += 1
@@ -92,16 +92,16 @@ def pool_step(start, dt, ceiling, top, key, swarm, grid, gas, box, walls, desk, 
             left[p] = 0.0
             x = place(gas.radius, box.length_x, box.inverse_x, state)
             y = place(gas.radius, box.length_y, box.inverse_y, state)
-            emit(p, x, y, gas.radius, 0.0, swarm, gas, reservoir, state, rotates, True)
+            emit(p, x, y, gas.radius, 0.0, columns, gas, reservoir, state, rotates, True)
         else:
             rain_out(reservoir)
         if flies:
-            books[0, 4] += gas.masses[swarm.kind[p]] * swarm.vz[p]
+            counters[0, 4] += gas.masses[columns.kind[p]] * columns.vz[p]
             here = ceiling + rise * t
-            bounce(p, start + t, dt - t, here, swarm, gas, box, walls, state, books, left, rotates, True, True)
-            find_cell(p, per_x, per_y, per_z, swarm, grid, gas, box)
+            bounce(p, start + t, dt - t, here, columns, gas, box, walls, state, counters, left, rotates, True, True)
+            find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
             if left[p] > 0.0:
                 schedule(calendar, p, dt - left[p])
         leaves = t + wait(evaporation_rate(reservoir), state)
         rains = next_rain(t, reservoir, state)
-    fill_holes(number, swarm, left, water, rotates)
+    fill_holes(number, columns, left, water, rotates)

@@ -101,38 +101,38 @@ def _draw(number, thread, tries, first, order):
 
 
 @kernel
-def _fetch(swarm, i):
+def _fetch(columns, i):
     """Fetch what a try will need: at many molecules memory is what takes the time."""
-    prefetch(swarm.vx, i)
-    prefetch(swarm.vy, i)
-    prefetch(swarm.vz, i)
+    prefetch(columns.vx, i)
+    prefetch(columns.vy, i)
+    prefetch(columns.vz, i)
 
 
 @kernel
-def _weigh(i, j, swarm, gas, mixed):
+def _weigh(i, j, columns, gas, mixed):
     """Return half the reduced mass of a pair [mass], and the shares of both in a change of their relative velocity."""
     if mixed:
-        one, other = gas.masses[swarm.kind[i]], gas.masses[swarm.kind[j]]
+        one, other = gas.masses[columns.kind[i]], gas.masses[columns.kind[j]]
         share = other / (one + other)
         return 0.5 * one * share, share, 1.0 - share
     return 0.25 * gas.mass, 0.5, 0.5
 
 
 @kernel
-def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates, mixed):
+def _meet(number, thread, tries, state, columns, fastest, gas, exchange, rotates, mixed):
     """Let pairs collide that are fast enough; return how many did."""
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
     one, other = tries.one[thread], tries.other[thread]
     collisions = 0
-    many = swarm.x.size >= _MANY
+    many = columns.x.size >= _MANY
     for k in range(number):
         if many:
-            _fetch(swarm, np.int64(one[k + _AHEAD]))
-            _fetch(swarm, np.int64(other[k + _AHEAD]))
+            _fetch(columns, np.int64(one[k + _AHEAD]))
+            _fetch(columns, np.int64(other[k + _AHEAD]))
         i, j = one[k], other[k]
-        ux = swarm.vx[i] - swarm.vx[j]
-        uy = swarm.vy[i] - swarm.vy[j]
-        uz = swarm.vz[i] - swarm.vz[j]
+        ux = columns.vx[i] - columns.vx[j]
+        uy = columns.vy[i] - columns.vy[j]
+        uz = columns.vz[i] - columns.vz[j]
         square = ux * ux + uy * uy + uz * uz
         if bar[k] >= square:
             continue
@@ -143,14 +143,14 @@ def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates, 
         collisions += 1
         after = speed
         draw = word[k]
-        weight, share, other_share = _weigh(i, j, swarm, gas, mixed)
+        weight, share, other_share = _weigh(i, j, columns, gas, mixed)
         if rotates:
             state[0] = draw
             if exchange >= 1.0 or uniform(state) < exchange:
-                energy = weight * speed * speed + swarm.spin[i] + swarm.spin[j]
-                turns_i = gas.rotations[swarm.kind[i]] if mixed else gas.rotation
-                turns_j = gas.rotations[swarm.kind[j]] if mixed else gas.rotation
-                shared, swarm.spin[i], swarm.spin[j] = share_energy(energy, 3.0, turns_i, turns_j, state)
+                energy = weight * speed * speed + columns.spin[i] + columns.spin[j]
+                turns_i = gas.rotations[columns.kind[i]] if mixed else gas.rotation
+                turns_j = gas.rotations[columns.kind[j]] if mixed else gas.rotation
+                shared, columns.spin[i], columns.spin[j] = share_energy(energy, 3.0, turns_i, turns_j, state)
                 after = math.sqrt(shared / weight)
                 draw = state[0]
         # a point on the unit sphere, from one in the unit circle (Marsaglia 1972, doi:10.1214/aoms/1177692644)
@@ -165,27 +165,27 @@ def _meet(number, thread, tries, state, swarm, fastest, gas, exchange, rotates, 
         dx = a * around - ux
         dy = b * around - uy
         dz = (1.0 - 2.0 * square) * after - uz
-        swarm.vx[i] += share * dx
-        swarm.vy[i] += share * dy
-        swarm.vz[i] += share * dz
-        swarm.vx[j] -= other_share * dx
-        swarm.vy[j] -= other_share * dy
-        swarm.vz[j] -= other_share * dz
+        columns.vx[i] += share * dx
+        columns.vy[i] += share * dy
+        columns.vz[i] += share * dz
+        columns.vx[j] -= other_share * dx
+        columns.vy[j] -= other_share * dy
+        columns.vz[j] -= other_share * dz
     return collisions
 
 
 @kernel
-def collide(thread, sweep, key, swarm, grid, gas, exchange, desk, tries, rotates, mixed):
-    """Let a thread's share of the cells collide; count collisions on the desk.
+def collide(thread, sweep, key, columns, grid, gas, exchange, workspace, tries, rotates, mixed):
+    """Let a thread's share of the cells collide; count collisions on the workspace.
 
     ``sweep`` is half the cross section times the step over the volume of a cell [time/length], ``key`` a random word
     of this step.
     """
     collisions = 0
-    state = desk.random[thread]
+    state = workspace.random[thread]
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
     written = 0
-    for c in range(desk.cut[thread], desk.cut[thread + 1]):
+    for c in range(workspace.cut[thread], workspace.cut[thread + 1]):
         inside = np.int64(grid.first[c + 1]) - np.int64(grid.first[c])
         most = grid.fastest[c]
         seed = scramble(key + np.uint64(c) * _MIX_2)
@@ -201,13 +201,13 @@ def collide(thread, sweep, key, swarm, grid, gas, exchange, desk, tries, rotates
                 cell[at + k] = c
             written += min(left, _WIDE)
             if written >= _BATCH:
-                _draw(written, thread, tries, grid.first, swarm.order)
-                collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates, mixed)
+                _draw(written, thread, tries, grid.first, columns.order)
+                collisions += _meet(written, thread, tries, state, columns, grid.fastest, gas, exchange, rotates, mixed)
                 written = 0
             if left <= _WIDE:
                 break
             left -= _WIDE
             seed += np.uint64(_WIDE) * _STEP
-    _draw(written, thread, tries, grid.first, swarm.order)
-    collisions += _meet(written, thread, tries, state, swarm, grid.fastest, gas, exchange, rotates, mixed)
-    desk.met[thread, 0] = collisions
+    _draw(written, thread, tries, grid.first, columns.order)
+    collisions += _meet(written, thread, tries, state, columns, grid.fastest, gas, exchange, rotates, mixed)
+    workspace.met[thread, 0] = collisions

@@ -102,25 +102,25 @@ def fold(x, v, dt, mark, sign, low, high, per_length, last, stride, cell):
 
 
 @kernel
-def mirror(p, x, v, wall, low, high, mass, books):
+def mirror(p, x, v, wall, low, high, mass, counters):
     """Write down the hit of a molecule that has been folded, and fold it again until it is inside.
 
-    ``wall`` is the lower of the two walls; see `bounce` for the ``books``.
+    ``wall`` is the lower of the two walls; see `bounce` for the ``counters``.
 
     Examples
     --------
     One that flew four widths of its box ahead, and was folded once, hit walls four times:
 
-    >>> x, v, books = np.array([-2.5]), np.array([-4.0]), np.zeros((3, 6))
-    >>> mirror(0, x, v, 0, 0.0, 1.0, 1.0, books)
-    >>> float(x[0]), float(v[0]), books[2, :2]
+    >>> x, v, counters = np.array([-2.5]), np.array([-4.0]), np.zeros((3, 6))
+    >>> mirror(0, x, v, 0, 0.0, 1.0, 1.0, counters)
+    >>> float(x[0]), float(v[0]), counters[2, :2]
     (0.5, 4.0, array([2., 2.]))
     """
     there, speed = x[p], v[p]
     for _ in range(_MOST_HITS):
         hit = wall if speed > 0.0 else wall + 1
-        books[0, hit] += 2.0 * mass * abs(speed)
-        books[2, hit] += 1.0
+        counters[0, hit] += 2.0 * mass * abs(speed)
+        counters[2, hit] += 1.0
         if low <= there <= high:
             break
         there = 2.0 * (low if there < low else high) - there
@@ -153,7 +153,7 @@ def turn_round(x, v, dt, mark, length, per_length, last, stride, cell):
 
 
 @kernel
-def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_over, rotates, mixed, pool):
+def bounce(p, start, dt, ceiling, columns, gas, box, walls, state, counters, left_over, rotates, mixed, pool):
     """Fly one molecule through a step from wall to wall, or as far as a pool.
 
     Parameters
@@ -164,11 +164,11 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_ove
         Beginning and length of the step [time].
     ceiling
         Height of the ceiling at the beginning [length].
-    swarm, gas, box, walls
+    columns, gas, box, walls
         The molecules, what they are, their box.
     state
         State of the random numbers, moved on.
-    books : (3, wall)
+    counters : (3, wall)
         Outward impulse, energy given, hits: added to.
     left_over : (slot,)
         How much of the step is left to one that has come to a pool [time].
@@ -180,11 +180,11 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_ove
     A molecule that hits walls a thousand times in one step, as on a floor near absolute zero, loses the rest of
     that flight, and no energy.
     """
-    x, y, z = swarm.x[p], swarm.y[p], swarm.z[p]
-    vx, vy, vz = swarm.vx[p], swarm.vy[p], swarm.vz[p]
-    spin = swarm.spin[p] if rotates else 0.0
-    mass = gas.masses[swarm.kind[p]] if mixed else gas.mass
-    rotation = gas.rotations[swarm.kind[p]] if mixed else gas.rotation
+    x, y, z = columns.x[p], columns.y[p], columns.z[p]
+    vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
+    spin = columns.spin[p] if rotates else 0.0
+    mass = gas.masses[columns.kind[p]] if mixed else gas.mass
+    rotation = gas.rotations[columns.kind[p]] if mixed else gas.rotation
     radius = gas.radius
     high_x, high_y = box.length_x - radius, box.length_y - radius
     piston = walls.piston[1] if walls.law[5] == PISTON else 0.0
@@ -240,15 +240,15 @@ def bounce(p, start, dt, ceiling, swarm, gas, box, walls, state, books, left_ove
             y = high_y if high else radius
         else:
             z = ceiling + piston * (dt - left) - radius if high else radius
-        books[0, wall] += -mass * change if high else mass * change
-        books[1, wall] += 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
-        books[2, wall] += 1.0
-    swarm.x[p] = _back_inside(x, radius, high_x, box.length_x, box.inverse_x)
-    swarm.y[p] = _back_inside(y, radius, high_y, box.length_y, box.inverse_y)
-    swarm.z[p] = _back_inside(z, radius, top, box.length_z, box.inverse_z)
-    swarm.vx[p], swarm.vy[p], swarm.vz[p] = vx, vy, vz
+        counters[0, wall] += -mass * change if high else mass * change
+        counters[1, wall] += 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
+        counters[2, wall] += 1.0
+    columns.x[p] = _back_inside(x, radius, high_x, box.length_x, box.inverse_x)
+    columns.y[p] = _back_inside(y, radius, high_y, box.length_y, box.inverse_y)
+    columns.z[p] = _back_inside(z, radius, top, box.length_z, box.inverse_z)
+    columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
     if rotates:
-        swarm.spin[p] = spin
+        columns.spin[p] = spin
 
 
 @kernel

@@ -63,7 +63,7 @@ def push_apart(x, radius, low, high, turn, rounds, gap):
     Returns
     -------
     int
-        0 as soon as nobody overlaps any more.
+        0 as soon as no molecules overlap any more.
 
     Notes
     -----

@@ -1,7 +1,7 @@
 """A glance at eight neighbours at once, which tells who of them is within reach.
 
-Most molecules are near nobody, and it is most of the work of a step to find that out. The processor compares
-eight single-precision numbers in one instruction; what it finds is a hint, which exact arithmetic then judges.
+Most molecules have no neighbour within reach, and to find that out is most of the work of a step. The processor
+compares eight single-precision numbers in one instruction; what it finds is a hint, which exact arithmetic then judges.
 """
 
 import llvmlite.ir as ir
