@@ -83,5 +83,5 @@ def test_the_theory_of_molecules_without_volume_is_barometric(ideal, plane):
         for dataset in (hard, roomless)
     ]
     assert heights[1] < 0.99 * heights[0]
-    assert "take no room" in facts(ideal, **settings)["exaggeration"]
+    assert "without excluded volume" in facts(ideal, **settings)["exaggeration"]
     assert "take no room" not in facts(**settings)["exaggeration"]
