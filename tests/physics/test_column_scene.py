@@ -1,4 +1,4 @@
-"""The scene of the column: in a plane, and with an engine whose molecules take no room from each other.
+"""The scene of the column: in a plane, and with an engine whose molecules have no excluded volume.
 
 Means allow 4 standard errors from 20 blocks: a false alarm once in 1 500 per comparison for a fresh seed (there are
 some 90 here), and never for these.
@@ -27,7 +27,7 @@ def facts(engine=engines.EXACT, **settings):
 
 @pytest.fixture
 def ideal(monkeypatch):
-    """Return an engine that says of itself that its molecules take no room."""
+    """Return an engine that says of itself that its molecules have no excluded volume."""
     each = engines.Engine("roomless", "molecules without volume", lambda: ParcelSet, ideal=True)
     monkeypatch.setattr(engine_choice, "ENGINES", {**engines.ENGINES, each.name: each})
     return engines.EngineChoice(each)
@@ -84,4 +84,4 @@ def test_the_theory_of_molecules_without_volume_is_barometric(ideal, plane):
     ]
     assert heights[1] < 0.99 * heights[0]
     assert "without excluded volume" in facts(ideal, **settings)["exaggeration"]
-    assert "take no room" not in facts(**settings)["exaggeration"]
+    assert "excluded volume" not in facts(**settings)["exaggeration"]

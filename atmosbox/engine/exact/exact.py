@@ -226,13 +226,13 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                         cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
                         start = (cell + c % cells.number_z) * cells.stride
                         if np.int64(row[start]) + 1 >= cells.stride:
-                            return Status.ROW_FULL
+                            return Status.ROW_FULL.value
                         append(row, start, i)
         for i in range(gas.molecules.size):
             if modes.phases and math.isinf(gas.molecules[i].clock):
                 continue
             plan(i, now, motion_at(i, now, gas, modes), gas, modes)
-        return Status.DONE
+        return Status.DONE.value
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
@@ -257,8 +257,13 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def advance(gas, until, most):
-        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
-        return proceed(gas, until, most, modes)
+        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many.
+
+        The status leaves compiled code as a plain number: to make an enum of it is Python's work, in which a signal
+        that has arrived meanwhile would raise its exception at a place where none can be.
+        """
+        status, done = proceed(gas, until, most, modes)
+        return status.value, done
 
     @kernel(entry=True)
     def overlap(gas):

@@ -219,7 +219,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
             if done - checked >= CHECK_EVERY:
                 _, t = next_event(gas.calendar)
                 if piled_up(min(t, due), done - checked, gas):
-                    return Status.STALLED, done
+                    return Status.STALLED.value, done
                 checked = done
             j = -1
             t = due
@@ -229,7 +229,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
                 if min(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops:
                     status, j = _merge(i, j, t, gas, drops, reservoir, modes)
                     if status != Status.DONE:
-                        return status, done
+                        return status.value, done
                     _renew(t, gas, drops, reservoir)
                 else:
                     if np.int64(gas.molecules[i].kind) >= modes.drops:
@@ -238,12 +238,12 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
             elif status == Status.BUSY:
                 continue
             elif status != Status.DONE or due > until:
-                return status, done
+                return status.value, done
             else:
                 status, j = _emit(due, gas, drops, reservoir, modes)
                 if status != Status.DONE:
-                    return status, done
+                    return status.value, done
             plan(j, t, motion_at(j, t, gas, modes), gas, modes)
-        return Status.BUSY, done
+        return Status.BUSY.value, done
 
     return begin, advance

@@ -206,7 +206,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
             if done - checked >= CHECK_EVERY:
                 _, t = next_event(gas.calendar)
                 if piled_up(min(t, due), done - checked, gas):
-                    return Status.STALLED, done
+                    return Status.STALLED.value, done
                 checked = done
             if modes.pool and status == Status.MEETS_LIQUID:
                 i, t = next_event(gas.calendar)
@@ -215,17 +215,17 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
             if status == Status.BUSY:
                 continue
             if status != Status.DONE or due > until:
-                return status, done
+                return status.value, done
             if clock[_MAY_MEET] == due:
                 _may_meet(due, gas, reservoir, modes)
                 _next_meeting(due, gas, reservoir, modes)
             elif clock[_LEAVES] == due:
                 status = _emit(due, gas, reservoir, modes)
                 if status != Status.DONE:
-                    return status, done
+                    return status.value, done
             else:
                 rain_out(reservoir)
                 renew(due, gas.tallies.random, reservoir)
-        return Status.BUSY, done
+        return Status.BUSY.value, done
 
     return begin, advance
