@@ -59,7 +59,7 @@ def say(text: str) -> None:
 
 def tell(text: str) -> None:
     """Write a line that is not the result to stderr."""
-    with contextlib.suppress(OSError):  # nobody may be left to hear it
+    with contextlib.suppress(OSError):  # no reader may be left
         _write(sys.stderr, text)
 
 

@@ -82,7 +82,7 @@ def page(
     sentences : list of list of str
         For each panel, the numbers that stand under its title.
     small, heading : str
-        What is written under and over the panels; an empty heading takes no room.
+        What is written under and over the panels; an empty heading takes no space.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def frame(pen: Pen, small: str, heading: str, look: Theme) -> None:
     pen : Pen
         The pen of the page.
     small, heading : str
-        What is written under and over the panels; an empty heading takes no room.
+        What is written under and over the panels; an empty heading takes no space.
     look : Theme
         How large.
 

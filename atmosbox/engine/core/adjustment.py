@@ -99,7 +99,7 @@ class Adjustable(Account):
     def set_gravity(self, gravity: float) -> None:
         """Let gravity be another from now on.
 
-        Nobody moves in that moment, but all are higher up or lower down in energy; the ledger has it as
+        No molecule moves in that moment, but all are higher up or lower down in energy; the ledger has it as
         `gravity_work`.
 
         Parameters

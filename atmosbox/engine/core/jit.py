@@ -99,7 +99,7 @@ def _homes_of_caches() -> list[Path]:
 
 
 def _is_ours(folder: Path) -> bool:
-    """Tell whether nobody else can put a file into a folder: what is kept there is loaded and run."""
+    """Tell whether no other user can put a file into a folder: what is kept there is loaded and run."""
     if not hasattr(os, "getuid"):
         return True
     about = folder.lstat()

@@ -299,7 +299,7 @@ class Parcel(Adjustable):
 
     @property
     def ideal(self) -> bool:
-        """Whether molecules take no room from each other, so that the pressure is n kT."""
+        """Whether molecules have no excluded volume, so that the pressure is n kT."""
         return not (self._collisions and self._diameter.any())
 
     # ------------------------------------------------------------------ what moves it

@@ -14,7 +14,7 @@ Testing all pairs would cost the square of their number. Bird's *no time counter
 
 of them and accepts each with probability :math:`c / c_{max}`, which is the same. A collision keeps the
 momentum and energy of its pair to rounding and turns the relative velocity to any direction, as spheres do
-whose impact parameter is random. Molecules take no room: the gas is ideal.
+whose impact parameter is random. Molecules have no excluded volume: the gas is ideal.
 
 Random numbers are keyed by seed, step and cell: no cell's depend on what happens elsewhere, and so the
 run is the same for any number of threads.

@@ -107,7 +107,7 @@ class DsmcParcel(MarchingParcel):
 
     @property
     def ideal(self) -> bool:
-        """Whether the pressure is n kT: it is, for molecules take no room."""
+        """Whether the pressure is n kT: it is, for there is no excluded volume."""
         return True
 
     def resolution(self) -> Resolution:

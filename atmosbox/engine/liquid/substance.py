@@ -135,7 +135,7 @@ class Mist(Liquid):
 
 @dataclass(frozen=True)
 class Pool(Liquid):
-    """The floor of the box is the surface of the liquid, which itself takes no room."""
+    """The floor of the box is the surface of the liquid, whose volume is neglected."""
 
 
 @dataclass(frozen=True)
