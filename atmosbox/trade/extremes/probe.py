@@ -161,7 +161,7 @@ def swept(new: Box, speed: float) -> Probe:
     def read(run: GuardedRun) -> Reading:
         box = new(run)
         where = box.snapshot().position[:, 2]
-        run.advance(box, 3.0 / speed)  # nobody who was hit can have come back from the floor
+        run.advance(box, 3.0 / speed)  # no molecule that was hit can have come back from the floor
         carried = 2.0 * speed**2 * int(np.sum(where > box.ceiling))
         return Reading("work over the energy of the molecules swept up", box.work / carried, 1.0, 1e-9)
 
