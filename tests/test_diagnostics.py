@@ -8,6 +8,7 @@ import pytest
 
 from atmosbox.errors import EngineError
 from atmosbox.file.dataset import dataset, headline_variables
+from atmosbox.file.netcdf import read, write
 
 TIMES = {"elapsed_time": [1.0, 2.0, 3.0]}
 
@@ -78,6 +79,21 @@ def test_time_is_a_float_in_the_unit_of_the_scene_and_no_date():
 def test_a_coordinate_must_rise(times):
     with pytest.raises(ValueError, match="elapsed_time does not rise"):
         dataset({"air_temperature": [1.0, 2.0, 3.0]}, {"elapsed_time": times}, {})
+
+
+def test_what_is_measured_on_the_way_can_be_drawn_along_the_pressure_and_the_height_of_the_parcel(tmp_path):
+    frames = {
+        "parcel_temperature": [288.0, 280.0, 270.0],
+        "parcel_pressure": [1e5, 9e4, 8e4],
+        "parcel_height": [0.0, 900.0, 1900.0],
+    }
+    made = dataset(frames, TIMES, {"atmosbox_parameters": "{}"})
+    for run in (made, read(write(made, tmp_path / "run.nc"))):
+        assert {"parcel_pressure", "parcel_height"} <= set(run.parcel_temperature.coords)
+        (line,) = run.parcel_temperature.plot(y="parcel_pressure")
+        assert line.get_ydata().tolist() == frames["parcel_pressure"]
+    with pytest.raises(EngineError, match="parcel_pressure is not finite"):
+        dataset({"parcel_pressure": [1e5, np.nan, 8e4]}, TIMES, {})
 
 
 def test_only_a_coordinate_can_be_given_as_one():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from atmosbox.file.declaration import SUFFIXES, Variable, derived
-from atmosbox.file.variables import variable
+from atmosbox.file.variables import VARIABLES, variable
 
 PATH = Variable("molecule_position", ("elapsed_time", "molecule", "axis"), "m", "position of the molecule", dtype="f4")
 HEIGHT = Variable("height", ("height",), "m", "height of the middle of the layer", "height", axis="Z", positive="up")
@@ -35,7 +35,7 @@ def test_a_companion_has_the_name_of_its_parent_with_the_suffix_and_its_dimensio
     ("name", "standard_name", "unit"),
     [
         ("air_pressure_se", "air_pressure standard_error", "Pa"),
-        ("air_pressure_theory", "air_pressure", "Pa"),
+        ("air_pressure_theory", None, "Pa"),
         ("air_pressure_tolerance", None, "Pa"),
         ("air_pressure_count", "number_of_observations", "1"),
         ("number_density_se", None, "m-3"),
@@ -86,3 +86,10 @@ def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_mega
         "shuffle": True,
         "chunksizes": chunks,
     }
+
+
+def test_a_standard_name_stands_at_one_variable_so_that_it_is_found_without_a_doubt():
+    names = [each.standard_name for each in VARIABLES.values() if each.standard_name]
+    assert len(names) > 10
+    assert sorted(names) == sorted(set(names))
+    assert all(variable(f"{name}_theory").standard_name is None for name in VARIABLES)

@@ -222,7 +222,8 @@ def _with(run: xr.Dataset, held: dict[str, xr.Variable], headlines: Iterable[_He
             if name in held or name in run.variables:
                 raise ValueError(f"the headline {name} has the name of a variable")
             held[name] = entry
-    whole = run.assign(held)
+    places = [name for name in held if name in VARIABLES and VARIABLES[name].coordinate]
+    whole = run.assign(held).set_coords(places)
     for parent, entry in whole.variables.items():
         companions = [f"{parent}{suffix}" for suffix in SUFFIXES if f"{parent}{suffix}" in whole.variables]
         if companions:

@@ -32,7 +32,7 @@ class Variable:
     long_name
         What it is, in words.
     standard_name
-        Its name in the CF standard name table, if that has one; none is invented.
+        Its name in the CF standard name table, if that has one and no other variable has it; none is invented.
     cell_methods
         How a value stands for its cell, for example ``elapsed_time: mean``.
     dtype
@@ -43,6 +43,9 @@ class Variable:
         Whether a temperature is a difference of two, and not one on the scale of a thermometer.
     axis, positive
         CF's marks of a vertical coordinate.
+    coordinate
+        Whether it is an auxiliary coordinate: a place, such as the pressure at which the parcel is, along which the
+        others can be drawn.
     comment
         What else a reader must know.
     flags
@@ -68,6 +71,7 @@ class Variable:
     difference: bool = False
     axis: str | None = None
     positive: str | None = None
+    coordinate: bool = False
     comment: str | None = None
     flags: tuple[str, ...] = ()
 
@@ -136,9 +140,9 @@ def derived(parent: Variable, suffix: str) -> Variable:
     'closed-form answer for the pressure of the air on the walls'
     """
     name, words = parent.name + suffix, parent.long_name
-    plain = replace(parent, name=name, cell_methods=None, ledger=False, comment=None, dtype="f8")
+    plain = replace(parent, name=name, cell_methods=None, ledger=False, comment=None, dtype="f8", coordinate=False)
     if suffix == "_theory":
-        return replace(plain, long_name=f"closed-form answer for the {words}")
+        return replace(plain, long_name=f"closed-form answer for the {words}", standard_name=None)
     plain = replace(plain, positive=None, difference=True)
     if suffix == "_tolerance":
         return replace(plain, long_name=f"allowed deviation from theory of the {words}", standard_name=None)

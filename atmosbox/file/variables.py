@@ -4,6 +4,10 @@ A variable's name, dimensions, unit and CF names stand in `VARIABLES` and nowher
 ``_se``, ``_count``, ``_theory`` or ``_tolerance`` needs no entry of its own: `variable` derives it from its
 parent, as the standard error, the number of samples, the closed-form answer or the deviation allowed. What a
 declaration says is told in :mod:`atmosbox.file.declaration`.
+
+A CF standard name stands at one variable only, so that a program that asks a file for ``air_temperature`` by that
+name finds one answer: what was measured in the whole box. What is of a part of it, of its environment or of
+theory says so in its ``long_name`` alone.
 """
 
 from __future__ import annotations
@@ -67,7 +71,7 @@ VARIABLES: dict[str, Variable] = {
                 cell_methods=_POINT),
     **_declared((*_TIME, "wall"), ("heat_from_wall", "J", "heat given to the molecules by the wall"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
-    **_declared((*_TIME, "wall"), ("wall_pressure", "Pa", "pressure of the air on the wall", "air_pressure"),
+    **_declared((*_TIME, "wall"), ("wall_pressure", "Pa", "pressure of the air on the wall"),
                 cell_methods=_MEAN),
     **_declared(_TIME, ("air_temperature_noise", "K", "expected scatter of a thermometer of so few molecules"),
                 difference=True),
@@ -75,27 +79,26 @@ VARIABLES: dict[str, Variable] = {
     # A parcel that is lifted
     **_declared(
         _TIME,
-        ("parcel_temperature", "K", "temperature of the parcel", "air_temperature"),
-        ("parcel_pressure", "Pa", "pressure of the parcel", "air_pressure"),
+        ("parcel_temperature", "K", "temperature of the parcel"),
         ("parcel_potential_temperature", "K", "potential temperature of the parcel, reduced to 1000 hPa",
          "air_potential_temperature"),
         cell_methods=_POINT,
     ),
-    **_declared(_TIME, ("parcel_height", "m", "height of the parcel above the ground", "height"),
-                positive="up"),
+    **_declared(_TIME, ("parcel_pressure", "Pa", "pressure of the parcel"), positive="down", ledger=True,
+                coordinate=True),
+    **_declared(_TIME, ("parcel_height", "m", "height of the parcel above the ground"), positive="up", ledger=True,
+                coordinate=True),
     **_declared(
         _TIME,
-        ("environment_temperature", "K", "temperature of the environment", "air_temperature"),
+        ("environment_temperature", "K", "temperature of the environment"),
         ("environment_dew_point_temperature", "K", "dewpoint of the environment", "dew_point_temperature"),
-        ("environment_virtual_temperature", "K", "virtual temperature of the environment",
-         "virtual_temperature"),
+        ("environment_virtual_temperature", "K", "virtual temperature of the environment"),
         ("parcel_virtual_temperature", "K", "virtual temperature of the parcel, without the weight of its droplets",
          "virtual_temperature"),
         ("parcel_buoyancy", "m s-2", "buoyancy of the parcel"),
-        ("environment_pressure", "Pa", "pressure of the environment", "air_pressure"),
-        ("adiabat_temperature", "K", "temperature of the adiabat at this pressure", "air_temperature"),
-        ("dry_air_adiabat_temperature", "K", "temperature of the adiabat of dry air at this pressure",
-         "air_temperature"),
+        ("environment_pressure", "Pa", "pressure of the environment"),
+        ("adiabat_temperature", "K", "temperature of the adiabat at this pressure"),
+        ("dry_air_adiabat_temperature", "K", "temperature of the adiabat of dry air at this pressure"),
     ),
     **_declared(
         _TIME,
@@ -136,8 +139,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(
         _TIME,
-        ("gas_temperature", "K", "temperature of air and vapour by all their energy, rotation included",
-         "air_temperature"),
+        ("gas_temperature", "K", "temperature of air and vapour by all their energy, rotation included"),
         ("liquid_saturation_vapor_pressure", "Pa", "saturation vapour pressure at the temperature of the liquid"),
         cell_methods=_MEAN,
     ),
@@ -153,15 +155,15 @@ VARIABLES: dict[str, Variable] = {
         ("height",),
         ("number_density", "m-3", "number of molecules in a cubic metre of the layer"),
         ("air_density", "kg m-3", "density of the layer", "air_density"),
-        ("layer_temperature", "K", "temperature of the layer", "air_temperature"),
-        ("layer_pressure", "Pa", "pressure of the layer", "air_pressure"),
+        ("layer_temperature", "K", "temperature of the layer"),
+        ("layer_pressure", "Pa", "pressure of the layer"),
         cell_methods="height: mean",
     ),
     **_declared(
         ("height",),
         ("number_density_barometric", "m-3", "number density by the barometric law"),
-        ("layer_pressure_barometric", "Pa", "pressure by the barometric law", "air_pressure"),
-        ("layer_temperature_standard", "K", "temperature of the standard atmosphere", "air_temperature"),
+        ("layer_pressure_barometric", "Pa", "pressure by the barometric law"),
+        ("layer_temperature_standard", "K", "temperature of the standard atmosphere"),
         cell_methods="height: mean",
     ),
     # Speeds, bin by bin

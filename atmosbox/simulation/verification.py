@@ -104,7 +104,7 @@ def verify(dataset: xr.Dataset) -> list[Check]:
     checks.append(Check("complete", status == "complete", what))
     bad = [
         str(name)
-        for name, values in dataset.data_vars.items()
+        for name, values in dataset.variables.items()
         if values.dtype.kind == "f" and np.isinf(values.values).any()
     ]
     checks.append(Check("finite", not bad, f"infinite numbers in {', '.join(bad)}" if bad else "no number is infinite"))

@@ -1,0 +1,91 @@
+"""Every Python line of a page runs: its fenced blocks, in order, in a folder that holds the files they name.
+
+Boxes hold few molecules, so that all pages take some seconds; nothing else of a block is changed.
+"""
+
+import re
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+import atmosbox
+from atmosbox import sweep
+from atmosbox.scene import engines
+from atmosbox.simulation import preparation, runner
+
+ROOT = Path(__file__).resolve().parents[1]
+FEW = 200
+
+
+def blocks(page):
+    """Return the Python blocks of a page, each with the line on which it begins."""
+    text = page.read_text(encoding="utf-8")
+    found = re.finditer(r"^```(?:python|py)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    return [(text[: match.start(1)].count("\n"), match.group(1)) for match in found]
+
+
+PAGES = [page for page in [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))] if blocks(page)]
+
+
+def execute(page, names):
+    """Run the blocks of a page, which share their names; a traceback has the line of the page."""
+    for line, block in blocks(page):
+        exec(compile("\n" * line + block, str(page), "exec", dont_inherit=True), names)
+
+
+@pytest.fixture
+def few(monkeypatch, tmp_path):
+    """Boxes of few molecules, in a folder of their own."""
+
+    def prepare(scene, settings, **options):
+        return preparation.prepare(scene, {**settings, "molecules": FEW}, **options)
+
+    monkeypatch.setattr(runner, "prepare", prepare)
+    monkeypatch.chdir(tmp_path)
+    yield
+    plt.close("all")
+
+
+def lifted():
+    atmosbox.run("lifting-dry", out="lifting-dry.nc")
+    return {}
+
+
+def swept():
+    plan = sweep.plan("condensation", ["temperature=-10degC:40degC:6"], settings={"molecules": FEW, "duration": "1 ns"})
+    sweep.sweep(plan, Path("condensation-sweep.nc"), jobs=1)
+    return {}
+
+
+def built():
+    """Return what a ``build`` has made of its settings where it makes a setup of them."""
+    page = {}
+    exec(blocks(ROOT / "docs/own-scene.md")[0][1], page)
+    settings = page["Settings"]()
+    setup = page["build"](settings, engines.EXACT)
+    return {"settings": settings, "parcel": setup.parcel, "scale": setup.scale}
+
+
+GIVEN = {"docs/netcdf.md": lifted, "docs/sweep.md": swept, "docs/own-scene.md": built}
+"""What a page takes for granted: files, or names."""
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_python_line_of_a_page_runs(page, few):
+    execute(page, GIVEN.get(page.relative_to(ROOT).as_posix(), dict)())
+
+
+def test_the_pages_with_python_are_found():
+    assert {"README.md", "index.md", "netcdf.md", "own-scene.md"} <= {page.name for page in PAGES}
+
+
+def test_a_broken_line_of_a_page_is_found_with_its_number(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(
+        "Text.\n\n```python\nx = 1\n```\n\nMore.\n\n```python\ny = x\nz = x.nothing\n```\n", encoding="utf-8"
+    )
+    with pytest.raises(AttributeError, match="nothing") as caught:
+        execute(page, {})
+    assert caught.traceback[-1].lineno + 1 == 11
+    assert str(caught.traceback[-1].path) == str(page)
