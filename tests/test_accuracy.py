@@ -21,7 +21,6 @@ import atmosbox
 from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli.expectation import expectation_lines
-from atmosbox.cli.report import headline_lines
 from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
@@ -30,6 +29,7 @@ from atmosbox.scene.headline import Headline
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
+from atmosbox.text.report import headline_lines
 from atmosbox.trade.tradeoff import Rung, timed_run
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import atmosbox
 from atmosbox import scenarios, version
-from atmosbox.cli import app, check, progress, report, table, terminal
+from atmosbox.cli import app, check, terminal
 from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.output_name import FIGURES
 from atmosbox.cli.request import gather
@@ -29,6 +29,7 @@ from atmosbox.file import netcdf as output
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Discs
 from atmosbox.simulation import runner
+from atmosbox.text import progress, report, table
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMANDS = ("list", "info", "run", "plot", "check")

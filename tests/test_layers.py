@@ -44,6 +44,7 @@ LAYERS = {
     "sweep": Layer("version errors file scenarios scene simulation", "numpy xarray", lazily="distributed"),
     "trade": Layer("engine errors theory file scenarios scene simulation", "numpy xarray"),
     "live": Layer("version engine errors theory file scene simulation page", "numpy websockets", lazily="xarray"),
+    "text": Layer("errors scene", "rich", lazily="simulation"),
     "cli": Layer("*", "numpy typer rich", lazily="numba xarray netCDF4 matplotlib metpy pint"),
     "__main__": Layer("cli"),
     "version": Layer("", lazily="simulation xarray"),

@@ -11,8 +11,8 @@ import typer
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Force, RunFile, Theme, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.progress import progress
 from atmosbox.cli.terminal import guarded, say
+from atmosbox.text.progress import progress
 
 
 class Film(StrEnum):

@@ -15,10 +15,10 @@ import typer
 
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Json, Verbose
-from atmosbox.cli.progress import progress
-from atmosbox.cli.table import table
 from atmosbox.cli.terminal import guarded, say, say_json, width
 from atmosbox.errors import PhysicsError, SettingError
+from atmosbox.text.progress import progress
+from atmosbox.text.table import table
 
 if TYPE_CHECKING:
     from atmosbox.trade.extremes import Finding

@@ -14,9 +14,9 @@ import typer
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Force, Json, Theme, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.table import digits, measurement, number, table, wrapped
 from atmosbox.cli.terminal import guarded, say, say_json, tell, width
 from atmosbox.errors import SettingError
+from atmosbox.text.table import digits, measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.cli.table import table, wrapped
 from atmosbox.simulation.accuracy import TARGETS, cost, said
+from atmosbox.text.table import table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline

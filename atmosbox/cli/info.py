@@ -7,16 +7,16 @@ from typing import Annotated
 
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Json, SceneName, Verbose
-from atmosbox.cli.table import story, table
 from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, width
+from atmosbox.text.table import story, table
 
 
 @app.command(epilog=examples("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json"))
 @guarded
 def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbose = False) -> None:
     """Show what a scene is about and what may be set."""
-    from atmosbox.cli.report import card_json, parameter_lines
     from atmosbox.simulation import runner
+    from atmosbox.text.report import card_json, parameter_lines
 
     with prints_to_stderr():
         card = runner.card(runner.prepare(scene, {}))

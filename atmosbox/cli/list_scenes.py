@@ -11,8 +11,8 @@ import typer
 
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Json, Verbose
-from atmosbox.cli.table import table
 from atmosbox.cli.terminal import guarded, say, say_json, width
+from atmosbox.text.table import table
 
 
 @app.command("list", epilog=examples("atmosbox list", "atmosbox list --names", "atmosbox list --json"))

@@ -27,11 +27,11 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.progress import progress
 from atmosbox.cli.request import gather
-from atmosbox.cli.table import table
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError
+from atmosbox.text.progress import progress
+from atmosbox.text.table import table
 
 if TYPE_CHECKING:
     from atmosbox.file.checkpoint import Checkpoint
@@ -102,7 +102,7 @@ def run(
             raise
     _say_outcome(outcome, prepared, path, quiet=quiet, as_json=as_json)
     if not outcome.ledger <= runner.LEDGER_LIMIT:
-        from atmosbox.cli.report import next_command
+        from atmosbox.text.report import next_command
 
         raise PhysicsError(
             f"The energy ledger of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
@@ -113,8 +113,8 @@ def run(
 def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: bool, as_json: bool) -> None:
     """Say what came out of a run that is complete."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
-    from atmosbox.cli.report import outcome_json, outcome_lines
     from atmosbox.simulation.runner import LEDGER_LIMIT
+    from atmosbox.text.report import outcome_json, outcome_lines
 
     if as_json:
         made = outcome_json(outcome, scene=prepared.scene, path=path, limit=LEDGER_LIMIT)
@@ -131,8 +131,8 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: boo
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:
     """Say what is about to be run, as the result of a dry run, else on stderr."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
-    from atmosbox.cli.report import setting_lines
     from atmosbox.simulation import runner
+    from atmosbox.text.report import setting_lines
 
     with prints_to_stderr():
         card = runner.card(prepared)
@@ -164,8 +164,8 @@ def _say_interrupted(
     stop: Interrupted, prepared: Prepared, checkpoint: Checkpoint, *, quiet: bool, as_json: bool
 ) -> None:
     """Say what is left of a run that was stopped, and how to look at it."""
-    from atmosbox.cli.report import next_command, outcome_json
     from atmosbox.simulation.runner import LEDGER_LIMIT
+    from atmosbox.text.report import next_command, outcome_json
 
     if stop.outcome is None:
         tell("stopped before the first frame was complete: nothing is kept")

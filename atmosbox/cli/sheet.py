@@ -11,9 +11,9 @@ import typer
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Engine, Force, SceneName, Seed, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import for_scene
-from atmosbox.cli.progress import progress
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import guarded, prints_to_stderr, say, tell
+from atmosbox.text.progress import progress
 
 
 class SheetFormat(StrEnum):

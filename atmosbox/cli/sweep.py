@@ -21,10 +21,10 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.progress import progress
-from atmosbox.cli.table import measurement, number, table, wrapped
 from atmosbox.cli.terminal import INTERRUPTED, guarded, prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
+from atmosbox.text.progress import progress
+from atmosbox.text.table import measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -156,8 +156,8 @@ def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
 
 def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
     """Say what came out."""
-    from atmosbox.cli.report import ledger_line, next_command
     from atmosbox.simulation.runner import LEDGER_LIMIT
+    from atmosbox.text.report import ledger_line, next_command
 
     if as_json:
         made = {"scene": grid.scene, "file": str(path), "runs": grid.runs, "computed": swept.computed}
@@ -225,8 +225,8 @@ def _headlines(dataset: xr.Dataset) -> list[str]:
 
 def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
     """Say what is kept of a sweep that was stopped, and how to go on."""
-    from atmosbox.cli.report import next_command
     from atmosbox.file.output_path import part_path
+    from atmosbox.text.report import next_command
 
     if stop.swept is None:
         tell("stopped before the first run was complete: nothing is kept")

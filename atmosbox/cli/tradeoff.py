@@ -12,10 +12,10 @@ import typer
 from atmosbox.cli.application import app, examples, typed
 from atmosbox.cli.option import Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.progress import progress
-from atmosbox.cli.table import measurement, number, table, wrapped
 from atmosbox.cli.terminal import INTERRUPTED, guarded, say, say_json, tell, width
 from atmosbox.errors import SettingError
+from atmosbox.text.progress import progress
+from atmosbox.text.table import measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     import xarray as xr

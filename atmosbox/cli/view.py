@@ -11,9 +11,9 @@ import typer
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import Force, Verbose, out_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.progress import progress
 from atmosbox.cli.terminal import guarded, say
 from atmosbox.errors import SettingError
+from atmosbox.text.progress import progress
 
 MOST = 2
 

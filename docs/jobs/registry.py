@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from atmosbox.cli.table import measurement
+from atmosbox.text.table import measurement
 
 DOCS = Path(__file__).resolve().parents[1]
 ROOT = DOCS.parent

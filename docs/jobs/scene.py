@@ -5,9 +5,9 @@ from functools import partial
 from jobs.registry import Findings, job
 
 from atmosbox import scenarios
-from atmosbox.cli.report import headline_lines
 from atmosbox.plot import figure
 from atmosbox.simulation import runner
+from atmosbox.text.report import headline_lines
 
 WIDTH = 100
 DOTS_PER_INCH = 100

@@ -8,7 +8,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 
-from atmosbox.cli.terminal import tell
+from atmosbox.text.stream import tell
 
 DELAY = 1.0  # seconds after which it is worth saying what takes so long
 SILENT = ("running", "done")

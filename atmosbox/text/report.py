@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.cli.table import digits, measurement, number, table, wrapped
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.quantity import phrase
+from atmosbox.text.table import digits, measurement, number, table, wrapped
 
 if TYPE_CHECKING:
     from atmosbox.scene.headline import Headline

@@ -1,0 +1,89 @@
+"""What goes to which stream: the result to stdout, everything else to stderr."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import sys
+from collections.abc import Mapping
+from typing import Any, TextIO
+
+from atmosbox.errors import AtmosboxError
+
+__all__ = ["say", "say_json", "tell"]
+
+
+def say(text: str) -> None:
+    r"""Write a line or more of the result to stdout.
+
+    A reader that has seen enough and closed the pipe changes nothing about what the command does.
+
+    Parameters
+    ----------
+    text
+        The lines, without the last line's end.
+
+    Raises
+    ------
+    AtmosboxError
+        If stdout cannot be written, for instance because it goes to a disk that is full.
+
+    Examples
+    --------
+    >>> say("two\nlines")
+    two
+    lines
+    """
+    try:
+        _write(sys.stdout, text)
+    except BrokenPipeError:
+        # What Python still flushes at its end must go somewhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        sys.stdout = None  # so that Python's end does not fail once more
+        raise AtmosboxError(f"The result cannot be written to stdout: {error.strerror}.") from error
+
+
+def tell(text: str) -> None:
+    """Write a line that is not the result to stderr."""
+    with contextlib.suppress(OSError):  # no reader may be left
+        _write(sys.stderr, text)
+
+
+def _write(stream: TextIO | None, text: str) -> None:
+    """Write a line and flush it; what the encoding lacks is spelled out."""
+    if stream is None:  # the shell closed it
+        return
+    line = f"{text}\n"
+    try:
+        line.encode(stream.encoding or "utf-8", stream.errors or "strict")
+    except UnicodeEncodeError:
+        spelled = line.replace("±", "+-").replace("σ", " sigma")
+        line = spelled.encode(stream.encoding, "backslashreplace").decode(stream.encoding)
+    stream.write(line)
+    stream.flush()
+
+
+def say_json(content: Mapping[str, Any]) -> None:
+    """Write the result as one JSON object; a number that is not finite becomes null.
+
+    Examples
+    --------
+    >>> say_json({"value": float("nan"), "unit": "K"})
+    {
+      "value": null,
+      "unit": "K"
+    }
+    """
+    say(json.dumps(_finite(content), indent=2, allow_nan=False))
+
+
+def _finite(content: Any) -> Any:
+    """Return what JSON can hold of a value."""
+    if isinstance(content, Mapping):
+        return {str(name): _finite(value) for name, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [_finite(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content
