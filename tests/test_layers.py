@@ -51,8 +51,8 @@ LAYERS = {
 }
 """One row a room; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
-DOORS = ("jit", "window")
-"""The files that may speak to the compiler: the decorator, and what is written in single instructions."""
+DOORS = ("compiler", "window")
+"""The files that may speak to the compiler: what compiles kernels, and what is written in single instructions."""
 
 
 class Imports(ast.NodeVisitor):
@@ -133,7 +133,7 @@ def refusal(importer, name, late):
     else:
         thing, allowed = target[0], layer.libraries.split()
         if home == "engine" and thing in ("numba", "llvmlite") and importer[-1] not in DOORS:
-            return "only engine/core/jit.py calls numba"
+            return "only engine/core/compiler.py calls numba"
     if thing in layer.lazily.split():
         return None if late else "only inside a function"
     if thing in allowed or (target[0] == "atmosbox" and "*" in allowed):
@@ -220,7 +220,7 @@ def test_a_planted_violation_is_found(tmp_path, place, source):
 @pytest.mark.parametrize(
     ("place", "source"),
     [
-        ("atmosbox/engine/core/jit.py", "import numba\nfrom numba.core import config\nimport llvmlite.ir"),
+        ("atmosbox/engine/core/compiler.py", "import numba\nfrom numba.core import config\nimport llvmlite.ir"),
         (
             "atmosbox/engine/exact/exact.py",
             "import math\nimport numpy as np\nfrom . import cells\nfrom ..core.state import A",

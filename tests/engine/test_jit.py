@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import atmosbox.engine
-from atmosbox.engine.core import jit
+from atmosbox.engine.core import compiler, jit
 
 ENGINE = Path(atmosbox.engine.__file__).parent
 
@@ -114,7 +114,7 @@ def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
     blocked.write_text("", encoding="utf-8")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
     assert jit.cache_folder() is None
-    monkeypatch.setattr(jit, "_CACHE", None)
+    monkeypatch.setattr(compiler, "_CACHE", None)
 
     @jit.kernel(entry=True)
     def twice(x):

@@ -19,5 +19,6 @@
 `measure`       what is read off the molecules
 `course`        how far along its planned ascent a parcel is
 `lift`          a piston that follows a pressure
-`jit`           the only file that calls numba
+`jit`           how a kernel is compiled when it is first called, and where its machine code is kept
+`compiler`      what numba makes of it
 """

@@ -1,4 +1,7 @@
-"""The only file that calls numba: how kernels are compiled, and where their machine code is kept.
+"""How kernels are compiled: when they are first called, and not before; and where their machine code is kept.
+
+What asks for a scene's facts, or for one of its schedules, does not wait for numba: `compiler`, the file that
+loads it, is imported when the first kernel is called.
 
 numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel
 calls *in another file*, or a constant imported from one, and the old machine code is served. Here the
@@ -8,6 +11,7 @@ atmosbox from outside its folder, which a test enforces.
 """
 
 import ast
+import functools
 import hashlib
 import os
 import stat
@@ -15,26 +19,17 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
-import llvmlite.ir as ir
-import numba
 import numpy as np
-from numba.core import caching, cgutils, config, types
-from numba.extending import intrinsic
 
-__all__ = ["COMPILED", "POSITIVE", "cache_folder", "kernel", "prange", "prefetch", "use_threads"]
+__all__ = ["COMPILED", "POSITIVE", "Kernel", "cache_folder", "kernel", "prefetch", "use_threads"]
 
 POSITIVE = (1 << 40) - 1
 """``index & POSITIVE`` tells the compiler that an index is not negative: that saves Python's counting from the end."""
 
-COMPILED = not config.DISABLE_JIT
+COMPILED = not int(os.environ.get("NUMBA_DISABLE_JIT") or 0)
 """Whether kernels are compiled (they are not under ``NUMBA_DISABLE_JIT=1``, which the coverage run uses)."""
-
-prange = numba.prange
-"""The ``range`` of a loop whose turns a kernel that is ``parallel`` shares among threads."""
-
-_SHARED: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
 def _code_of(source: str) -> str:
@@ -64,9 +59,11 @@ def source_digest(folder: Path | None = None, memory: Path | None = None) -> str
     memory
         A folder that remembers the digests of sources seen before: to parse them all takes a tenth of a second.
     """
+    from importlib.metadata import version as version_of
+
     folder = folder or Path(__file__).parents[1]
     sources = {file.relative_to(folder).as_posix(): file.read_bytes() for file in sorted(folder.rglob("*.py"))}
-    version = f"{numba.__version__} {sys.version}"
+    version = f"{version_of('numba')} {sys.version}"
     written = _digest([version, *(f"{name} {hashlib.sha256(text).hexdigest()}" for name, text in sources.items())])
     known = memory / f"{written}.digest" if memory else None
     if known and known.is_file():
@@ -127,37 +124,44 @@ def cache_folder() -> Path | None:
     return None
 
 
-_CACHE = cache_folder()
+class Kernel:
+    """A function of the engine that is compiled when it is first called, by Python or by the code of another one.
 
+    Whatever else is asked of it (``stats``, ``signatures``) is answered by what numba made of it.
 
-class _Locator(caching._CacheLocator):  # type: ignore[misc]
-    """Tells numba where to keep a kernel: in a folder whose name stands for all sources, so that no file has a date."""
+    Parameters
+    ----------
+    function
+        The function as it is written.
+    compile
+        Makes what runs.
+    """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._folder = str(_CACHE / function.__module__)  # type: ignore[operator]
+    def __init__(self, function: Callable[..., Any], compile: Callable[[], Any]) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func = function
+        self._compile = compile
 
-    @classmethod
-    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> "_Locator":
-        return cls(py_func)
+    @functools.cached_property
+    def compiled(self) -> Any:
+        """What runs."""
+        return self._compile()
 
-    def get_cache_path(self) -> str:
-        return self._folder
+    @property
+    def _numba_type_(self) -> Any:
+        """What numba sees where the code of another kernel names this one."""
+        from atmosbox.engine.core import compiler
 
-    def get_source_stamp(self) -> str:
-        return ""
+        return compiler.type_of(self.compiled)
 
-    def get_disambiguator(self) -> str:
-        return ""
+    def __call__(self, *arguments: Any) -> Any:
+        """Run it."""
+        return self.compiled(*arguments)
 
-
-class _KeptKernel(caching.CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes: ClassVar = [_Locator]
-
-
-class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
-    """The machine code of a kernel on disk."""
-
-    _impl_class = _KeptKernel
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # what copies or pickles objects asks for what nobody has
+            raise AttributeError(name)
+        return getattr(self.compiled, name)
 
 
 def kernel(
@@ -189,57 +193,39 @@ def kernel(
 
     Returns
     -------
-    callable
-        The compiled function.
+    Kernel
+        The function, compiled when it is first called.
     """
     if function is None:
         return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel)
     if not COMPILED:
         return np.errstate(all="ignore")(function)  # as compiled code is silent
-    options = _SHARED | {"_nrt": allocates, "parallel": parallel}
-    if early:
-        return numba.njit(inline="always", **options)(function)
-    if not entry:
-        return numba.njit(forceinline=True, **options)(function)
-    compiled = numba.njit(nogil=True, **options)(function)
-    if _CACHE is not None:
-        compiled._cache = _KeptKernels(function)
-    return compiled
+
+    def compile() -> Any:
+        from atmosbox.engine.core import compiler
+
+        return compiler.compiled(function, entry=entry, early=early, allocates=allocates, parallel=parallel)
+
+    return Kernel(function, compile)
 
 
 def use_threads(number: int) -> None:
     """Let parallel kernels run on so many threads, or on as many as this machine has."""
     if COMPILED:
-        numba.set_num_threads(min(number, config.NUMBA_NUM_THREADS))
+        from atmosbox.engine.core import compiler
+
+        compiler.use_threads(number)
+
+
+def prefetch(array, index):
+    """Ask the processor to bring ``array[index]`` (first axis) into its cache; uncompiled code does nothing."""
 
 
 if COMPILED:
 
-    @intrinsic
-    def prefetch(typing_context, array, index):
-        """Ask the processor to bring ``array[index]`` (first axis) into its cache."""
-        signature = types.void(array, types.int64)
+    def _prefetch() -> Any:
+        from atmosbox.engine.core import compiler
 
-        def generate(context, builder, signature, arguments):
-            values = context.make_array(signature.args[0])(context, builder, arguments[0])
-            place = cgutils.pointer_add(
-                builder,
-                values.data,
-                builder.mul(arguments[1], builder.extract_value(values.strides, 0)),
-            )
-            i32 = ir.IntType(32)
-            place = builder.bitcast(place, ir.IntType(8).as_pointer())
-            function = cgutils.get_or_insert_function(
-                builder.module,
-                ir.FunctionType(ir.VoidType(), [place.type, i32, i32, i32]),
-                "llvm.prefetch.p0",
-            )
-            builder.call(function, [place, i32(0), i32(3), i32(1)])
-            return context.get_dummy_value()
+        return compiler.prefetch
 
-        return signature, generate
-
-else:
-
-    def prefetch(array, index):
-        """Do nothing: there is no cache to warm in uncompiled code."""
+    prefetch = Kernel(prefetch, _prefetch)

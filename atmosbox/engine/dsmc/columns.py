@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.jit import kernel, prange
+from atmosbox.engine.core.compiler import prange
+from atmosbox.engine.core.jit import kernel
 
 __all__ = [
     "BLOCK",

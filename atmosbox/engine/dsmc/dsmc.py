@@ -32,7 +32,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.jit import kernel, prange
+from atmosbox.engine.core.compiler import prange
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.walls import SPECULAR
 from atmosbox.engine.dsmc.columns import (

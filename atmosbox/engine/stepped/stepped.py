@@ -32,8 +32,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from atmosbox.engine.core.compiler import prange
 from atmosbox.engine.core.hard_sphere import share_energy
-from atmosbox.engine.core.jit import kernel, prange
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.pair import nearest_image, reach, resolve
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes
