@@ -11,6 +11,7 @@
 `inputs`        what is refused
 `packing`       which part of the space molecules fill
 `account`       what a box has counted, and whether its energy adds up
+`saved_state`   the state of a box as named arrays and plain numbers, for copies and files
 `adjustment`    what may be changed while time passes
 `parcel`        the box: what it is given, holds and tells; what may move its piston
 `box`           the box, as the kernels know it

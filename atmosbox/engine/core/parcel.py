@@ -3,7 +3,7 @@
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import ClassVar, Protocol, TypedDict
+from typing import Any, ClassVar, Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,7 @@ from atmosbox.engine.core.account import Array, Snapshot
 from atmosbox.engine.core.adjustment import Adjustable
 from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, whole
 from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.saved_state import SavedState, pack, restore, save, unpack
 from atmosbox.engine.core.state import Tallies
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls
 
@@ -175,7 +176,57 @@ class Parcel(Adjustable):
         name = type(self).__name__
         return f"<{name}: {self.number} molecules in {sides}, t = {self.time:.6g}, {self.contacts} contacts>"
 
+    # ------------------------------------------------------------------ copies, and states on disk
+
+    def __getstate__(self) -> Any:
+        """Return what a copy needs: `copy.deepcopy` and pickle give a box that goes on as this one would."""
+        return pack(vars(self))
+
+    def __setstate__(self, state: Any) -> None:
+        vars(self).update(unpack(*state))
+        self._find_kernels()
+
+    def state(self) -> SavedState:
+        """Return the state of the box as named arrays and plain numbers, for a file: see `saved_state`.
+
+        It holds all that changes while time passes, that of the driver included. What the box was made from is not
+        told apart from that: a box is made again in the same way before it is put into the state.
+
+        Raises
+        ------
+        RefusedError
+            If the driver holds something that is neither a number nor an array, nor made of such.
+
+        Examples
+        --------
+        >>> from atmosbox.engine import ParcelSet
+        >>> def pair():
+        ...     return ParcelSet([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
+        >>> first, second = pair(), pair()
+        >>> first.advance(1.0)
+        >>> second.restore(first.state())
+        >>> second.time, second.contacts
+        (1.0, 1)
+        """
+        return save(self)
+
+    def restore(self, state: SavedState) -> None:
+        """Put this box, which is made as the other one was, into a state of that one.
+
+        From then on it does what the other one did, bit for bit, on the same kind of processor.
+
+        Raises
+        ------
+        RefusedError
+            If the state is that of a box with other parts.
+        """
+        restore(self, state)
+        self._find_kernels()
+
     # ------------------------------------------------------------------ what each engine does its own way
+
+    def _find_kernels(self) -> None:
+        """Find the kernels that are compiled for a box like this one."""
 
     @abstractmethod
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:

@@ -10,6 +10,7 @@ Every thread takes a share of the molecules, one stretch of the columns. It coun
 the index follow those of the threads before it: the index is the same for any number of threads.
 """
 
+import functools
 import math
 from typing import Any, NamedTuple
 
@@ -262,6 +263,7 @@ def index_by_cell(cell, order, place, first, last):
         order[q] = p
 
 
+@functools.cache
 def new_gather(parallel: bool) -> Any:
     """Return the kernel that puts a column in another order, on one thread or on several."""
 

@@ -39,8 +39,7 @@ class DropParcelSet(MoistParcelSet):
 
     def _draw(self, speed: float) -> None:
         """Draw anew when the next molecule leaves a drop."""
-        begin = drop.specialise(self._modes)[0]
-        begin(self._gas(), self._drops, self._reservoir, self._now)
+        self._drop_begin(self._gas(), self._drops, self._reservoir, self._now)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write down the molecules of the gas, behind them those of the liquid, and at the end the drops."""
@@ -128,9 +127,9 @@ class DropParcelSet(MoistParcelSet):
         status, _ = self._drop_advance(self._gas(), self._drops, self._reservoir, until, _CHUNK)
         return Status(status)
 
-    def _lay_out(self) -> None:
-        super()._lay_out()
-        self._drop_advance = drop.specialise(self._modes)[1]
+    def _find_kernels(self) -> None:
+        super()._find_kernels()
+        self._drop_begin, self._drop_advance = drop.specialise(self._modes)
 
     def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Return centres [length], radii [length] and numbers of molecules of the drops there are now."""

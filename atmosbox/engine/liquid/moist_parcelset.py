@@ -62,8 +62,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _draw(self, speed: float) -> None:
         """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
-        begin = moist.specialise(self._modes)[0]
-        begin(self._gas(), self._reservoir, self._now, speed)
+        self._moist_begin(self._gas(), self._reservoir, self._now, speed)
 
     def _piston_turned(self) -> None:
         super()._piston_turned()
@@ -104,9 +103,9 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         status, _ = self._moist_advance(self._gas(), self._reservoir, until, _CHUNK)
         return Status(status)
 
-    def _lay_out(self) -> None:
-        super()._lay_out()
-        self._moist_advance = moist.specialise(self._modes)[1]
+    def _find_kernels(self) -> None:
+        super()._find_kernels()
+        self._moist_begin, self._moist_advance = moist.specialise(self._modes)
 
     def _next_time(self) -> float:
         return min(super()._next_time(), float(self._reservoir.clock.min()))

@@ -10,7 +10,7 @@ from atmosbox.engine.core.inputs import number, whole
 from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
-from atmosbox.engine.core.refusal import RefusedError, StalledError
+from atmosbox.engine.core.refusal import RefusedError, StalledError, shown
 from atmosbox.engine.core.state import KIND, Box, Kinds, Modes, aligned_records
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.stall import crushing_height, why_crushed
@@ -188,7 +188,7 @@ class SteppedParcel(MarchingParcel):
         self._made = np.zeros(1)
         self._total_mass = float(self._mass.sum())
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
-        self._kernel = specialise(self._modes, self._threads > 1)
+        self._find_kernels()
         if n:
             self._advance(0, 1, _LOOK)
             pairs = np.concatenate([self._pairs[part, : self._numbers[part, 0]] for part in range(self._threads)])
@@ -222,6 +222,9 @@ class SteppedParcel(MarchingParcel):
     def _renew(self) -> None:
         self._box = self._box._replace(gravity=self._gravity)  # every march is told how long a step is
         self._modes = self._modes._replace(gravity=self._gravity > 0.0)
+        self._find_kernels()
+
+    def _find_kernels(self) -> None:
         self._kernel = specialise(self._modes, self._threads > 1)
 
     def _march(self, steps: int) -> None:
@@ -274,5 +277,5 @@ class SteppedParcel(MarchingParcel):
 def _choice(value: Any, choices: dict[str, int], name: str) -> int:
     """Return the number of a choice, or refuse."""
     if not isinstance(value, str) or value not in choices:
-        raise RefusedError(f"{name} = {value!r} is unknown: give one of {', '.join(choices)}")
+        raise RefusedError(f"{name} = {shown(value)} is unknown: give one of {', '.join(choices)}")
     return choices[value]

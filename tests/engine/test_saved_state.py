@@ -1,0 +1,167 @@
+"""A copy of a box, and a box put back into a saved state, do what the original does, bit for bit."""
+
+import copy
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+from atmosbox.engine import (
+    Drops,
+    FollowPressure,
+    HeatBath,
+    Mist,
+    ParcelSet,
+    Periodic,
+    Piston,
+    Pool,
+    Ramp,
+    RefusedError,
+    Specular,
+    Substance,
+)
+from atmosbox.engine.classic.classic import ClassicParcel
+from atmosbox.engine.core.saved_state import SavedState
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.engine.dsmc.moist_dsmc_parcel import MoistDsmcParcel
+from atmosbox.engine.exact.reference import Reference
+from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
+
+WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
+SMOOTH = (Specular(),) * 6
+
+
+def gas(number=64, side=12.0, seed=5):
+    """Return the places, on a lattice, and the velocities of a gas."""
+    random = np.random.default_rng(seed)
+    site = np.stack(np.meshgrid(*[np.arange(5)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    return (random.permutation(site)[:number] + 0.5) * side / 5, random.normal(size=(number, 3))
+
+
+def lifted():
+    """Return what a gas under a piston is given that follows a falling pressure."""
+    follow = FollowPressure([0.0, 400.0], [0.036, 0.018], mean_free_time=2.0)
+    return {"length": (12.0,) * 3, "walls": (*SMOOTH[:5], Piston()), "driver": follow, "rotation": 2.0}
+
+
+BOXES = {
+    "column": lambda: ParcelSet(
+        *gas(), length=(12.0,) * 3, gravity=0.1, layers=4, rotation=2.0, rotational_energy=1.0,
+        walls=(Periodic(),) * 4 + (HeatBath(Ramp(1.0, 3.0, 0.0, 30.0)), Specular()),
+    ),
+    "mixture": lambda: ParcelSet(
+        *gas(), length=(12.0,) * 3, mass=[1.0, 3.0] * 32, diameter=[1.0, 0.2] * 32, walls=(Periodic(),) * 6
+    ),
+    "lift": lambda: ParcelSet(*gas(), **lifted()),
+    "mist": lambda: MoistParcelSet(*gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()),
+    "pool": lambda: MoistParcelSet(*gas(), length=(12.0,) * 3, liquid=Pool(WATER, number=40, kT=1.0)),
+    "drops": lambda: DropParcelSet(
+        *gas(60), length=(12.0,) * 3, mass=0.62, rotation=3.0,
+        liquid=Drops(WATER, number=8, kT=1.0, nuclei=5.0, position=((4.7, 4.7, 4.7), (7.1, 7.1, 7.1))),
+    ),
+    "stepped": lambda: SteppedParcel(*gas(), delta=0.01, **lifted()),
+    "dsmc": lambda: DsmcParcel(*gas(), threads=2, **lifted()),
+    "moist dsmc": lambda: MoistDsmcParcel(
+        *gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()
+    ),
+    "dsmc over a pool": lambda: MoistDsmcParcel(*gas(), length=(12.0,) * 3, liquid=Pool(WATER, number=40, kT=1.0)),
+    "strips": lambda: ClassicParcel(
+        gas()[0] * [1, 0, 1] + [0, 6, 0], gas()[1] * [1, 0, 1], length=(12.0,) * 3, planar=True
+    ),
+    "spheres": lambda: ClassicParcel(*gas(), length=(12.0,) * 3),
+}  # fmt: skip
+
+
+def through_pickle(box):
+    return pickle.loads(pickle.dumps(box))
+
+
+def through_a_file(box, make):
+    """Return another box in the state of this one; the state has been text and bytes meanwhile."""
+    state = box.state()
+    memory = {name: np.frombuffer(piece.tobytes(), np.uint8) for name, piece in state.memory.items()}
+    twin = make()
+    twin.restore(SavedState(json.loads(json.dumps(state.text)), memory))
+    return twin
+
+
+def bits(box):
+    """Return all that a box tells, as bytes."""
+    told = [*box.snapshot()[1:], box.wall_impulse, box.wall_heat, box.virial, box.ledger(), box.contacts, box.ceiling]
+    return box.time, b"".join(np.asarray(each).tobytes() for each in told)
+
+
+@pytest.mark.parametrize("name", BOXES)
+@pytest.mark.parametrize("how", ["copy.deepcopy", "pickle", "a file"])
+def test_a_copy_does_what_the_original_does(name, how):
+    make = BOXES[name]
+    box = make()
+    box.advance(20.0)
+    twin = {"copy.deepcopy": copy.deepcopy, "pickle": through_pickle, "a file": lambda b: through_a_file(b, make)}[how](
+        box
+    )
+    assert bits(twin) == bits(box)
+    then = bits(box)
+    twin.advance(60.0)
+    assert bits(box) == then, "the original has changed with its copy"
+    box.advance(60.0)
+    assert box.contacts > 0
+    assert twin.escaped() == 0
+    assert bits(twin) == bits(box)
+
+
+def test_a_copy_compiles_nothing():
+    box = BOXES["column"]()
+    box.advance(1.0)
+    known = [len(each.signatures) for each in (box._advance, box._place, box._replan)]
+    twin = copy.deepcopy(box)
+    twin.advance(2.0)
+    twin.set_gravity(0.2)
+    assert twin._advance is box._advance
+    assert [len(each.signatures) for each in (box._advance, box._place, box._replan)] == known
+
+
+def test_a_copy_can_be_changed_by_hand_as_the_original():
+    box = BOXES["lift"]()
+    box.advance(10.0)
+    twin = copy.deepcopy(box)
+    for each in (box, twin):
+        each._driver.course.lead(each.time, towards=2.0)
+        each.advance(30.0)
+    assert bits(twin) == bits(box)
+    assert twin._driver is not box._driver
+
+
+def test_the_reference_is_copied_whole():
+    one = Reference(*gas(12), length=(12.0,) * 3, walls=(*SMOOTH[:5], HeatBath(1.0)))
+    one.advance(1.0)
+    twins = copy.deepcopy(one), through_pickle(one)
+    events = [one.step() for _ in range(20)]
+    for twin in twins:
+        assert [twin.step() for _ in range(20)] == events
+        assert twin.velocity.tobytes() == one.velocity.tobytes()
+
+
+def test_a_driver_that_cannot_be_saved_is_named():
+    class Odd:
+        interval = 1.0
+
+        def __init__(self):
+            self.file = open(__file__, encoding="utf-8")  # noqa: SIM115
+
+        def velocity(self, parcel):
+            return 0.0
+
+    driver = Odd()
+    box = ParcelSet(*gas(), length=(12.0,) * 3, walls=(*SMOOTH[:5], Piston()), driver=driver)
+    with pytest.raises(RefusedError, match=r"_driver\.file"):
+        box.state()
+    driver.file.close()
+
+
+def test_a_state_is_not_taken_for_that_of_another_box():
+    with pytest.raises(RefusedError):
+        BOXES["spheres"]().restore(BOXES["lift"]().state())
