@@ -151,15 +151,21 @@ def test_cells_are_few_enough_and_slots_can_be_counted(made):
     assert grid.boundary.shape[2] <= 65_535
 
 
-def test_a_periodic_box_too_short_for_its_molecules_is_refused_and_one_just_long_enough_is_not():
-    walls = (True, False, False)
-    with pytest.raises(
-        RefusedError, match=r"periodic box of length 2.2 is too short.*diameter 1,.*longer than 2.2"
-    ) as told:
-        grid_of((2.2, 5.0, 5.0), [0.5], periodic=walls)
-    enough = float(str(told.value).rsplit(maxsplit=1)[-1])
-    grid = grid_of((enough * 1.0001, 5.0, 5.0), [0.5], periodic=walls)
-    assert grid.number[0] >= 3
+@pytest.mark.parametrize("axis", range(3))
+def test_a_periodic_box_of_two_diameters_is_lawful_and_a_shorter_one_is_refused(axis):
+    walls, sides = np.arange(3) == axis, np.full(3, 5.0)
+    sides[axis] = 2.0
+    grid = grid_of(sides, [0.5], periodic=tuple(walls), molecules=2)
+    assert grid.number[axis] == 3
+    assert grid.images
+    sides[axis] = 1.999
+    with pytest.raises(RefusedError, match=rf"along {'xyz'[axis]} is too short"):
+        grid_of(sides, [0.5], periodic=tuple(walls), molecules=2)
+
+
+@pytest.mark.parametrize("side", [2.0, 2.3, 3.0, 5.0, 50.0])
+def test_two_molecules_need_no_more_than_a_few_cells(side):
+    assert math.prod(grid_of((side,) * 3, [0.5], periodic=(True,) * 3, molecules=2).number) <= 64
 
 
 def test_points_need_no_more_than_the_fewest_cells():

@@ -521,3 +521,16 @@ def test_molecules_that_come_to_rest_on_a_floor_are_told_of():
     made = box("piston", number=3, driver=None, walls=cold, velocity=np.zeros((3, 3)), gravity=50.0)
     with pytest.raises(StalledError, match="z_low at kT = 1e-40 is too cold"):
         ParcelSet(**made).advance(1e4)
+
+
+@many_events
+def test_a_molecule_without_room_is_told_of_and_not_its_walls():
+    baths = (*SMOOTH[:4], HeatBath(1.0), HeatBath(1.0))
+    made = box("equal", number=1, walls=baths, length=(5.5, 5.5, 1.0), position=[[2.0, 2.0, 0.5]])
+    with pytest.raises(StalledError, match=r"length = 1 along z leaves a diameter of 1 no room"):
+        ParcelSet(**made).advance(1.0)
+
+
+def test_a_number_of_numpy_is_refused_as_any_other():
+    with pytest.raises(RefusedError, match=r"^until = nan is impossible"):
+        ParcelSet(**box("equal")).advance(np.float64("nan"))

@@ -46,9 +46,9 @@ FAMILIES = {
     "points, gravity, piston": Family(points=True, gravity=True, piston=True),
     "mixed": Family(mixed=True),
     "equal, periodic": Family(periodic="xyz", sides=(5.2, 6.0), numbers=CROWDS),
-    "mixed, periodic, rotation": Family(mixed=True, rotation=True, periodic="xyz", sides=(2.4, 4.0), numbers=CROWDS),
+    "mixed, periodic, rotation": Family(mixed=True, rotation=True, periodic="xyz", sides=(2.0, 3.9), numbers=CROWDS),
     "mixed, rotation, gravity, piston, periodic": Family(
-        mixed=True, gravity=True, rotation=True, periodic="xy", piston=True, sides=(2.4, 5.0), numbers=CROWDS
+        mixed=True, gravity=True, rotation=True, periodic="xy", piston=True, sides=(4.1, 6.0), numbers=CROWDS
     ),
 }
 

@@ -22,7 +22,7 @@ from atmosbox.engine.classic.classic_tally import Discs, Frame, Score
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, shown
 from atmosbox.engine.core.walls import PISTON
 
 __all__ = ["ClassicParcel", "Scheme"]
@@ -89,7 +89,7 @@ class ClassicParcel(MarchingParcel):
         **box: Unpack[Arrangement],
     ) -> None:
         if scheme is not None and scheme not in SCHEMES:
-            raise RefusedError(f"scheme = {scheme!r} is none of the classic ones: give {', '.join(SCHEMES)}")
+            raise RefusedError(f"scheme = {shown(scheme)} is none of the classic ones: give {', '.join(SCHEMES)}")
         self._wish = scheme
         self._delta = _positive(delta, "delta")
         self._dt = None if dt is None else _positive(dt, "dt")
@@ -201,7 +201,9 @@ class ClassicParcel(MarchingParcel):
                 return "spheres"
             return "strips" if alike else "lookahead"
         if self._wish != "spheres" and not self._planar:
-            raise RefusedError(f"scheme = {self._wish!r} is for a plane gas: choose 'spheres', or make planar true")
+            raise RefusedError(
+                f"scheme = {shown(self._wish)} is for a plane gas: choose 'spheres', or make planar true"
+            )
         if self._wish == "strips" and not alike:
             raise RefusedError("scheme = 'strips' is for equal discs: choose 'lookahead' for unequal ones")
         return self._wish
@@ -234,5 +236,5 @@ class ClassicParcel(MarchingParcel):
 def _positive(value: float, name: str) -> float:
     found = number(value, name, least=0.0)
     if not found > 0.0:
-        raise RefusedError(f"{name} = {value!r} is impossible: give a number above 0")
+        raise RefusedError(f"{name} = {shown(value)} is impossible: give a number above 0")
     return found

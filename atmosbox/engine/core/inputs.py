@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
 
 __all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "sum_of_squares", "whole"]
@@ -88,11 +88,12 @@ def number(value: Any, name: str, *, least: float = -math.inf, most: float = mat
     try:
         found = float(value)
     except (TypeError, ValueError):
-        raise RefusedError(f"{name} = {value!r} is not a number: give a number") from None
+        raise RefusedError(f"{name} = {shown(value)} is not a number: give a number") from None
     if math.isnan(found) or (math.isinf(found) and not infinite) or not least <= found <= most:
         limits = f"from {least:g}" + (f" to {most:g}" if math.isfinite(most) else " up")
         raise RefusedError(
-            f"{name} = {value!r} is impossible: give a finite number" + (f" {limits}" if math.isfinite(least) else "")
+            f"{name} = {shown(value)} is impossible: give a finite number"
+            + (f" {limits}" if math.isfinite(least) else "")
         )
     return found
 
@@ -107,7 +108,7 @@ def whole(value: Any, name: str, *, least: int) -> int:
     """
     found = number(value, name, least=least)
     if found != math.floor(found):
-        raise RefusedError(f"{name} = {value!r} is not a whole number: give one from {least} up")
+        raise RefusedError(f"{name} = {shown(value)} is not a whole number: give one from {least} up")
     return int(value)
 
 
@@ -124,7 +125,7 @@ def sides_of(length: Any) -> Array:
     except (TypeError, ValueError):
         sides = np.zeros(0)
     if sides.shape != (3,) or not (np.isfinite(sides).all() and (sides > 0).all()):
-        raise RefusedError(f"length = {length!r}: give three sides, each above 0")
+        raise RefusedError(f"length = {shown(length)}: give three sides, each above 0")
     return sides
 
 

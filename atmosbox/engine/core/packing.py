@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from atmosbox.engine.core.refusal import PackingError, RefusedError
+from atmosbox.engine.core.refusal import PackingError, RefusedError, shown
 
 __all__ = ["packing_fraction", "refuse_impossible"]
 
@@ -74,7 +74,7 @@ def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bo
     atmosbox.engine.core.refusal.PackingError: a molecule of diameter 3 does not fit into a box of side 2
     """
     if not (np.isfinite(sides).all() and (sides > 0.0).all()):
-        raise RefusedError(f"length = {sides.tolist()}: give three sides, each above 0")
+        raise RefusedError(f"length = {shown(sides)}: give three sides, each above 0")
     if not (np.isfinite(sigma).all() and (sigma >= 0.0).all()):
         raise RefusedError("diameters must be finite and 0 or above")
     if sigma.size == 0:

@@ -5,12 +5,14 @@ overlap. The law itself stands in a file of its own, `hard_sphere`. A second law
 a mode in `reach`, `approach`, `predict` and `resolve`; nothing else of the engine changes.
 """
 
+import math
+
 import numpy as np
 
 from atmosbox.engine.core.hard_sphere import earlier_root, quadratic, resolve_contact
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["approach", "nearest_along", "nearest_image", "predict", "reach", "resolve"]
+__all__ = ["approach", "nearest_along", "nearest_image", "predict", "reach", "resolve", "soonest_image"]
 
 
 @kernel
@@ -49,6 +51,45 @@ def nearest_image(rx, ry, rz, box, modes):
         if not (modes.gravity or modes.piston):
             rz = nearest_along(rz, box.length_z, box.inverse_z)
     return rx, ry, rz
+
+
+@kernel
+def soonest_image(rx, ry, rz, ux, uy, uz, distance, box):
+    """Return how long it takes a molecule to meet another or one of its periodic images [time], ``inf`` for never.
+
+    Along each periodic axis there are two of them within a box length, the nearest and the one on the other side.
+
+    Parameters
+    ----------
+    rx, ry, rz, ux, uy, uz
+        Position relative to the nearest image [length] and relative velocity [length/time].
+    distance
+        At which they meet, `reach` [length].
+    box
+        The box.
+
+    Examples
+    --------
+    The nearest image is one above, and is missed; the one below is three away:
+
+    >>> from atmosbox.engine.core.box import new_box
+    >>> box = new_box(
+    ...     np.full(3, 4.0), (True,) * 3, moving=False, gravity=0.0, planar=False, exchange=1.0, stall=1.0
+    ... )
+    >>> soonest_image(0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 1.0, box)
+    1.0
+    """
+    soonest = math.inf
+    for a in range(2 if box.inverse_x > 0.0 else 1):
+        x = rx - a * math.copysign(box.length_x, rx) if a > 0 else rx
+        for b in range(2 if box.inverse_y > 0.0 else 1):
+            y = ry - b * math.copysign(box.length_y, ry) if b > 0 else ry
+            for c in range(2 if box.inverse_z > 0.0 else 1):
+                z = rz - c * math.copysign(box.length_z, rz) if c > 0 else rz
+                discriminant, slope, gap = approach(x, y, z, ux, uy, uz, distance)
+                if discriminant > 0.0 and slope < 0.0:
+                    soonest = min(soonest, predict(discriminant, slope, gap))
+    return soonest
 
 
 @kernel(early=True)

@@ -11,7 +11,11 @@
      +-- CoarseStepWarning   a time step so long that collisions come late
 """
 
-__all__ = ["CoarseStepWarning", "PackingError", "RefusedError", "StalledError"]
+from typing import Any
+
+import numpy as np
+
+__all__ = ["CoarseStepWarning", "PackingError", "RefusedError", "StalledError", "shown"]
 
 
 class RefusedError(ValueError):
@@ -28,3 +32,19 @@ class StalledError(RuntimeError):
 
 class CoarseStepWarning(UserWarning):
     """A time step so long that molecules overlap deeply before they collide."""
+
+
+def shown(value: Any) -> str:
+    """Return how a refused value is written in a sentence: a number of numpy like any other number.
+
+    Examples
+    --------
+    >>> shown(np.float64(1.0)), shown((np.float64(1.0), 2)), shown(np.zeros(2)), shown("wide")
+    ('1.0', '(1.0, 2)', '[0.0, 0.0]', "'wide'")
+    """
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if type(value) in (list, tuple):
+        inside = ", ".join(map(shown, value))
+        return f"({inside})" if type(value) is tuple else f"[{inside}]"
+    return repr(value)

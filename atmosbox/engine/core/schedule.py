@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, shown
 
 __all__ = ["Constant", "Ramp", "Schedule", "Steps", "as_schedule"]
 
@@ -105,7 +105,9 @@ def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) 
         try:
             corners = Constant(float(value)).points()
         except (TypeError, ValueError):
-            raise RefusedError(f"{name} = {value!r} is not a number: give a number, Constant, Ramp or Steps") from None
+            raise RefusedError(
+                f"{name} = {shown(value)} is not a number: give a number, Constant, Ramp or Steps"
+            ) from None
     if not corners:
         raise RefusedError(f"{name} = {value!r} has no points: give at least one (time, value)")
     for time, number in corners:

@@ -15,7 +15,7 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import RefusedError, shown
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 from atmosbox.engine.core.state import Walls
 
@@ -122,7 +122,7 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
                 accommodation = math.nan
             if not 0.0 <= accommodation <= 1.0:
                 raise RefusedError(
-                    f"the accommodation of wall {name} = {wall.accommodation!r} is no number from 0 to 1"
+                    f"the accommodation of wall {name} = {shown(wall.accommodation)} is no number from 0 to 1"
                 )
             corners = as_schedule(wall.kT, f"kT of wall {name}")
         elif isinstance(wall, Piston):
@@ -134,9 +134,11 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
             except (TypeError, ValueError):
                 velocity = math.nan
             if not math.isfinite(velocity):
-                raise RefusedError(f"velocity of the piston = {wall.velocity!r} is not finite: give a finite number")
+                raise RefusedError(
+                    f"velocity of the piston = {shown(wall.velocity)} is not finite: give a finite number"
+                )
         else:
-            raise RefusedError(f"wall {name} = {wall!r} is no law: give Specular, Periodic, HeatBath or Piston")
+            raise RefusedError(f"wall {name} = {shown(wall)} is no law: give Specular, Periodic, HeatBath or Piston")
         laws.law.append(law)
         laws.accommodation.append(accommodation)
         laws.corners.append(corners or [(0.0, 1.0)])

@@ -12,7 +12,7 @@ from atmosbox.engine.core.inputs import number, sum_of_squares, whole
 from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
-from atmosbox.engine.core.refusal import RefusedError, StalledError
+from atmosbox.engine.core.refusal import RefusedError, StalledError, shown
 from atmosbox.engine.dsmc.columns import Columns, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
 from atmosbox.engine.dsmc.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
 from atmosbox.engine.dsmc.pairing import new_tries
@@ -164,7 +164,9 @@ class DsmcParcel(MarchingParcel):
         )
         sides = self._open_sides()
         if self._room and not min(sides) > 0.0:
-            raise RefusedError(f"length = {tuple(self._sides)} leaves no room between walls: make the diameter smaller")
+            raise RefusedError(
+                f"length = {shown(tuple(self._sides))} leaves no room between walls: make the diameter smaller"
+            )
         for axis in range(3):
             if self._periodic[axis]:
                 np.mod(position[:, axis], self._sides[axis], out=position[:, axis])
@@ -181,8 +183,7 @@ class DsmcParcel(MarchingParcel):
         self._round = _REGROUP_MANY if room >= _MANY else _REGROUP
         self._workers = self._threads if room >= _THREADED else 1
         self._lay_out(sides)
-        self._march_kernel = specialise(self._rotates, self._workers > 1, self._wet, self._pool)
-        self._gather = new_gather(self._workers > 1)
+        self._find_kernels()
         fastest = self._fastest()
         self._grid.fastest[:] = _FASTEST * fastest
         path = min(self._path(math.prod(sides)), *sides)
@@ -218,6 +219,10 @@ class DsmcParcel(MarchingParcel):
         self._grid = new_grid(numbers, self._workers)
         self._workspace = new_workspace(self._room, math.prod(numbers), self._workers)
         self._tries = new_tries(self._workers)
+
+    def _find_kernels(self) -> None:
+        self._march_kernel = specialise(self._rotates, self._workers > 1, self._wet, self._pool)
+        self._gather = new_gather(self._workers > 1)
 
     def _march(self, steps: int) -> None:
         first, last = self._step, self._step + steps

@@ -36,6 +36,7 @@ from atmosbox.engine.core.state import Cells, aligned_records
 __all__ = ["ROW", "Grid", "append", "choose_grid", "new_cells", "overlapped", "remove", "size_classes", "slot_at"]
 
 _MARGIN = 1.0 + 1e-7
+_FEW = 4
 ROW = 32
 
 
@@ -48,6 +49,7 @@ class Grid(NamedTuple):
     span: NDArray[np.int32]
     last_slot: tuple[int, int, int]
     spanning: bool
+    images: bool
 
 
 def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -112,7 +114,7 @@ def choose_grid(
     Raises
     ------
     RefusedError
-        If a periodic axis is too short for its molecules, who would meet their own images.
+        If a periodic axis is so short that two molecules could touch each other on both sides at once.
     """
     biggest = float(radii.max()) * _MARGIN
     # the most cells along an axis that are wider than a molecule
@@ -125,20 +127,31 @@ def choose_grid(
     width = _widths(np.array([length[0], length[1], filled]), molecules / occupancy, planar)
     number = []
     spanning = not exact_radius
+    images = False
     for axis in range(3):
         n = max(1, min(int(length[axis] / width[axis]), 20_000))
         if planar and axis == 1:
             n = 1
         elif periodic[axis]:
-            room = 0.5 * length[axis] - 2.0 * biggest
-            if room <= 0.05 * length[axis]:
+            diameter = 2.0 * float(radii.max())
+            if length[axis] < 2.0 * diameter:
                 raise RefusedError(
-                    f"a periodic box of length {length[axis]:.6g} is too short for molecules of diameter "
-                    f"{2 * biggest:.6g}, which would meet their own images: make it longer than {4.5 * biggest:.6g}"
+                    f"length = {length[axis]:.6g} along {'xyz'[axis]} is too short for molecules of diameter "
+                    f"{diameter:.6g} on a periodic axis, where two would touch each other on both sides at once: make "
+                    f"it {2.0 * diameter:.6g} or more"
                 )
-            n = max(n, math.ceil(length[axis] / room))
+            # Two that share a cell are within its width and a diameter of each other. Where that is less than half
+            # the box, only the nearest image of the other can be met; where it would take many cells for few
+            # molecules, three will do, for then no sphere reaches round the box into a cell that it is already in,
+            # and the nearest image and the one on the other side are looked at.
+            room = 0.5 * length[axis] - 2.0 * biggest
+            least = math.ceil(length[axis] / room) if room > 0.0 else math.inf
+            if least > max(n, _FEW):
+                images = True
+                least = 3
+            n = max(n, int(least))
             if exact_radius and n > most[axis]:
-                n = max(math.ceil(length[axis] / room), int(most[axis]))
+                n = max(int(least), int(most[axis]))
             spanning = spanning or n > most[axis]
         elif exact_radius and n > most[axis]:
             n = max(1, int(most[axis]))
@@ -162,7 +175,7 @@ def choose_grid(
             first[size, axis, : len(f)] = f
             span[size, axis, : len(s)] = s
     last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
-    return Grid((number[0], number[1], number[2]), boundary, first, span, (last[0], last[1], last[2]), spanning)
+    return Grid((number[0], number[1], number[2]), boundary, first, span, (last[0], last[1], last[2]), spanning, images)
 
 
 def _widths(length: NDArray[np.float64], number: float, planar: bool) -> NDArray[np.float64]:

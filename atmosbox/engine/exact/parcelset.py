@@ -21,13 +21,12 @@ from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, choose_grid, new_cells
 from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crushed, why_stalled
+from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 
 __all__ = ["ParcelSet"]
 
 _CHUNK = 200_000
 _OVERLAP = 1e-9
-_WHY_CROWDED = "a molecule that evaporates finds no place among the others: lower the packing fraction"
 
 
 class ParcelSet(Parcel):
@@ -167,7 +166,7 @@ class ParcelSet(Parcel):
                     self._grow_rows()
                 elif status in (Status.STALLED, Status.CROWDED):
                     self._now = min(self._next_time(), stop)
-                    raise StalledError(why_stalled(self) if status == Status.STALLED else _WHY_CROWDED)
+                    raise StalledError(why_stalled(self) if status == Status.STALLED else why_crowded(self))
                 elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_crushed(self))
@@ -263,8 +262,9 @@ class ParcelSet(Parcel):
             phases=not isinstance(self._present, slice),
             pool=bool(self._walls.law[4] == POOL),
             drops=self._first_drop,
+            images=grid.images,
         )
-        place, self._advance, self._replan, self._overlap = specialise(self._modes)
+        self._find_kernels()
         self._events = aligned_records(n, EVENT)
         slot = np.zeros((0, 3), np.uint16)
         if n:
@@ -273,9 +273,12 @@ class ParcelSet(Parcel):
         while True:
             self._cells = new_cells(grid, slot, stride)
             self._calendar = new_calendar(n)
-            if place(self._gas(), self._now) != Status.ROW_FULL:
+            if self._place(self._gas(), self._now) != Status.ROW_FULL:
                 return
             stride *= 2
+
+    def _find_kernels(self) -> None:
+        self._place, self._advance, self._replan, self._overlap = specialise(self._modes)
 
     def _mean_kT(self) -> float:
         if not self.number:

@@ -11,7 +11,7 @@ import numpy as np
 
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
-from atmosbox.engine.core.pair import approach, nearest_image, predict, reach
+from atmosbox.engine.core.pair import approach, nearest_image, predict, reach, soonest_image
 from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.cells import overlapped
 
@@ -77,6 +77,12 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
         ux = at.vx - wx
         uy = at.vy - wy
         uz = at.vz - wz
+        if modes.images:
+            after = soonest_image(rx, ry, rz, ux, uy, uz, distance, gas.box)
+            if after < soonest and i != j:
+                soonest = after
+                partner = j
+            continue
         discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
         # most pairs miss: all else stands inside this one branch; a pair that overlaps by rounding and parts has b >= 0
         if discriminant > 0.0:

@@ -9,7 +9,9 @@ from atmosbox.engine.core.packing import packing_fraction
 from atmosbox.engine.core.parcel import Parcel
 from atmosbox.engine.core.walls import WALL_NAMES
 
-__all__ = ["crushing_height", "is_jammed", "why_crushed", "why_stalled"]
+_JAMMED, _JAMMED_PLANE = 0.63, 0.82  # random close packing, of spheres and of discs
+
+__all__ = ["crushing_height", "is_jammed", "why_crowded", "why_crushed", "why_stalled"]
 
 
 def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *, planar: bool) -> float:
@@ -39,6 +41,15 @@ def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.floa
     return kinetic > 1e6 * (usual + 2.0 * parcel.number * max(baths, default=0.0))
 
 
+def why_crowded(parcel: Parcel) -> str:
+    """Return the sentence on a molecule of the liquid for which the box has no place."""
+    filled = packing_fraction(list(parcel.length), parcel.diameter)
+    return (
+        f"a molecule that evaporates finds no place among the {parcel.number} others, which fill {filled:.3g} of the "
+        "box: take fewer molecules, a smaller diameter, or a larger box"
+    )
+
+
 def why_crushed(parcel: Parcel) -> str:
     """Return the sentence on a piston that has come down too far."""
     return (
@@ -51,11 +62,26 @@ def why_stalled(parcel: Parcel) -> str:
     """Return the sentence on why events pile up, naming what to change."""
     if parcel.piston_velocity < 0.0:
         return why_crushed(parcel)
+    sides, widest = parcel.length, float(parcel.diameter.max(initial=0.0))
+    tight = [axis for axis in range(3) if not parcel.periodic[axis] and not (parcel.planar and axis == 1)]
+    tight = [axis for axis in tight if sides[axis] - widest < 1e-6 * widest]
+    filled = packing_fraction(list(sides), parcel.diameter, planar=parcel.planar)
     kT = parcel.wall_kT()
     coldest = min((w for w in range(6) if math.isfinite(kT[w])), key=lambda w: kT[w], default=None)
     mean = 2.0 * parcel.energy()[0] / (3.0 * parcel.number)
     gravity = parcel.gravity
-    if coldest is not None and (kT[coldest] <= 1e-6 * mean or kT[coldest] < 1e-100 or gravity > 0.0):
+    if tight:
+        axis = tight[0]
+        cause = (
+            f"length = {sides[axis]:.6g} along {'xyz'[axis]} leaves a diameter of {widest:.6g} no room to move: "
+            "make the box longer, or the diameter smaller"
+        )
+    elif filled > (_JAMMED_PLANE if parcel.planar else _JAMMED):
+        cause = (
+            f"the {parcel.number} molecules fill {filled:.3g} of the box and are jammed: take fewer molecules, a "
+            "smaller diameter, or a larger box"
+        )
+    elif coldest is not None and (kT[coldest] <= 1e-6 * mean or kT[coldest] < 1e-100 or gravity > 0.0):
         cause = (
             f"wall {WALL_NAMES[coldest]} at kT = {kT[coldest]:.3g} is too cold: "
             f"warm it{f', or reduce the gravity of {gravity:.3g}' if gravity else ''}"
@@ -63,5 +89,8 @@ def why_stalled(parcel: Parcel) -> str:
     elif gravity > 0.0:
         cause = f"molecules come to rest: reduce the gravity of {gravity:.3g}, or give them more energy"
     else:
-        cause = "molecules are jammed: lower the packing fraction"
+        cause = (
+            f"molecules are jammed somewhere, although they fill no more than {filled:.3g} of the box: take fewer "
+            "molecules, or a smaller diameter"
+        )
     return f"events pile up without end at t = {parcel.time:.6g}: {cause}"
