@@ -1,17 +1,23 @@
 """Why the air does not fly away, and why it thins with height.
 
-Three thousand molecules in a tall column with real gravity. Each falls freely between collisions, and yet
-the column neither falls down nor leaves: density and pressure decrease with height by the barometric law,
-by a factor e every 8.4 km, while the temperature is the same everywhere. The molecules hit the floor,
-and the force on the floor minus that on the ceiling is the weight of the air.
+Three thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the
+floor. They fall, and within some minutes density and pressure decrease with height by the barometric law, by a factor
+e every 8.4 km; the means leave these minutes out. Each molecule falls freely between collisions, and yet the column
+neither lies down on the floor nor leaves. The molecules hit the floor, and the force on the floor minus that on the
+ceiling is the weight of the air.
+
+The temperature comes out the same at all heights, because nothing stirs or heats the air. A
+molecule that rises loses speed, but only fast ones get high, and both effects cancel. A real atmosphere is heated
+from below and stirred, and therefore cools with height; left alone for long enough it would become isothermal like
+this one. The figure shows both.
 
 Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
 smooth, a smooth ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each
-molecule stands for some 10^34 real ones and is hundreds of metres wide, so that it meets others within a
-stated share of the scale height (the Knudsen number): the theory beside the barometric law counts their
-excluded volume. With ``plane`` the air is discs in a plane, and a slab one scale height thick stands for
-the third dimension. A real atmosphere is stirred and heated from below, and therefore cools with height;
-left alone for long enough it would become isothermal like this one.
+molecule stands for some 10^34 real ones and is a hundred metres wide or more, so that it meets others within a
+stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it becomes for
+molecules so wide: they exclude volume from each other, and no centre comes nearer to floor or ceiling than its radius,
+so that a part of the lowest and of the highest layer is empty. With ``plane`` the air is discs in a plane, and a slab
+one scale height thick stands for the third dimension.
 """
 
 import math
@@ -45,7 +51,12 @@ if TYPE_CHECKING:
 title = "A column of atmosphere"
 FRAMES = 240
 SETTLE = 40
+"""Frames left out of the means at least; after a start out of equilibrium more, see `Column.settling`."""
+LEAST = 40
+"""Fewer settled frames than that give no headline."""
 LAYERS = 25
+FILLED = 3.0
+"""How many scale heights of the column hold molecules at a uniform start."""
 
 ladder = (
     Series("exact", "duration", (50, 100, 200, 400)),
@@ -75,7 +86,12 @@ class Settings(SceneSettings):
         "what the floor is: warm, or smooth so that no heat passes",
         choices=("heat-bath", "isolated"),
     )
-    start: str = setting("equilibrium", "", "where the molecules start", choices=("equilibrium", "bottom"))
+    start: str = setting(
+        "uniform",
+        "",
+        "where the molecules start: spread evenly, in the profile of equilibrium, or near the floor",
+        choices=("uniform", "equilibrium", "bottom"),
+    )
     plane: bool = setting(False, "", "whether the air is a plane of discs")
     duration: float = setting(
         400.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5
@@ -136,6 +152,17 @@ class Column:
         total: float = leaves + conducted
         return total
 
+    def settling(self, settings: Settings) -> float:
+        r"""Return how long after an uneven start the column has forgotten it [reduced time].
+
+        The surplus of energy must leave by the floor, or, if that is isolated, find its way to all heights: measured
+        for Knudsen numbers of 0.02 to 5, that takes some 4 Kn times as long as sound needs for a scale height. Of a
+        surplus of a third of the energy less than a tenth of the scatter of a single sample is left after
+        :math:`(2 + \tfrac12 \ln N)\,\tau`.
+        """
+        memory = self.memory + (4.0 * settings.knudsen if settings.floor == "isolated" else 0.0)
+        return memory * (2.0 + 0.5 * math.log(settings.molecules))
+
     def density(self, edges: np.ndarray, kT: float, diameter: float, gravity: float = 1.0) -> np.ndarray:
         """Return the mean number density of layers in equilibrium [1/scale height^3]."""
         column = self.per_area, self.bottom, self.top, kT, 1.0, gravity, diameter
@@ -150,10 +177,30 @@ class Column:
         column = self.per_area, self.bottom, self.top, self.room
         return law.column_temperature(each, *column, dimensions=self.dimensions)
 
+    def textbook_pressure(self, height: np.ndarray, kT: float, gravity: float = 1.0) -> np.ndarray:
+        r"""Return the pressure of the textbook, :math:`p_0 e^{-m g z / kT}` [kT/scale height^3].
+
+        Its :math:`p_0` is that of as many points between floor and ceiling.
+        """
+        floor = self.per_area / self.height * kT * float(law.column_floor_ratio(self.height, kT, 1.0, gravity))
+        return np.asarray(law.barometric_pressure(height, floor, kT, 1.0, gravity))
+
+    def mean_height(self, kT: float) -> float:
+        """Return the mean height of the centres in equilibrium [scale height]."""
+        column = self.per_area, self.bottom, self.top, kT, 1.0, 1.0, self.room
+        return law.hydrostatic_mean_height(*column, dimensions=self.dimensions)
+
     def pressure(self, density: np.ndarray, kT: float) -> np.ndarray:
         """Return the pressure of a gas of these molecules [kT/scale height^3]."""
         pressure = law.gas_pressure_discs if self.dimensions == 2 else law.gas_pressure
         return np.asarray(pressure(density, kT, self.room))
+
+
+def _settled(column: Column, settings: Settings) -> int:
+    """Return how many frames pass until equilibrium."""
+    if settings.start == "equilibrium":
+        return SETTLE
+    return min(max(math.ceil(column.settling(settings) / settings.duration * FRAMES), SETTLE), FRAMES - 1)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -165,10 +212,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     length = (column.width, 2.0 * column.diameter if plane else column.width, column.height)
     diameter = np.full(n, column.diameter)
     sides = (True, True, False)
-    if settings.start == "bottom":
-        position = random_positions(length, diameter, rng, periodic=sides, planar=plane, top=min(0.1, column.height))
-    else:
+    if settings.start == "equilibrium":
         position = random_positions(length, diameter, rng, periodic=sides, planar=plane, scale_height=1.0)
+    else:
+        filled = min(FILLED if settings.start == "uniform" else 0.1, column.height)
+        position = random_positions(length, diameter, rng, periodic=sides, planar=plane, top=filled)
     parcel = engine.make(
         position,
         maxwell_velocities(1.0, np.ones(n), rng, planar=plane, exact=True),
@@ -181,6 +229,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         seed=settings.seed,
     )
     scale = column.scale
+    settled = _settled(column, settings)
     km = column.width * scale.length / 1000.0
     box = f"{km:.2f} km wide, periodic, {settings.height:g} km high"
     width = f"{'discs' if plane else 'molecules'} {column.diameter * scale.length:.{1 if plane else 0}f} m wide"
@@ -191,7 +240,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         FRAMES,
         (Air("floor"), Layers(LAYERS, column.memory)),
         samples=8,
-        settle=SETTLE,
+        settle=settled,
         time_unit="s",
         facts={
             "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
@@ -200,7 +249,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "gamma": "2: the discs move in a plane and do not rotate" if plane else "5/3: the molecules do not rotate",
             "scale height": f"{scale.length / 1000.0:.2f} km",
             "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
-            "time": f"{settings.duration * scale.time / 60.0:.0f} minutes",
+            "time": f"{settings.duration * scale.time / 60.0:.0f} minutes, of which the first "
+            f"{settled * settings.duration / FRAMES * scale.time / 60.0:.0f} are left out of the means",
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
         },
@@ -214,47 +264,48 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the profiles of the barometric law, and of hydrostatics with the excluded volume, if any."""
+    """Return the textbook's barometric law, and what it becomes between walls and with molecules of some size."""
     column = Column(settings, used(dataset))
     scale = column.scale
     kT = column.equilibrium_kT(dataset, settings)
     edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
     thick = np.diff(edges)
-    reached = (np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom)) / thick
+    # no centre comes nearer to floor or ceiling than its radius: of the lowest and the highest layer a part is empty
+    reached = np.maximum(np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom), 0.0) / thick
     pull = float(dataset.gravity.values[-1]) / scale.acceleration if "gravity" in dataset else 1.0
     density = column.density(edges, kT, column.room, pull)
-    ideal = column.density(edges, kT, 0.0, pull)
-    pressure = column.pressure(density / reached, kT) * reached
+    within = np.divide(density, reached, out=np.zeros_like(density), where=reached > 0.0)
+    pressure = column.pressure(within, kT) * reached
+    light = column.textbook_pressure(0.5 * (edges[1:] + edges[:-1]), kT, pull)
     return {
         "number_density_theory": density * scale.number_density,
         "air_density_theory": density * scale.mass_density,
         "layer_pressure_theory": pressure * scale.pressure,
         "layer_temperature_theory": np.full(len(thick), kT * scale.temperature),
         "layer_temperature_standard": np.asarray(law.isa_temperature(np.minimum(dataset.height.values, 80_000.0))),
-        "number_density_barometric": ideal * scale.number_density,
-        "layer_pressure_barometric": ideal * kT * scale.pressure,
+        "number_density_barometric": light / kT * scale.number_density,
+        "layer_pressure_barometric": light * scale.pressure,
     }
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the weight of the air, its temperature, and how fast it thins."""
     column = Column(settings, used(dataset))
-    late = dataset.isel(elapsed_time=slice(SETTLE, None))
-    if late.sizes["elapsed_time"] < 40:
+    settled = _settled(column, settings)
+    late = dataset.isel(elapsed_time=slice(settled, None))
+    if late.sizes["elapsed_time"] < LEAST:
         return ()
     kT = column.equilibrium_kT(dataset, settings)
     force = late.wall_pressure.values
     weight = force[:, 4] - force[:, 5]
     expected = column.per_area * column.scale.pressure
     # what floor minus ceiling give beyond the weight is the change of momentum: its variance is N m kT at either end
-    lasted = float(np.diff(dataset.elapsed_time_bnds.values[[SETTLE, -1], [0, 1]])[0]) / column.scale.time
+    lasted = float(np.diff(dataset.elapsed_time_bnds.values[[settled, -1], [0, 1]])[0]) / column.scale.time
     chance = math.sqrt(2.0 * column.per_area * kT / column.width ** (column.dimensions - 1)) / lasted
     energy = late.kinetic_energy.values + late.potential_energy.values
     memory = column.memory * FRAMES / settings.duration
     temperature = average_beside(late.air_temperature.values, energy, memory)
-    edges = np.linspace(0.0, column.height, 401)
-    share = column.density(edges, kT, column.room) * np.diff(edges) / column.per_area
-    height = float(np.sum(share * 0.5 * (edges[1:] + edges[:-1]))) * column.scale.length
+    height = column.mean_height(kT) * column.scale.length
     per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
     climbed = average_beside(late.potential_energy.values / per_metre, energy, memory)
     return (
@@ -314,7 +365,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headlines=(headline,),
         )
 
-    smooth, barometric = "hydrostatics with Z", "barometric law"
+    smooth, barometric = "with walls and size", "barometric law"
     thin = Line("number_density_barometric", "height", barometric, "reference")
     light = Line("layer_pressure_barometric", "height", barometric, "reference")
     stirred = Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment")

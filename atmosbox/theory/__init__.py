@@ -21,6 +21,7 @@ finite_rate         what the finite rate of an ascent, and excluded volume, add 
 environment         the environment of a parcel: lapse rates, pressures and heights
 standard_atmosphere the same of the International Standard Atmosphere
 saturation          how much water vapour air can hold
+iapws               the same of measured water, to compare with
 humidity            how much it does hold, and how light that makes it
 moist_lifting       where a lifted parcel forms its cloud, and its temperature with cloud and rain
 rain                the same if the cloud rains at a finite rate
@@ -93,7 +94,8 @@ from atmosbox.theory.humidity import (
     vapor_pressure,
     virtual_temperature,
 )
-from atmosbox.theory.hydrostatic import hydrostatic_layers
+from atmosbox.theory.hydrostatic import hydrostatic_layers, hydrostatic_mean_height
+from atmosbox.theory.iapws import saturation_vapor_pressure_iapws
 from atmosbox.theory.isobaric import IsobaricWater, isobaric_water
 from atmosbox.theory.lifting import (
     adiabatic_index,
@@ -186,6 +188,7 @@ __all__ = [
     "height_of_pressure",
     "hertz_knudsen_flux",
     "hydrostatic_layers",
+    "hydrostatic_mean_height",
     "inverse_compressibility",
     "inverse_compressibility_discs",
     "isa_pressure",
@@ -210,6 +213,7 @@ __all__ = [
     "raining_path",
     "saturation_mixing_ratio",
     "saturation_vapor_pressure",
+    "saturation_vapor_pressure_iapws",
     "staying_energy_density",
     "temperature_noise",
     "vapor_pressure",

@@ -1,12 +1,8 @@
 """How warm a column comes to rest that no heat enters: where its energy goes, into motion and into height."""
 
-import numpy as np
-
-from atmosbox.theory.hydrostatic import hydrostatic_layers
+from atmosbox.theory.hydrostatic import hydrostatic_mean_height
 
 __all__ = ["column_temperature"]
-
-_LAYERS = 400
 
 
 def column_temperature(
@@ -54,17 +50,14 @@ def column_temperature(
     In a column without end half of the energy of points, 5/2 kT each, would be 3/2 motion and 1 height:
 
     >>> round(column_temperature(2.5, 1.0, 0.0, 60.0), 3)
-    0.999
+    1.0
     """
     from scipy.optimize import brentq
 
-    edges = np.linspace(bottom, top, _LAYERS + 1)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-
     def missing(kT: float) -> float:
         column = molecules_per_area, bottom, top, kT, mass, gravity, diameter
-        share = hydrostatic_layers(edges, *column, dimensions=dimensions) * np.diff(edges) / molecules_per_area
-        return 0.5 * dimensions * kT + mass * gravity * float(np.sum(share * middle)) - energy
+        height = hydrostatic_mean_height(*column, dimensions=dimensions)
+        return 0.5 * dimensions * kT + mass * gravity * height - energy
 
     # all of it may be motion; in a high column of points one kT a molecule is height, of spheres a little more
     most = 2.0 * energy / dimensions

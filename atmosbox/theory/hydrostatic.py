@@ -14,6 +14,7 @@ References
 Both, J. A., Hong, D. C. (2001), doi:10.1103/PhysRevE.64.061105.
 """
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -22,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
 from atmosbox.theory._crowding import Crowding, crowding
-from atmosbox.theory.barometric import barometric_density
+from atmosbox.theory.barometric import barometric_density, column_mean_height
 from atmosbox.theory.disc import DiscForm
 from atmosbox.theory.equation_of_state import Form
 
@@ -30,6 +31,8 @@ _NODES, _WEIGHTS = leggauss(16)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 _SHALLOW = 0.01
 """Scale heights below which the mean density is an integral, not the difference of two pressures."""
+_EMPTY = 100.0
+"""Scale heights above which there is nothing: even the densest gas is thinner there by more than e^-60."""
 
 
 def _potential(log_packing: ArrayLike, gas: Crowding) -> FloatArray:
@@ -163,8 +166,9 @@ def hydrostatic_layers(
 
     Notes
     -----
-    Gauss-Legendre quadrature with 16 points in each layer: exact to ten digits in layers of up to ten scale
-    heights.
+    A layer carries its own weight, so its mean density is the difference of the pressures below and above it over
+    m g times its thickness, whatever that is. In layers thinner than a hundredth of a scale height, where that
+    difference has few digits, it is a Gauss-Legendre quadrature.
 
     References
     ----------
@@ -184,6 +188,65 @@ def hydrostatic_layers(
         raise ValueError("edges must be at least two heights, each above the one before.")
     profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
     lower, upper = np.clip(z[:-1], bottom, top), np.clip(z[1:], bottom, top)
-    places = lower[:, np.newaxis] + (upper - lower)[:, np.newaxis] * _NODES
-    layers: FloatArray = profile(places) @ _WEIGHTS * (upper - lower) / np.diff(z)
+    reached = upper - lower
+    held = profile(lower[:, np.newaxis] + reached[:, np.newaxis] * _NODES) @ _WEIGHTS * reached
+    heavy = mass * gravity * reached / kT > _SHALLOW
+    if np.any(heavy):
+        ends = profile(np.stack([lower[heavy], upper[heavy]]))
+        gas = crowding(dimensions, form)
+        below, above = ends * kT * gas.compressibility_factor(gas.packing_fraction(ends, diameter))
+        held[heavy] = (below - above) / (mass * gravity)
+    layers: FloatArray = held / np.diff(z)
     return layers
+
+
+def hydrostatic_mean_height(
+    molecules_per_area: float,
+    bottom: float,
+    top: float,
+    kT: float,
+    mass: float,
+    gravity: float,
+    diameter: float = 0.0,
+    form: Form | DiscForm | None = None,
+    dimensions: int = 3,
+) -> float:
+    r"""Return the mean height of the molecules of a closed isothermal column, :math:`\int n z\,dz / \int n\,dz`.
+
+    Parameters
+    ----------
+    molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions
+        As in :func:`hydrostatic_layers`.
+
+    Returns
+    -------
+    float
+        Mean height of the centres [length].
+
+    Raises
+    ------
+    ValueError
+        As :func:`hydrostatic_layers`.
+
+    Notes
+    -----
+    Of points it is the closed form of :func:`column_mean_height`. Of spheres and discs it is a Gauss-Legendre
+    quadrature with 16 points in each scale height, however high the column.
+
+    Examples
+    --------
+    Spheres cannot all lie on the floor, and so their mean height is more than the scale height of points:
+
+    >>> column = 0.3, 0.5, 100.0, 1.0, 1.0, 1.0
+    >>> [round(hydrostatic_mean_height(*column, diameter), 3) for diameter in (0.0, 1.0)]
+    [1.5, 1.78]
+    """
+    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
+    if diameter == 0.0:
+        return bottom + float(column_mean_height(top - bottom, kT, mass, gravity))
+    depth = min(mass * gravity * (top - bottom) / kT, _EMPTY)
+    highest = top if depth < _EMPTY else bottom + depth * kT / (mass * gravity)
+    edges = np.linspace(bottom, highest, 1 + max(1, math.ceil(depth)))
+    height = (edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * _NODES).ravel()
+    share = profile(height) * np.tile(_WEIGHTS, len(edges) - 1)
+    return float(share @ height / share.sum())

@@ -108,6 +108,36 @@ def test_layers_of_a_column_hold_what_their_profile_says():
     assert layers[4] == pytest.approx(top, rel=1e-12)
 
 
+@pytest.mark.parametrize("deep", [1e-4, 0.3, 3.0, 40.0, 3400.0])
+@pytest.mark.parametrize(("dimensions", "wide"), [(3, 0.0), (3, 0.55), (2, 0.4)])
+def test_the_mean_height_of_a_column_is_that_of_its_balance_of_forces(deep, dimensions, wide):
+    """Against dn/dz = -n m g / (kT d(nZ)/dn), integrated by another method from the density at the floor."""
+    held = min(1.0, deep)
+    column = held, 0.3, 0.3 + deep, 1.0, 1.0, 1.0, wide
+    found = theory.hydrostatic_mean_height(*column, dimensions=dimensions)
+    floor = float(column_at_rest.hydrostatic_column(0.3, *column, dimensions=dimensions))
+
+    def rise(height, state):
+        n = np.exp(state[0])
+        if dimensions == 2:
+            stiffness = theory.inverse_compressibility_discs(theory.packing_fraction_discs(n, wide))
+        else:
+            stiffness = theory.inverse_compressibility(theory.packing_fraction(n, wide))
+        return [-1.0 / stiffness, n, n * height]
+
+    high = min(deep, 60.0)
+    walked = integrate.solve_ivp(rise, (0.0, high), [np.log(floor), 0.0, 0.0], method="DOP853", rtol=1e-12, atol=1e-14)
+    _, number, lifted = walked.y[:, -1]
+    assert number == pytest.approx(held, rel=1e-9)
+    assert found == pytest.approx(0.3 + lifted / number, rel=1e-9)
+    # thick layers hold what thin ones hold together, even layers of a hundred scale heights
+    thick = theory.hydrostatic_layers([0.3, 0.3 + 0.5 * deep, 0.3 + deep], *column, dimensions=dimensions)
+    assert thick.sum() * 0.5 * deep == pytest.approx(held, rel=1e-10)
+    edges = np.linspace(0.3, 0.3 + 0.5 * deep, 500)
+    thin = theory.hydrostatic_layers(edges, *column, dimensions=dimensions) @ np.diff(edges)
+    assert thick[0] * 0.5 * deep == pytest.approx(thin, rel=1e-10)
+
+
 def test_a_column_of_tiny_spheres_is_barometric():
     heights = np.linspace(0.0, 12.0, 25)
     tiny = column_at_rest.hydrostatic_column(heights, **(DENSE | {"diameter": 1e-4}))

@@ -22,7 +22,38 @@ def metpy():
     return metpy.calc, units
 
 
-def test_the_vapour_pressure_is_metpys_to_three_parts_in_ten_thousand():
+# IAPWS SR1-86(1992), table 1: temperature [K], pressure [Pa], its slope [Pa/K], and half a unit of their last digits
+IAPWS_CHECK = [
+    (273.16, 611.657, 44.436693, 5e-4, 5e-7),
+    (373.1243, 0.101325e6, 3.616e3, 0.5, 0.5),
+    (647.096, 22.064e6, 268e3, 500.0, 500.0),
+]
+
+
+@pytest.mark.parametrize(("temperature", "pressure", "slope", "digit", "slope_digit"), IAPWS_CHECK)
+def test_the_iapws_vapour_pressure_gives_the_check_values_of_its_release(
+    temperature, pressure, slope, digit, slope_digit
+):
+    assert abs(theory.saturation_vapor_pressure_iapws(temperature) - pressure) <= digit
+    # one-sided and of second order, for nothing is saturated above the critical point
+    step = 1e-5
+    near = theory.saturation_vapor_pressure_iapws(temperature - step * np.array([0.0, 1.0, 2.0]))
+    assert abs((1.5 * near[0] - 2.0 * near[1] + 0.5 * near[2]) / step - slope) <= slope_digit + 2e-8 * slope
+
+
+def test_the_vapour_pressure_that_is_put_in_is_up_to_half_a_percent_below_that_of_measured_water():
+    # what docs/model.md says, in percent; heat capacities of real water change with temperature
+    stated = {-10: -0.06, 0: -0.07, 10: -0.12, 20: -0.20, 30: -0.30, 40: -0.44}
+    for celsius, percent in stated.items():
+        t = ZERO_CELSIUS + celsius
+        off = theory.saturation_vapor_pressure(t) / theory.saturation_vapor_pressure_iapws(t) - 1.0
+        assert 100.0 * off == pytest.approx(percent, abs=0.006)
+    off = theory.saturation_vapor_pressure(WEATHER) / theory.saturation_vapor_pressure_iapws(WEATHER) - 1.0
+    assert -0.0045 < off.min() < off.max() < -0.0006
+
+
+def test_metpy_writes_the_same_formula_with_nearly_the_same_numbers():
+    """No check of either: both are Ambaum (2020), and differ in the heat capacity of vapour, 4.03 k and 4 k."""
     calc, units = metpy()
     expected = calc.saturation_vapor_pressure(WEATHER * units.kelvin).m_as("Pa")
     ratio = theory.saturation_vapor_pressure(WEATHER) / expected
@@ -353,6 +384,8 @@ def test_a_parcel_in_the_engines_units_obeys_the_same_law():
         (lambda: theory.saturation_vapor_pressure(-1.0), "0 K"),
         (lambda: theory.saturation_vapor_pressure([280.0, np.nan]), "0 K"),
         (lambda: theory.saturation_vapor_pressure(700.0), "critical"),
+        (lambda: theory.saturation_vapor_pressure_iapws([280.0, 700.0]), "critical"),
+        (lambda: theory.saturation_vapor_pressure_iapws(230.0), "233.15 K"),
         (lambda: theory.dewpoint(-1.0), "vapor_pressure"),
         (lambda: theory.dewpoint(1e9), "critical"),
         (lambda: theory.mixing_ratio(2e4, 2e4), "no air"),
