@@ -2,6 +2,7 @@
 
 import errno
 import inspect
+import json
 import os
 import signal
 import subprocess
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from atmosbox.errors import DiskFullError, FileError
+from atmosbox.file import output_lock
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.dataset import dataset
 from atmosbox.file.netcdf import read, write
@@ -28,6 +30,7 @@ def run_so_far(frames):
 CHILD = f"""
 import os, sys, time
 import numpy as np
+from atmosbox.file import output_lock
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.dataset import dataset
 from atmosbox.file.provenance import global_attributes
@@ -57,7 +60,7 @@ def frames_in(path):
 def test_a_checkpoint_keeps_the_run_so_far_and_the_finished_run_takes_its_place(tmp_path):
     checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=0.0)
     assert checkpoint(lambda: run_so_far(3))
-    assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
+    assert {path.name for path in tmp_path.iterdir()} == {"run.part.nc", ".run.nc.lock"}
     assert read(checkpoint.part).identical(run_so_far(3).assign_attrs(read(checkpoint.part).attrs))
     assert checkpoint.finish(run_so_far(5)) == tmp_path / "run.nc"
     assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
@@ -105,6 +108,7 @@ def test_a_full_disk_during_the_run_keeps_the_part(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "fsync", failing(errno.ENOSPC))
     with pytest.raises(DiskFullError, match=r"run\.part\.nc, which stays as it was"):
         checkpoint.finish(run_so_far(5))
+    checkpoint.release()
     assert [path.name for path in tmp_path.iterdir()] == ["run.part.nc"]
     assert frames_in(checkpoint.part) == 3
 
@@ -135,7 +139,9 @@ def test_an_abandoned_run_leaves_nothing_of_its_own(tmp_path):
 
 
 def test_a_part_of_an_earlier_run_is_told_of_and_kept_until_it_is_replaced(tmp_path):
-    Checkpoint(tmp_path / "run.nc").save(run_so_far(3))
+    killed = Checkpoint(tmp_path / "run.nc")
+    killed.save(run_so_far(3))
+    killed.release()
     checkpoint = Checkpoint(tmp_path / "run.nc")
     assert checkpoint.stale
     checkpoint.abandon()
@@ -168,12 +174,62 @@ checkpoint.save(run_so_far(5))
     with pytest.raises(FileError, match=r"run\.nc does not exist: a run that was stopped left .*run\.part\.nc"):
         read(path)
 
-    (left,) = tmp_path.glob(".*.tmp")
+    assert len(list(tmp_path.glob(".*"))) == 2  # half a file, and the lock of who is no more
     Checkpoint(path).save(run_so_far(3))
-    assert left.exists()  # it could be another run's that is still going
-    os.utime(left, (0, 0))
-    Checkpoint(path).finish(run_so_far(3))
+    assert not list(tmp_path.glob(".*.tmp"))
+    Checkpoint(path, force=True).begin().finish(run_so_far(3))
     assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_two_runs_cannot_write_one_file(tmp_path):
+    path = tmp_path / "run.nc"
+    code = """
+checkpoint = Checkpoint(sys.argv[1]).begin()
+print("begun", flush=True)
+sys.stdin.read()
+checkpoint.release()
+"""
+    with child(code, path, stdin=subprocess.PIPE) as process:
+        assert process.stdout.readline() == "begun\n"
+        with pytest.raises(FileError, match=rf"run\.nc is being written by process {process.pid} on "):
+            Checkpoint(path).begin()
+        Checkpoint(tmp_path / "other.nc").begin().release()
+        process.communicate()
+    assert process.returncode == 0
+    assert not list(tmp_path.iterdir())
+    Checkpoint(path).begin().release()
+
+
+def test_the_lock_of_a_run_that_was_killed_counts_for_nothing(tmp_path):
+    path = tmp_path / "run.nc"
+    with child("Checkpoint(sys.argv[1]).begin(); print(flush=True); time.sleep(60)", path) as process:
+        process.stdout.readline()
+        process.kill()
+    assert [each.name for each in tmp_path.iterdir()] == [".run.nc.lock"]
+    Checkpoint(path).begin().release()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("locks", [True, False])
+def test_a_lock_without_the_systems_help_is_believed_as_long_as_its_owner_lives(tmp_path, monkeypatch, locks):
+    """A shared folder may know no locks, and the owner may be on another computer."""
+    lock = tmp_path / ".run.nc.lock"
+    if not locks:
+        monkeypatch.setattr(output_lock, "_hold", lambda opened: None)
+    owner = {"pid": os.getppid(), "host": output_lock.host(), "since": "2026-11-22T00:00:00Z"}
+    lock.write_text(json.dumps(owner))
+    if not locks:
+        with pytest.raises(FileError, match=f"by process {os.getppid()} on"):
+            Checkpoint(tmp_path / "run.nc").begin()
+    lock.write_text(json.dumps(owner | {"pid": 2**22 + 1}))
+    Checkpoint(tmp_path / "run.nc").begin().release()
+    lock.write_text(json.dumps(owner | {"host": "elsewhere"}))
+    with pytest.raises(FileError, match="on elsewhere since"):
+        Checkpoint(tmp_path / "run.nc").begin()
+    long_ago = time.time() - 1.1 * output_lock.ABANDONED
+    os.utime(lock, (long_ago, long_ago))
+    Checkpoint(tmp_path / "run.nc").begin().release()
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_run_killed_at_any_moment_leaves_a_file_that_opens(tmp_path):

@@ -437,6 +437,25 @@ def test_no_path_is_a_bug(folder, no_computing, finished, words, name):
     assert sorted(folder.rglob("*")) == before
 
 
+@pytest.mark.parametrize(
+    ("attribute", "content"),
+    [
+        ("atmosbox_parameters", "[" * 3000),
+        ("atmosbox_parameters", '{"sweep": 3}'),
+        ("atmosbox_panels", '{"format": 1, "panels": [{"kind": "line", "title": "", "lines": 7}]}'),
+        ("atmosbox_headlines", '[["a"]]'),
+    ],
+)
+def test_a_file_with_odd_content_is_no_bug(folder, finished, attribute, content):
+    output.write(output.read(finished).assign_attrs({attribute: content}), "odd.nc")
+    status = [atmosbox_in_process(command, "odd.nc").exit_code for command in ("plot", "check")]
+    assert set(status) <= {0, 2, 3}
+    assert 2 in status
+    sentence = refused(atmosbox_in_process(("plot", "check")[status.index(2)], "odd.nc"))
+    assert "your own scene" not in sentence
+    assert "file" in sentence or "odd.nc" in sentence
+
+
 @pytest.mark.parametrize("name", ["", "..", "folder", "whole.nc/x.nc"])
 @pytest.mark.parametrize(
     "words",

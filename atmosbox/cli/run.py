@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-import signal
-import threading
-from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Never
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -28,7 +24,7 @@ from atmosbox.cli.option import (
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.request import gather
-from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, say_json, tell, width
+from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
@@ -89,17 +85,16 @@ def run(
     if checkpoint.stale and not quiet:
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
-    with _terminable() as asked_to_end:
-        try:
-            with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show:
-                outcome = runner.execute(prepared, checkpoint=checkpoint, progress=show, command=typed(ctx))
-        except runner.Interrupted as stop:
-            _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
-            raise typer.Exit(TERMINATED if asked_to_end() else INTERRUPTED) from stop
-        except (KeyboardInterrupt, AtmosboxError):
-            if _stamp(checkpoint.part) not in (None, before):
-                tell(f"note: the frames that were complete are kept in {checkpoint.part}")
-            raise
+    try:
+        with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show:
+            outcome = runner.execute(prepared, checkpoint=checkpoint, progress=show, command=typed(ctx))
+    except runner.Interrupted as stop:
+        _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
+        raise typer.Exit(stop.exit_code) from stop
+    except (KeyboardInterrupt, AtmosboxError):
+        if _stamp(checkpoint.part) not in (None, before):
+            tell(f"note: the frames that were complete are kept in {checkpoint.part}")
+        raise
     _say_outcome(outcome, prepared, path, quiet=quiet, as_json=as_json)
     if not outcome.ledger <= runner.LEDGER_LIMIT:
         from atmosbox.text.report import next_command
@@ -183,30 +178,3 @@ def _say_interrupted(
 def _stamp(path: Path) -> int | None:
     """Return when a file was last written; None if there is none."""
     return path.stat().st_mtime_ns if path.exists() else None
-
-
-class _Terminated(KeyboardInterrupt):
-    """Another program asked this one to end."""
-
-    exit_code = TERMINATED
-
-
-@contextlib.contextmanager
-def _terminable() -> Iterator[Callable[[], bool]]:
-    """Treat a request to end (SIGTERM) as Ctrl-C is treated; what is yielded tells whether there was one."""
-    asked = False
-
-    def stop(number: int, frame: object) -> Never:
-        nonlocal asked
-        asked = True
-        raise _Terminated
-
-    main = threading.current_thread() is threading.main_thread()
-    ours = main and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-    if ours:
-        signal.signal(signal.SIGTERM, stop)
-    try:
-        yield lambda: asked
-    finally:
-        if ours:
-            signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -6,20 +6,23 @@ import contextlib
 import functools
 import os
 import shutil
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from collections.abc import Callable, Iterator
+from typing import Never, ParamSpec, TypeVar
 
 import typer
 
-from atmosbox.errors import AtmosboxError, shown
+from atmosbox.errors import AtmosboxError, FileError, shown
 from atmosbox.text.stream import say, say_json, tell
 
-__all__ = ["guarded", "prints_to_stderr", "say", "say_json", "tell", "width"]
+__all__ = ["guarded", "prints_to_stderr", "say", "say_json", "stoppable", "tell", "width"]
 
 INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
 TERMINATED = 143  # what a shell reports of a program that was asked to end
+HUNG_UP = 129  # what a shell reports of a program whose terminal was closed
 ENDLESS = 1_000_000  # columns of what is no terminal
 LONGEST_SENTENCE = 20_000  # characters; paths may have 4096
 
@@ -36,6 +39,53 @@ def width() -> int:
     """Return how many columns the result may take: those of the terminal, or of COLUMNS if that is set."""
     tty = sys.stdout is not None and sys.stdout.isatty()
     return shutil.get_terminal_size().columns if tty or os.environ.get("COLUMNS", "").isdecimal() else ENDLESS
+
+
+def _listed(given: object) -> list[object]:
+    return list(given) if isinstance(given, list) else [] if given is None else [given]
+
+
+def _reason(error: Exception) -> str:
+    """Return what went wrong on one short line."""
+    reason = " ".join(str(error).split())
+    return type(error).__name__ + (f": {shown(reason, longest=200)}" if reason else "")
+
+
+class Stopped(KeyboardInterrupt):
+    """Another program asked this one to end, or its terminal was closed."""
+
+    def __init__(self, exit_code: int) -> None:
+        super().__init__()
+        self.exit_code = exit_code
+
+
+@contextlib.contextmanager
+def stoppable() -> Iterator[None]:
+    """Let a request to end (SIGTERM), or a terminal that is closed (SIGHUP), stop a command as Ctrl-C does.
+
+    So it removes what it has half written, and keeps what is complete.
+
+    Raises
+    ------
+    Stopped
+        When the signal comes.
+    """
+    status = {signal.SIGTERM: TERMINATED}
+    if hasattr(signal, "SIGHUP"):
+        status[signal.SIGHUP] = HUNG_UP
+
+    def stop(number: int, frame: object) -> Never:
+        raise Stopped(status[signal.Signals(number)])
+
+    main = threading.current_thread() is threading.main_thread()
+    ours = [number for number in status if main and signal.getsignal(number) is signal.SIG_DFL]
+    for number in ours:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in ours:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
@@ -55,7 +105,8 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
     @functools.wraps(command)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            return command(*args, **kwargs)
+            with stoppable():
+                return command(*args, **kwargs)
         except (typer.Exit, typer.Abort, typer.BadParameter):
             raise
         except AtmosboxError as error:
@@ -71,10 +122,14 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except Exception as error:
             if kwargs.get("verbose"):
                 tell(traceback.format_exc())
-            reason = " ".join(str(error).split())
-            what = type(error).__name__ + (f": {shown(reason, longest=200)}" if reason else "")
             again = "" if kwargs.get("verbose") else "; --verbose shows where"
-            tell(f"error: This is a bug in atmosbox or in your own scene ({what}){again}.")
+            read = [str(file) for name in ("file", "files") for file in _listed(kwargs.get(name))]
+            if read:  # anybody can write a file with the names of atmosbox and numbers that it never would
+                named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
+                what = f"it is not as atmosbox has written it, or this is a bug{again}"
+                tell(f"error: {named} cannot be used ({_reason(error)}): {what}.")
+                raise typer.Exit(FileError.exit_code) from error
+            tell(f"error: This is a bug in atmosbox or in your own scene ({_reason(error)}){again}.")
             raise typer.Exit(1) from error
 
     return wrapper

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError
 from atmosbox.file.netcdf import image
-from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_failure, write_whole
+from atmosbox.file.output_lock import OutputLock
+from atmosbox.file.output_path import AnyPath, check_writable, clear, part_path, write_failure, write_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,6 +83,27 @@ class Checkpoint:
         self._begun = self._written = clock()
         self._spent = self._last = 0.0
         self._saved = False
+        self._lock: OutputLock | None = None
+
+    def begin(self) -> Checkpoint:
+        """Take the file for this run alone, and remove what a run that was killed has half written.
+
+        Raises
+        ------
+        FileError
+            If another run writes it.
+        """
+        if self._lock is None:
+            self._lock = OutputLock(self.path)
+            for path in (self.path, self.part):
+                clear(path, everything=True)
+        return self
+
+    def release(self) -> None:
+        """Let other runs have the file; the part, if there is one, stays."""
+        lock, self._lock = self._lock, None
+        if lock is not None:
+            lock.release()
 
     def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
         """Write the run so far if it is time to, and return whether it was.
@@ -99,6 +121,8 @@ class Checkpoint:
             If the file cannot be written any more.
         """
         now = self._clock()
+        if self._lock is not None:
+            self._lock.keep()
         expected = self._spent + 1.5 * self._last  # the file has grown since
         if now - self._written < self._every or expected > SHARE * (now - self._begun):
             return False
@@ -110,6 +134,7 @@ class Checkpoint:
 
     def save(self, dataset: xr.Dataset) -> Path:
         """Write the run so far at once, for instance when it is interrupted, and return where it is."""
+        self.begin()
         write_whole(self.part, image(dataset))
         self._saved = True
         return self.part
@@ -134,9 +159,11 @@ class Checkpoint:
             os.replace(self.part, self.path)
         except OSError as error:
             raise write_failure(error, self.path) from error
+        self.release()
         return self.path
 
     def abandon(self) -> None:
         """Remove the part that this run has written, when nothing of it is worth keeping."""
         if self._saved:
             self.part.unlink(missing_ok=True)
+        self.release()

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from atmosbox.errors import FileError, shown
 from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_whole
 from atmosbox.file.provenance import FORMAT
+from atmosbox.file.validity import check_valid
 from atmosbox.version import __version__
 
 if TYPE_CHECKING:
@@ -99,7 +100,8 @@ def read(path: AnyPath) -> xr.Dataset:
     Raises
     ------
     FileError
-        If the file is missing, empty, damaged, no netCDF, of another program or of a later atmosbox.
+        If the file is missing, empty, damaged, no netCDF, of another program or of a later atmosbox, or does not fit
+        into memory.
 
     Examples
     --------
@@ -126,16 +128,17 @@ def read(path: AnyPath) -> xr.Dataset:
     try:
         with netCDF4.Dataset(source) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-        if "atmosbox_parameters" not in attributes:
-            raise FileError(f"{source} was written by another program: {fix}.")
-        written = str(attributes.get("atmosbox_format", FORMAT))
-        if written != str(FORMAT):
-            raise FileError(
-                f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}: "
-                "type pip install --upgrade atmosbox."
-            )
+            if "atmosbox_parameters" not in attributes:
+                raise FileError(f"{source} was written by another program: {fix}.")
+            written = str(attributes.get("atmosbox_format", FORMAT))
+            if written != str(FORMAT):
+                raise FileError(
+                    f"{source} has the format {shown(written)}, but atmosbox {__version__} reads {FORMAT}: "
+                    "type pip install --upgrade atmosbox."
+                )
+            check_valid(file, source)
         return xr.load_dataset(source, engine="netcdf4", decode_times=False)
     except FileError:
         raise
-    except (OSError, RuntimeError, ValueError) as error:
+    except (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError) as error:
         raise FileError(f"{source} is no netCDF file, or a damaged one: {fix}.") from error

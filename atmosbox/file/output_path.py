@@ -5,26 +5,31 @@ from __future__ import annotations
 import contextlib
 import errno
 import glob
+import itertools
 import os
 import shlex
 import shutil
 import time
-import uuid
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TypeAlias
 
 from atmosbox.errors import DiskFullError, FileError, SettingError, shown
+from atmosbox.file.output_lock import alive, host
 from atmosbox.file.provenance import moment
 
-__all__ = ["AnyPath", "check_writable", "named", "part_path", "whole_file", "write_failure", "write_whole"]
+__all__ = ["AnyPath", "check_writable", "clear", "named", "part_path", "whole_file", "write_failure", "write_whole"]
 
 AnyPath: TypeAlias = str | os.PathLike[str]
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 LONGEST_NAME = 200  # bytes; file systems allow 255, and the temporary name is longer than the file's own
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
-LEFT_OVER = 3600.0  # seconds after which a temporary file can only be that of a program that was killed
+_NUMBERS = itertools.count()
+LEFT_OVER = (
+    3600.0  # seconds after which a temporary file of another computer can only be that of a program that was killed
+)
 
 
 def named(
@@ -148,12 +153,49 @@ def part_path(path: AnyPath) -> Path:
     return whole.with_name(f"{whole.stem}.part{whole.suffix}")
 
 
+def clear(path: Path, *, everything: bool = False) -> None:
+    """Remove the temporary files of a file that programs have left which were killed.
+
+    Parameters
+    ----------
+    path
+        The file.
+    everything
+        Whether all of them are such, because nobody else can be writing the file.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     Path(folder, ".a.txt.1a2b3c4d.7.0.tmp").touch()
+    ...     clear(Path(folder, "a.txt"), everything=True)
+    ...     list(Path(folder).iterdir())
+    []
+    """
+    with contextlib.suppress(OSError):
+        for old in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
+            *_, where, pid, _number, _suffix = old.name.split(".")
+            here = where == _here() and pid.isdecimal()
+            if everything or (not alive(int(pid)) if here else time.time() - old.stat().st_mtime > LEFT_OVER):
+                old.unlink(missing_ok=True)
+
+
+def temporary_path(path: Path) -> Path:
+    """Return where a file is written before it is whole: the name says which process of which computer does so."""
+    return path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
+
+
+def _here() -> str:
+    """Return this computer in eight letters."""
+    return f"{zlib.crc32(host().encode()):08x}"
+
+
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside a file; what is written there replaces the file when the block ends well.
 
     If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
-    is killed leaves the temporary file, which the next writing of the same file removes an hour later or after.
+    is killed leaves the temporary file, which the next writing of the same file removes.
 
     Parameters
     ----------
@@ -176,11 +218,8 @@ def whole_file(path: Path) -> Iterator[Path]:
     ...     [file.name for file in Path(folder).iterdir()]
     ['a.txt']
     """
-    with contextlib.suppress(OSError):
-        for old in path.parent.glob(f".{glob.escape(path.name)}.*.tmp"):
-            if time.time() - old.stat().st_mtime > LEFT_OVER:
-                old.unlink()
-    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
+    clear(path)
+    temporary = temporary_path(path)
     try:
         yield temporary
         # without this, a file can be under its name and yet empty after a power failure

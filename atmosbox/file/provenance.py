@@ -169,7 +169,7 @@ def parameters(dataset: xr.Dataset) -> dict[str, Any]:
     """
     try:
         found = json.loads(dataset.attrs["atmosbox_parameters"])
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, RecursionError):
         found = None
     if not isinstance(found, dict):
         name = dataset.encoding.get("source", "This dataset")

@@ -100,7 +100,11 @@ class _Service:
     def request(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer a request: with the document, or with none if the socket is asked for."""
         headers = request.headers
-        if not allowed(headers.get("Host"), headers.get("Origin"), names=self._names):
+        hosts, origins = headers.get_all("Host"), headers.get_all("Origin")
+        if len(hosts) > 1 or len(origins) > 1:
+            return connection.respond(http.HTTPStatus.BAD_REQUEST, "A request has one Host and one Origin.\n")
+        host, origin = (found[0] if found else None for found in (hosts, origins))
+        if not allowed(host, origin, names=self._names):
             return connection.respond(http.HTTPStatus.FORBIDDEN, "This page is for this computer alone.\n")
         path = urlsplit(request.path).path
         if path == "/socket":

@@ -143,7 +143,7 @@ class Tape:
         self._setup = setup
         self._changes = changes
         self._panels = panels
-        self._checkpoint = Checkpoint(path, force=force)
+        self._checkpoint = Checkpoint(path, force=force).begin()
 
     @property
     def frames(self) -> int:
@@ -195,7 +195,11 @@ class Tape:
 
     def save(self) -> None:
         """Keep what there is so far on disk, now and then."""
-        self._checkpoint(lambda: self.dataset("partial"))
+        try:
+            self._checkpoint(lambda: self.dataset("partial"))
+        except BaseException:
+            self._checkpoint.release()
+            raise
 
     def finish(self) -> Path | None:
         """Write the file, and return it; None if no frame is complete, and nothing is written.
@@ -208,4 +212,7 @@ class Tape:
         if not self.frames:
             self._checkpoint.abandon()
             return None
-        return self._checkpoint.finish(self.dataset("complete"))
+        try:
+            return self._checkpoint.finish(self.dataset("complete"))
+        finally:
+            self._checkpoint.release()

@@ -42,7 +42,8 @@ def uninterrupted() -> Iterator[None]:
     stopped
     """
     came: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM) if threading.current_thread() is threading.main_thread() else ()
+    known = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    numbers = known if threading.current_thread() is threading.main_thread() else []
     # None is a handler that was not set from Python, and could not be set again.
     before = {number: handler for number in numbers if (handler := signal.getsignal(number)) is not None}
     try:

@@ -60,9 +60,10 @@ class Outcome(NamedTuple):
 class Interrupted(KeyboardInterrupt):
     """A run was stopped by Ctrl-C; ``outcome`` holds the frames that are complete, None if there is none."""
 
-    def __init__(self, outcome: Outcome | None) -> None:
+    def __init__(self, outcome: Outcome | None, exit_code: int = 130) -> None:
         super().__init__("the run was interrupted")
         self.outcome = outcome
+        self.exit_code = exit_code
 
 
 def execute(
@@ -103,6 +104,17 @@ def execute(
     >>> outcome.ledger < LEDGER_LIMIT
     True
     """
+    if checkpoint is None:
+        return _execute(prepared, None, progress, command)
+    checkpoint.begin()
+    try:
+        return _execute(prepared, checkpoint, progress, command)
+    finally:
+        checkpoint.release()
+
+
+def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progress | None, command: str) -> Outcome:
+    """Run a prepared scenario, whose file nobody else writes."""
     from atmosbox.file.provenance import global_attributes
 
     tell = progress or (lambda share, word: None)
@@ -148,12 +160,12 @@ def execute(
         done = outcome("complete")
     except StalledError as error:
         raise EngineError(f"The run of {prepared.scene} cannot go on: {error}.") from error
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         partial = outcome("interrupted") if recording.frames else None
         if partial is not None and checkpoint is not None:
             with uninterrupted():
                 checkpoint.save(partial.dataset)
-        raise Interrupted(partial) from None
+        raise Interrupted(partial, getattr(stop, "exit_code", 130)) from None
     if checkpoint is not None:
         with uninterrupted():
             checkpoint.finish(done.dataset)

@@ -115,8 +115,12 @@ def sweep(
     if out is None:
         return _Conductor(plan, None, None, [line], progress, note).conduct(jobs, scheduler)
     checkpoint = Checkpoint(Path(out), _EVERY, force=force)
-    with Journal(checkpoint.path, plan.request(), line, force=force) as journal:
-        return _Conductor(plan, journal, checkpoint, journal.history, progress, note).conduct(jobs, scheduler)
+    checkpoint.begin()
+    try:
+        with Journal(checkpoint.path, plan.request(), line, force=force) as journal:
+            return _Conductor(plan, journal, checkpoint, journal.history, progress, note).conduct(jobs, scheduler)
+    finally:
+        checkpoint.release()
 
 
 class _Conductor:

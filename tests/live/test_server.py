@@ -61,6 +61,17 @@ def test_another_site_gets_nothing(site, headers):
     assert ask(site, **headers)[0] in (400, 403)
 
 
+@pytest.mark.parametrize("name", ["Host", "Origin"])
+def test_a_header_that_is_given_twice_is_refused_quietly(site, name, caplog):
+    connection = http.client.HTTPConnection("127.0.0.1", site.port, timeout=10)
+    connection.putrequest("GET", "/", skip_host=True)
+    for header in ("Host", "Origin", name):
+        connection.putheader(header, f"{'http://' * (header == 'Origin')}127.0.0.1:{site.port}")
+    connection.endheaders()
+    assert connection.getresponse().status == 400
+    assert not caplog.records
+
+
 def test_a_socket_opened_by_another_site_is_refused(site):
     with pytest.raises(InvalidStatus), site.visit(origin="http://evil.example"):
         pass

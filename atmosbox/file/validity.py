@@ -1,0 +1,111 @@
+"""What is asked of a file before its numbers are loaded: that they fit into memory, and are what they must be."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox.errors import FileError
+from atmosbox.file.variables import variable
+
+if TYPE_CHECKING:
+    import netCDF4
+
+__all__ = ["check_valid", "free_memory"]
+
+DENSEST = 1100
+"""How many bytes of numbers a byte of a file can hold: deflate packs at most 1032 into one."""
+
+SMALL = 50_000_000
+"""Bytes that any computer can hold, so that nothing is asked about them."""
+
+_JSON: dict[str, type | tuple[type, ...]] = {
+    "atmosbox_parameters": dict,
+    "atmosbox_headlines": list,
+    "atmosbox_panels": (dict, list),
+}
+
+
+def free_memory() -> float:
+    """Return the bytes of memory that are free, infinite where the system does not say.
+
+    Examples
+    --------
+    >>> free_memory() > 1e6
+    True
+    """
+    try:
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return 1024.0 * int(line.split()[1])
+        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (OSError, ValueError, AttributeError):
+        return math.inf
+
+
+def check_valid(file: netCDF4.Dataset, source: Path) -> None:
+    """Refuse an open file that does not fit into memory, or is not as atmosbox writes it; load nothing.
+
+    Parameters
+    ----------
+    file
+        The open file.
+    source
+        Where it is.
+
+    Raises
+    ------
+    FileError
+        If it declares more numbers than it can hold or than fit into memory; if an attribute that holds JSON holds
+        something else; or if a variable of atmosbox holds text where numbers belong, or nothing at all.
+    """
+    declared = float(sum(_bytes(each) for each in file.variables.values()))
+    if declared > max(SMALL, DENSEST * source.stat().st_size):
+        raise FileError(
+            f"{source} declares {declared / 1e9:.3g} GB of numbers, more than a file of its size can hold: it is "
+            "damaged, so run the scene again."
+        )
+    if declared > max(SMALL, 0.5 * free_memory()):
+        raise FileError(
+            f"{source} holds {declared / 1e9:.3g} GB of numbers, for which {free_memory() / 1e9:.3g} GB of free memory "
+            "are too few: run the scene with fewer molecules or frames."
+        )
+    for name, kind in _JSON.items():
+        if name in file.ncattrs() and not isinstance(_parsed(file.getncattr(name)), kind):
+            raise FileError(f"The attribute {name} of {source} is not as atmosbox writes it: run the scene again.")
+    for name, held in file.variables.items():
+        _check_variable(name, held, source)
+
+
+def _bytes(held: netCDF4.Variable[Any]) -> float:
+    """Return how much memory a variable takes; of a text, the least."""
+    size = np.dtype(held.dtype).itemsize if isinstance(held.dtype, np.dtype) else 8
+    return float(math.prod(held.shape)) * size
+
+
+def _parsed(text: object) -> Any:
+    try:
+        return json.loads(text) if isinstance(text, str) else None
+    except (ValueError, RecursionError):
+        return None
+
+
+def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> None:
+    """Refuse a variable that is declared, and is not what its declaration says."""
+    numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
+    try:
+        declared = variable(name)
+    except KeyError:
+        return
+    if numeric == (declared.dtype == "U"):
+        found, wanted = ("numbers", "text") if numeric else ("text", "numbers")
+        raise FileError(f"{source} holds {found} in {name}, where {wanted} belong: run the scene again.")
+    sizes = held.group().dimensions
+    empty = [dim for dim in held.dimensions if dim not in ("elapsed_time", "drop") and not sizes[dim].size]
+    if empty and numeric:
+        raise FileError(f"{source} holds {name} of no {empty[0]}: run the scene again.")
