@@ -175,9 +175,9 @@ checkpoint.save(run_so_far(5))
         read(path)
 
     assert len(list(tmp_path.glob(".*"))) == 2  # half a file, and the lock of who is no more
-    Checkpoint(path).save(run_so_far(3))
+    checkpoint = Checkpoint(path).begin()
     assert not list(tmp_path.glob(".*.tmp"))
-    Checkpoint(path, force=True).begin().finish(run_so_far(3))
+    checkpoint.finish(run_so_far(3))
     assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
 
 
