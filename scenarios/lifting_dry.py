@@ -34,7 +34,7 @@ from atmosbox.scene import (
     Setup,
     setting,
 )
-from atmosbox.scene.ascent import misfit_panel, refuse_descent
+from atmosbox.scene.ascent import atmosphere_panel, refuse_descent
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import altitude
 from atmosbox.scene.piston import CLOSING, size_of_parcel
@@ -231,6 +231,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     )
     adiabat = "dry adiabat" if settings.rotation else "adiabat, γ = 5/3"
     return (
+        atmosphere_panel(
+            "The parcel on its way", tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings))
+        ),
         Panel(
             "profile",
             "A rising parcel cools",
@@ -261,5 +264,4 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="km",
             headlines=("lapse_rate_of_the_first_kilometre",),
         ),
-        misfit_panel(adiabat, tuple(f"temperature_at_{level:.0f}_hpa" for level in _levels(settings))),
     )

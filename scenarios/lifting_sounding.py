@@ -23,10 +23,10 @@ from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, S
 from atmosbox.scene import sounding as air
 from atmosbox.scene.ascent import (
     MoistAscent,
+    atmosphere_panel,
     finite_size,
     lifted_headlines,
     lifted_theory,
-    misfit_panel,
     refuse_descent,
     rise,
 )
@@ -259,5 +259,5 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_scale="log",
             y_invert=True,
         ),
-        misfit_panel("adiabat"),
+        atmosphere_panel("The parcel on its way"),
     )

@@ -19,7 +19,14 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.errors import SettingError
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Setup, setting
-from atmosbox.scene.ascent import MoistAscent, finite_size, lifted_theory, refuse_supersaturation, rise
+from atmosbox.scene.ascent import (
+    MoistAscent,
+    atmosphere_panel,
+    finite_size,
+    lifted_theory,
+    refuse_supersaturation,
+    rise,
+)
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.statistics import successive_error
@@ -169,14 +176,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),
     )
     return (
-        Panel(
-            "line",
-            "Over two mountains",
-            (Line("elapsed_time", "parcel_height", "parcel"),),
-            x_label="time",
-            y_label="height",
-            y_unit="km",
-        ),
+        atmosphere_panel("Over two mountains", way="the way of the parcel, from the plain to the plain beyond"),
         Panel(
             "profile",
             "Saturated up, dry down" if settings.rain else "The same way up and down",

@@ -124,9 +124,9 @@ def test_curves_end_at_the_clock_and_theory_stands_from_the_start(runs):
     dataset = runs["lifting-dry"][0]
     with style(LOOK):
         sheet = Sheet(dataset, LOOK)
-        whole = len(sheet.graphs[0].axes.lines)
+        whole = len(sheet.graphs[1].axes.lines)
         sheet.picture(4)
-        axes = sheet.graphs[0].axes
+        axes = sheet.graphs[1].axes
         shown = [line for line in axes.lines if len(line.get_xdata()) > 2]  # not the cursor
     assert whole > 1  # the adiabat, and the environment
     finite = [int(np.isfinite(np.asarray(line.get_ydata(), float)).sum()) for line in shown]
@@ -152,7 +152,7 @@ def test_panels_of_two_kinds_are_filmed_and_no_misfits(runs):
         return [panel.title for panel in chosen(dataset, panels_of(dataset), Running(dataset))]
 
     assert titles("temperature") == ["Cold molecules between warm walls", "Speeds follow Maxwell's law"]
-    assert titles("lifting-dry") == ["A rising parcel cools", "Cooling with height"]
+    assert titles("lifting-dry") == ["The parcel on its way", "A rising parcel cools"]
     assert titles("elastic-collisions") == ["Light and heavy: the same energy", "Energy and momentum are conserved"]
 
 

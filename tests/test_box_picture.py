@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from PIL import Image
 from typer.testing import CliRunner
@@ -103,12 +102,12 @@ def test_water_and_drops_are_marked_and_molecules_in_the_liquid_are_not_drawn():
 def test_the_box_is_drawn_at_the_start_half_way_and_at_the_end_over_all_panels(runs):
     run = runs["lifting-dry"]
     drawn = figure_with_box(run)
-    boxes = [axes for axes in drawn.axes if any(isinstance(each, PathCollection) for each in axes.collections)]
+    boxes = [axes for axes in drawn.axes if len(axes.collections) > 4]
     lids = [max(path.vertices[:, 1].max() for path in axes.collections[-2].get_paths()) for axes in boxes]
     assert len(lids) == 3
     assert lids == sorted(lids)
     assert lids[2] > lids[0]
-    panels = [axes for axes in drawn.axes if axes.get_xlabel()]
+    panels = [axes for axes in drawn.axes if axes.get_title("left")]
     assert len(panels) == 3
     lowest = min(axes.get_position().y0 for axes in boxes)
     assert all(axes.get_position().y1 < lowest for axes in panels)

@@ -115,7 +115,7 @@ class Sheet:
         if panels and isinstance(engine, ConstrainedLayoutEngine):
             engine.set(rect=(share, bottom, 1.0 - share, (1.0 if share else top) - bottom))
             draw = GraphPainter(dataset, look, running).draw
-            plates = put_panels(self.figure, panels, look, dataset, draw, [[] for _ in panels])
+            plates = put_panels(self.figure, panels, look, dataset, draw)
             settle(pen, plates, replace(look, grows=False))
             self.graphs = [Graph(plate.axes, plate.panel, dataset, look, running) for plate in plates]
         self.figure.set_layout_engine("none")

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from atmosbox.film.running import Running
+from atmosbox.plot.atmosphere_picture import ascent_of, draw_ground, draw_way
 from atmosbox.plot.curve import Curve, curve
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.layout import painter
@@ -111,6 +112,10 @@ class GraphPainter:
         scratch = Figure(figsize=tuple(drawing.get_size_inches()))
         whole = painter(self.dataset, self.look)
         full, entries = whole(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
+        if panel.kind == "atmosphere":
+            axes = drawing.add_subplot(spot)
+            draw_ground(axes, ascent_of(self.dataset), self.look)
+            return axes, entries
         still = tuple(line for line in panel.lines if not _grows(self.dataset, line, self.running))
         if still:
             axes, _ = painter(self.dataset, self.look, still)(drawing, spot, panel, above)
@@ -161,6 +166,7 @@ class Graph:
         self.axes, self.panel, self.dataset, self.running = axes, panel, dataset, running
         self.look = slender(look) if panel.kind == "skewt" else look
         axes.set_autoscale_on(False)
+        self.way = ascent_of(dataset) if panel.kind == "atmosphere" else None
         measured = [line for line in panel.lines if line.role == "data"]
         self.lines = [(line, measured.index(line)) for line in measured if _grows(dataset, line, running)]
         self.curves = {
@@ -186,6 +192,10 @@ class Graph:
             if artist.axes is not None:
                 artist.remove()
         before = set(self.axes.get_children())
+        if self.way is not None:
+            draw_way(self.axes, self.way, frame, np.array([frame]), self.look)
+            self.drawn = self._since(before)
+            return list(self.drawn)
         so_far = self.running.at(frame) if len(self.curves) < len(self.lines) else self.dataset
         for line, index in self.lines:
             if line in self.curves:
@@ -195,12 +205,16 @@ class Graph:
             else:
                 values = curve(so_far, self.panel, replace(line, error=None))
                 draw_line(self.axes, self.panel, line, values, self.look, index)
-        new = [artist for artist in self.axes.get_children() if artist not in before]
-        self.drawn = sorted(new, key=lambda artist: artist.get_zorder())
+        self.drawn = self._since(before)
         self.cursor.set_xdata([self.time[frame]] * 2)
         for shade in self.shades:
             shade.set_clip_path(self._below(frame))
         return [*self.shades, *([self.cursor] if self.cursor.get_visible() else []), *self.drawn]
+
+    def _since(self, before: set[Artist]) -> list[Artist]:
+        """Return what has been drawn since, from the back to the front."""
+        new = [artist for artist in self.axes.get_children() if artist not in before]
+        return sorted(new, key=lambda artist: artist.get_zorder())
 
     def _below(self, frame: int) -> Rectangle:
         """Return the part of the axes up to where the first curve has come."""

@@ -24,6 +24,7 @@ MODULES = (
     "camera.js",
     "stage.js",
     "speeds.js",
+    "atmosphere.js",
     "curves.js",
     "skewt.js",
     "ink.js",

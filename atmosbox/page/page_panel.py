@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atmosbox.file.variables import variable
-from atmosbox.scene.panels import Line, Panel
+from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 
 __all__ = ["Meaning", "declared", "names", "panel_record"]
 
@@ -68,7 +68,11 @@ def names(panels: Iterable[Panel]) -> tuple[str, ...]:
     >>> names([Panel("line", "Air", (Line("elapsed_time", "air_pressure", "walls"),)), Panel("discs", "The box")])
     ('elapsed_time', 'air_pressure')
     """
-    return tuple(dict.fromkeys(name for panel in panels if panel.kind != "discs" for name in panel.variables))
+    graphs = [panel for panel in panels if panel.kind != "discs"]
+    wanted = [name for panel in graphs for name in panel.variables]
+    if any(panel.kind == "atmosphere" for panel in graphs):
+        wanted += ATMOSPHERE_VARIABLES
+    return tuple(dict.fromkeys(wanted))
 
 
 def panel_record(
@@ -127,6 +131,7 @@ def panel_record(
         "note": panel.note,
         "across": panel.measured_across,
         "averages": panel.averages,
+        **({"along": ATMOSPHERE_VARIABLES} if panel.kind == "atmosphere" else {}),
         "sentences": list(sentences),
         "marks": marks or {},
         **{

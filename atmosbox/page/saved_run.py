@@ -13,7 +13,7 @@ from atmosbox.errors import FileError
 from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.file.provenance import parameters
 from atmosbox.page.page_box import Box, page_box
-from atmosbox.page.page_panel import Meaning, names
+from atmosbox.page.page_panel import Meaning, declared, names
 from atmosbox.page.page_stage import Stage, stage
 from atmosbox.page.thinning import share
 from atmosbox.page.word import changed, footer_of, notes, settings_of, story_of
@@ -146,7 +146,8 @@ def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str,
         if lines and panel.kind != "discs":
             panels.append(replace(panel, lines=lines))
     marks = {number: levels(dataset, panel) for number, panel in enumerate(panels) if panel.kind == "skewt"}
-    return tuple(panels), marks, headlines(dataset, tuple(panels))
+    told = headlines(dataset, tuple(panels))
+    return tuple(panels), marks, [[reading.sentence for reading in each] for each in told]
 
 
 def _held(dataset: xr.Dataset, name: str) -> bool:
@@ -182,7 +183,9 @@ def _figure(value: float, figures: int) -> float | None:
 
 
 def _meaning(dataset: xr.Dataset, name: str) -> Meaning:
-    """Return what a variable of the file means."""
+    """Return what a variable of the file means, or would mean."""
+    if name.partition("[")[0] not in dataset:
+        return declared(name)
     attrs = dataset[name.partition("[")[0]].attrs
     return Meaning(str(attrs.get("units", "1")), str(attrs.get("long_name", name.replace("_", " "))))
 

@@ -12,8 +12,9 @@ from atmosbox.plot.box_picture import BoxPicture, PlanarPicture, box_picture, in
 from atmosbox.plot.caption import footer, headlines
 from atmosbox.plot.curve import curve, unit_of
 from atmosbox.plot.layout import explanation, painter, panels_of
+from atmosbox.plot.number_card import put_numbers
 from atmosbox.plot.pen import Pen
-from atmosbox.plot.place import blank, frame, put_panels, settle
+from atmosbox.plot.place import blank, put_footer, put_heading, put_panels, settle
 from atmosbox.plot.theme import Theme, find, style
 from atmosbox.plot.unit import spelled
 
@@ -25,13 +26,13 @@ __all__ = ["figure_with_box"]
 _INSTANTS = (0.0, 0.5, 1.0)  # in parts of the run
 _BAR = 0.105  # width of the colour bar with its numbers, in widths of the page
 _HIGH = 0.36  # of the boxes, in widths of the page
-_HIGH_ON_SCREEN = 0.5  # of the boxes, in heights of a page that cannot grow
+_HIGH_ON_SCREEN = 0.4  # of the boxes, in heights of a page that cannot grow
 
 
 def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """Draw the box of a run at its start, half-way and at its end, and below it the panels of its scene.
 
-    A slide has room for the first panel alone, or for two profiles, and not for its numbers.
+    A slide has room for the first panel alone, or for two profiles.
 
     Parameters
     ----------
@@ -61,31 +62,26 @@ def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """
     look, held = find(theme), molecules(dataset)
     panels = tuple(panel for panel in panels_of(dataset) if panel.kind != "discs")
-    sentences = headlines(dataset, panels)
+    readings = [reading for each in headlines(dataset, panels) for reading in each]
     if not look.grows:  # a slide has no room for more below the boxes
         panels = panels[: 2 if all(panel.kind == "profile" for panel in panels[:2]) else 1]
-        sentences = [[] for _ in panels]
     with style(look):
-        wide, high = look.wide
+        wide, high = (72.0 * size for size in look.wide)  # pt
         boxes = _HIGH * wide if look.grows else _HIGH_ON_SCREEN * high
-        high += boxes if look.grows else 0.0
-        share = boxes / high
-        drawing = blank((wide, high), look, (0.0, 0.0, 1.0, 1.0 - share))
+        drawing = blank(look.wide, look)
         pen = Pen(drawing)
-        pictures = []
-        for place in range(len(_INSTANTS)):
-            spot = (
-                place * (1.0 - _BAR) / len(_INSTANTS),
-                1.0 - share,
-                0.96 * (1.0 - _BAR) / len(_INSTANTS),
-                0.5 * share,
-            )
-            pictures.append(box_picture(drawing.add_axes(spot), dataset, held, look))
-        plates = put_panels(drawing, panels, look, dataset, painter(dataset, look), sentences)
+        top = put_heading(pen, str(dataset.attrs.get("title", "")) if look.heading else "", look)
+        top += put_numbers(pen, readings, look, top)
+        if look.grows:
+            drawing.set_figheight((high + top + boxes) / 72.0)
+        each = (1.0 - _BAR) / len(_INSTANTS)
+        spots = [(place * each, 0.5, 0.96 * each, 0.1) for place in range(len(_INSTANTS))]
+        pictures = [box_picture(drawing.add_axes(spot), dataset, held, look) for spot in spots]
+        plates = put_panels(drawing, panels, look, dataset, painter(dataset, look))
         words = " · ".join([footer(dataset), *pictures[0].legend()])
-        frame(pen, words + explanation(dataset, panels), "", look)
-        settle(pen, plates, look)
-        _put_boxes(pen, dataset, held, pictures, share, look)
+        put_footer(pen, words + explanation(dataset, panels), look)
+        settle(pen, plates, look, top + boxes)
+        _put_boxes(pen, dataset, held, pictures, (top, top + boxes), look)
     return drawing
 
 
@@ -94,26 +90,23 @@ def _put_boxes(
     dataset: xr.Dataset,
     held: Molecules,
     pictures: list[BoxPicture | PlanarPicture],
-    share: float,
+    room: tuple[float, float],
     look: Theme,
 ) -> None:
-    """Draw the box at its instants over the panels, each under its time, and what the colours mean beside them."""
-    wide, high = (72.0 * float(size) for size in pen.figure.get_size_inches())  # pt
-    each, top = (1.0 - _BAR) / len(pictures), 1.0 - 0.5 * look.text / high
-    if look.heading:
-        title = str(dataset.attrs.get("title", ""))
-        heading = pen.figure.text(
-            0.5 * look.text / wide, top, title, fontsize=1.3 * look.title, weight="bold", va="top"
-        )
-        top -= (pen.height(heading) + 0.6 * look.text) / high
+    """Draw the box at its instants, each under its time, and beside them what the colours mean.
+
+    The room begins and ends so far below the upper end of the page [pt].
+    """
+    high = 72.0 * float(pen.figure.get_figheight())
+    each, top = (1.0 - _BAR) / len(pictures), 1.0 - (room[0] + 0.5 * look.text) / high
     frames = [round(part * (len(held.time) - 1)) for part in _INSTANTS]
     said = [_said(dataset, held, moment) for moment in frames]
     lines = max(text.count("\n") for text in said) + 1
-    bottom = 1.0 - share + 2.2 * look.small / high
+    bottom = 1.0 - (room[1] - 2.2 * look.small) / high
     below = top - (1.35 * lines + 0.3) * look.text / high
     for place, (picture, moment, text) in enumerate(zip(pictures, frames, said, strict=True)):
         left = place * each
-        pen.figure.text(left + each / 2, top, text, fontsize=look.text, ha="center", va="top")
+        pen.figure.text(left + each / 2, top, text, fontsize=look.text, ha="center", va="top").set_in_layout(False)
         picture.axes.set_position((left + 0.05 * each, bottom, 0.9 * each, below - bottom))
         picture.fit()
         picture.artists(moment)

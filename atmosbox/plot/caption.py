@@ -1,10 +1,10 @@
-"""What a figure says in numbers and in small type: misfits, quantities on the axes, and where it comes from."""
+"""What a figure says in numbers and in small type: what was measured, quantities on the axes, where it comes from."""
 
 from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.errors import FileError
 from atmosbox.plot.curve import read, unit_of
@@ -18,8 +18,29 @@ if TYPE_CHECKING:
 _COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")
 
 
-def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[str]]:
-    """Return the sentences in numbers that each panel carries.
+class Reading(NamedTuple):
+    """A headline number in words, each with its unit; a part that there is not is empty."""
+
+    label: str
+    """What was measured."""
+    number: str
+    """The measured number, in as many digits as its error allows."""
+    error: str
+    """Its standard error, and the unit."""
+    theory: str
+    """What the textbook says."""
+    difference: str
+    """Measured minus textbook."""
+
+    @property
+    def sentence(self) -> str:
+        """All on one line, for a page."""
+        beside = f" ({self.theory})" if self.theory else ""
+        return f"{self.label}{beside} = {self.number} {self.error}".rstrip()
+
+
+def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[Reading]]:
+    """Return the numbers that each panel carries.
 
     Parameters
     ----------
@@ -30,26 +51,26 @@ def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[str]]
 
     Returns
     -------
-    list of list of str
-        For each panel its sentences. What an interrupted run could not measure is left out.
+    list of list of Reading
+        For each panel its numbers. What an interrupted run could not measure is left out.
 
     Examples
     --------
     >>> import xarray as xr
     >>> dataset = xr.Dataset({"z": 1.25, "z_theory": 1.0}, attrs={"atmosbox_headlines": '["z"]'})
-    >>> headlines(dataset, (Panel("discs", "The box"),))
-    [['z − theory = +0.25']]
+    >>> [[reading.sentence for reading in each] for each in headlines(dataset, (Panel("discs", "The box"),))]
+    [['z (theory 1.00) = 1.25']]
     """
     names = _stated(dataset, "atmosbox_headlines", list)
     chosen = [list(panel.headlines) for panel in panels]
     if panels and not any(chosen):
         first = next((i for i, panel in enumerate(panels) if panel.kind != "discs"), 0)
         chosen[first] = names
-    return [[text for name in each if (text := headline(dataset, name))] for each in chosen]
+    return [[found for name in each if (found := headline(dataset, name))] for each in chosen]
 
 
-def headline(dataset: xr.Dataset, name: str) -> str:
-    """Return a headline number as a sentence: its misfit where there is a theory, else its value.
+def headline(dataset: xr.Dataset, name: str) -> Reading | None:
+    """Return a headline number in words: its value first, then what the textbook says.
 
     Parameters
     ----------
@@ -61,8 +82,8 @@ def headline(dataset: xr.Dataset, name: str) -> str:
 
     Returns
     -------
-    str
-        The sentence; empty if the run has not measured the number.
+    Reading
+        The number; None if the run has not measured it.
 
     Raises
     ------
@@ -73,29 +94,47 @@ def headline(dataset: xr.Dataset, name: str) -> str:
     --------
     >>> import xarray as xr
     >>> dataset = xr.Dataset({"t": ((), 204.53, {"units": "K", "display_name": "T(300 hPa)"}), "t_se": 0.05})
-    >>> headline(dataset, "t")
+    >>> headline(dataset, "t").sentence
     'T(300 hPa) = 204.53 ± 0.05 K'
     >>> dataset["t_theory"] = ((), 204.41, {"units": "K", "display_name": "adiabat"})
-    >>> headline(dataset, "t")
-    'T(300 hPa) − adiabat = +0.12 ± 0.05 K'
+    >>> [words.split() for words in headline(dataset, "t")[3:]]
+    [['adiabat', '204.41', 'K'], ['difference', '+0.12', 'K']]
     """
     value = _scalar(dataset, name)
     if not math.isfinite(value):
-        return ""
+        return None
     attrs = read(dataset, name).attrs
     unit = str(attrs.get("units", "1"))
     shown = str(attrs.get("display_units", unit))
-    error = _scalar(dataset, f"{name}_se")
     theory = _scalar(dataset, f"{name}_theory")
-    title = str(attrs.get("display_name") or attrs.get("long_name") or name.replace("_", " "))
-    compared = math.isfinite(theory) and theory != 0.0
-    if compared:
-        value -= theory
-        title = f"{title} − {read(dataset, f'{name}_theory').attrs.get('display_name', 'theory')}"
-        shown = of_difference(shown)
-    value = float(convert(value, unit, shown, name=name, difference=compared))
-    error = float(convert(error, unit, shown, name=name, difference=True))
-    return f"{title} = {number(value, error, signed=compared)} {'' if shown == '1' else spelled(shown)}".rstrip()
+    error = float(convert(_scalar(dataset, f"{name}_se"), unit, shown, name=name, difference=True))
+    measured = float(convert(value, unit, shown, name=name))
+    label = str(attrs.get("display_name") or attrs.get("long_name") or name.replace("_", " "))
+    digits, deviation, power = _digits(measured, error)
+    spread = " ".join(part for part in ("±" if deviation else "", deviation, power, _symbol(shown)) if part)
+    if not math.isfinite(theory):
+        return Reading(label, digits, spread, "", "")
+    expected = float(convert(theory, unit, shown, name=name))
+    called = str(read(dataset, f"{name}_theory").attrs.get("display_name", "theory"))
+    apart = float(convert(value - theory, unit, of_difference(shown), name=name, difference=True))
+    return Reading(
+        label,
+        digits,
+        spread,
+        f"{called} {_known(expected, error, _symbol(shown))}",
+        f"difference {_known(apart, error, _symbol(of_difference(shown)), signed=True)}",
+    )
+
+
+def _known(value: float, error: float, unit: str, *, signed: bool = False) -> str:
+    """Return a number in as many digits as an error allows, and its unit, which no line tears off."""
+    digits, _, power = _digits(value, error, signed=signed)
+    return "\u00a0".join(part for part in (digits, power, unit.replace(" ", "\u00a0")) if part)
+
+
+def _symbol(unit: str) -> str:
+    """Return how a unit is written, nothing for a plain number."""
+    return "" if unit == "1" else spelled(unit)
 
 
 def number(value: float, error: float = math.nan, *, signed: bool = False) -> str:
@@ -118,6 +157,15 @@ def number(value: float, error: float = math.nan, *, signed: bool = False) -> st
     >>> number(0.1234, 0.0512), number(-3.2e-15, signed=True), number(17.3, 1.26)
     ('0.12 ± 0.05', '−3.2 × 10⁻¹⁵', '17.3 ± 1.3')
     """
+    digits, deviation, power = _digits(value, error, signed=signed)
+    text = f"{digits} ± {deviation}" if deviation else digits
+    if power:
+        text = f"({text}) {power}" if deviation else f"{text} {power}"
+    return text
+
+
+def _digits(value: float, error: float, *, signed: bool = False) -> tuple[str, str, str]:
+    """Return the digits of a number and of its error, which may be empty, and the power of ten that both share."""
     known = math.isfinite(error) and error > 0
     largest = max(abs(value), error) if known else abs(value)
     power = 0 if largest == 0 or 1e-3 <= largest < 1e6 else math.floor(math.log10(largest))
@@ -133,12 +181,7 @@ def number(value: float, error: float = math.nan, *, signed: bool = False) -> st
     text = f"{value:{'+' if signed else ''}.{decimals}f}".replace("-", "−")
     if not text.strip("+−0."):
         text = text.strip("+−")
-    if known:
-        text += f" ± {error:.{decimals}f}"
-    if power:
-        text = f"({text})" if known else text
-        text += f" × {power_of_ten(power)}"
-    return text
+    return text, f"{error:.{decimals}f}" if known else "", f"× {power_of_ten(power)}" if power else ""
 
 
 def footer(dataset: xr.Dataset) -> str:
@@ -198,6 +241,8 @@ def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tup
     if panel.kind == "discs":
         first, second = axis_names(dataset)
         return (panel.x_label or first, panel.x_unit or "nm"), (panel.y_label or second, panel.x_unit or "nm")
+    if panel.kind == "atmosphere":
+        return (panel.x_label, ""), (panel.y_label or "height", "km")
     line = panel.lines[0]
     names = [read(dataset, name).attrs.get("long_name", name.replace("_", " ")) for name in (line.x, line.y)]
     return (

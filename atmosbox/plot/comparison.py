@@ -82,7 +82,7 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     panels = shared_panels(datasets)
     draw = _Painter(datasets, labels, look).draw
     small = _small(datasets) + explanation(datasets[0], panels)
-    return page(panels, look, datasets[0], draw, [[] for _ in panels], small, title)
+    return page(panels, look, datasets[0], draw, [], small, title)
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
@@ -115,7 +115,7 @@ def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
     found = [
         panel
         for panel in panels_of(first)
-        if panel.kind != "discs"
+        if panel.kind not in ("discs", "atmosphere")
         and any(line.role == "data" and all(_held(each, line) for each in datasets) for line in panel.lines)
     ]
     if not found:

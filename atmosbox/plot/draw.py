@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
+from atmosbox.plot.atmosphere_picture import draw_atmosphere
 from atmosbox.plot.curve import curve
 from atmosbox.plot.disc_marker import draw_discs
 from atmosbox.plot.stroke import MOST_POINTS, draw_line, draw_steps
@@ -66,6 +67,8 @@ def draw(
     """
     if panel.kind == "discs":
         return draw_discs(axes, panel, dataset, theme)
+    if panel.kind == "atmosphere":
+        return draw_atmosphere(axes, dataset, theme)
     axes.set_xscale(panel.x_scale)
     axes.set_yscale(panel.y_scale)
     axes.grid(visible=True)

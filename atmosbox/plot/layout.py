@@ -64,7 +64,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     panels = panels_of(dataset)
     heading = str(dataset.attrs.get("title", "")) if look.heading else ""
     small = footer(dataset) + explanation(dataset, panels)
-    return page(panels, look, dataset, painter(dataset, look), headlines(dataset, panels), small, heading)
+    readings = [reading for each in headlines(dataset, panels) for reading in each]
+    return page(panels, look, dataset, painter(dataset, look), readings, small, heading)
 
 
 def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = None) -> Draw:

@@ -1,4 +1,4 @@
-"""Where everything stands: panels in columns, each under its title, its numbers and its legend.
+"""Where everything stands: numbers over panels in columns, each under its title, its note and its legend.
 
 The room for all of it is found by matplotlib's constrained layout. What this file adds is what matplotlib leaves to
 the user: lines that are broken where a panel ends, as many columns of a legend as fit, titles that stand equally high,
@@ -7,7 +7,7 @@ and a page that grows with its text.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from matplotlib.axes import Axes
@@ -18,8 +18,9 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.text import Annotation
 from matplotlib.transforms import offset_copy
 
-from atmosbox.plot.caption import axis_labels
+from atmosbox.plot.caption import Reading, axis_labels
 from atmosbox.plot.draw import Entry
+from atmosbox.plot.number_card import put_numbers
 from atmosbox.plot.pen import Pen
 from atmosbox.plot.theme import FAINT, Theme, style
 from atmosbox.plot.tick import put_ticks
@@ -30,10 +31,10 @@ from atmosbox.scene.panels import Panel
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Draw", "Plate", "blank", "frame", "page", "put_panels", "settle"]
+__all__ = ["Draw", "Plate", "blank", "page", "put_footer", "put_heading", "put_panels", "settle"]
 
-_TALL = ("profile", "discs", "skewt")
-_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0}
+_TALL = ("profile", "discs", "skewt", "atmosphere")
+_WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0, "atmosphere": 1.1}
 _TEXT_LINES = 6  # over the axes, for which a page has room; it grows for more
 _ROUNDS = 3  # of layout and text: what is written takes room, and the room decides where lines break
 # The lines of a legend and their distance from the words, in sizes of the type; and the gaps between legend and axes,
@@ -53,10 +54,8 @@ class Plate(NamedTuple):
     """What it shows."""
     entries: list[Entry]
     """The entries of its legend."""
-    sentences: list[str]
-    """The numbers under its title."""
     note: Annotation
-    """Where these are written."""
+    """Where its sentence is written, under its title."""
     labels: tuple[tuple[str, str], tuple[str, str]]
     """What the two axes show, and in which units; empty for an axis that is labelled in the panel below."""
     row: int
@@ -64,10 +63,10 @@ class Plate(NamedTuple):
 
 
 def page(
-    panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, sentences: list[list[str]],
+    panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[Reading],
     small: str, heading: str,
 ) -> Figure:  # fmt: skip
-    """Return a page of panels, with small type below them and a heading over them.
+    """Return a page of panels, with small type below them, numbers in large type and a heading over them.
 
     Parameters
     ----------
@@ -79,10 +78,10 @@ def page(
         The run whose variables name the axes.
     draw : callable
         What draws a panel.
-    sentences : list of list of str
-        For each panel, the numbers that stand under its title.
+    readings : sequence of Reading
+        The numbers over the panels.
     small, heading : str
-        What is written under and over the panels; an empty heading takes no space.
+        What is written under and over all that; an empty heading takes no space.
 
     Examples
     --------
@@ -92,15 +91,20 @@ def page(
     >>> from atmosbox.scene.panels import Line
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
-    >>> drawing = page((panel,), look, dataset, painter(dataset, look), [[]], "atmosbox", "")
+    >>> drawing = page((panel,), look, dataset, painter(dataset, look), [], "atmosbox", "")
     >>> [text.get_text() for text in drawing.texts], drawing.axes[0].get_title("left")
     (['atmosbox'], 'Pressure')
     """
     with style(look):
         drawing = blank(look.wide if len(panels) > 1 else look.narrow, look)
-        plates = put_panels(drawing, panels, look, dataset, draw, sentences) if panels else []
-        frame(Pen(drawing), small, heading, look)
-        settle(Pen(drawing), plates, look)
+        pen = Pen(drawing)
+        top = put_heading(pen, heading, look)
+        top += put_numbers(pen, readings, look, top)
+        if look.grows:
+            drawing.set_figheight(drawing.get_figheight() + top / 72)
+        plates = put_panels(drawing, panels, look, dataset, draw) if panels else []
+        put_footer(pen, small, look)
+        settle(pen, plates, look, top)
     return drawing
 
 
@@ -130,9 +134,7 @@ def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, floa
     return drawing
 
 
-def put_panels(
-    drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, sentences: list[list[str]]
-) -> list[Plate]:
+def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw) -> list[Plate]:
     """Draw every panel at its place.
 
     Parameters
@@ -147,8 +149,6 @@ def put_panels(
         The run whose variables name the axes.
     draw : callable
         What draws a panel.
-    sentences : list of list of str
-        For each panel, the numbers that stand under its title.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def put_panels(
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),)), THEMES["notes"]
     >>> page = blank((4.0, 3.0), look)
-    >>> plates = put_panels(page, (panel, panel), look, dataset, painter(dataset, look), [[], []])
+    >>> plates = put_panels(page, (panel, panel), look, dataset, painter(dataset, look))
     >>> [(plate.row, plate.column) for plate in plates]
     [(0, 0), (0, 1)]
     """
@@ -183,20 +183,20 @@ def put_panels(
                 "", (0.0, 1.0), (0.0, 0.0), xycoords="axes fraction", textcoords="offset points", va="top",
                 size=look.text, linespacing=1.2, annotation_clip=False,
             )  # fmt: skip
-            plates.append(Plate(axes, panel, entries, sentences[index], note, labels, row, place))
+            plates.append(Plate(axes, panel, entries, note, labels, row, place))
         drawing.align_ylabels([plate.axes for plate in plates if plate.column == place])
     return plates
 
 
-def frame(pen: Pen, small: str, heading: str, look: Theme) -> None:
-    """Write what stands over and under all panels.
+def put_footer(pen: Pen, small: str, look: Theme) -> None:
+    """Write the small type under all panels.
 
     Parameters
     ----------
     pen : Pen
         The pen of the page.
-    small, heading : str
-        What is written under and over the panels; an empty heading takes no space.
+    small : str
+        What it says.
     look : Theme
         How large.
 
@@ -204,23 +204,47 @@ def frame(pen: Pen, small: str, heading: str, look: Theme) -> None:
     --------
     >>> from atmosbox.plot.theme import THEMES
     >>> drawing = blank((4.0, 3.0), THEMES["notes"])
-    >>> frame(Pen(drawing), "atmosbox", "", THEMES["notes"])
+    >>> put_footer(Pen(drawing), "atmosbox", THEMES["notes"])
     >>> [text.get_text() for text in drawing.texts]
     ['atmosbox']
     """
     width = 72 * pen.figure.get_figwidth()
-    left = look.text / 2 / width
     # Type that is hinted for a screen may be narrower than in print.
     small = pen.wrap(small, 0.98 * (width - look.text), look.small)
-    pen.figure.supxlabel(small, x=left, ha="left", fontsize=look.small, color=FAINT)
-    if heading:
-        size = 1.3 * look.title
-        heading = pen.wrap(heading, width - look.text, size, "bold")
-        pen.figure.suptitle(heading, x=left, ha="left", fontsize=size, weight="bold")
+    pen.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
 
 
-def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
-    """Write titles, numbers, legends and labels around the panels, in lines that end where these end.
+def put_heading(pen: Pen, heading: str, look: Theme) -> float:
+    """Write a heading over all panels; return how much room it takes [pt].
+
+    Parameters
+    ----------
+    pen : Pen
+        The pen of the page.
+    heading : str
+        What it says; an empty one takes no space.
+    look : Theme
+        How large.
+
+    Examples
+    --------
+    >>> from atmosbox.plot.theme import THEMES
+    >>> put_heading(Pen(blank((4.0, 3.0), THEMES["notes"])), "", THEMES["notes"])
+    0.0
+    """
+    if not heading:
+        return 0.0
+    width, height = (72 * float(size) for size in pen.figure.get_size_inches())
+    size = 1.3 * look.title
+    heading = pen.wrap(heading, width - look.text, size, "bold")
+    place = (0.5 * look.text / width, 1.0 - 0.5 * look.text / height)
+    text = pen.figure.text(*place, heading, fontsize=size, weight="bold", va="top")
+    text.set_in_layout(False)
+    return pen.height(text) + look.text
+
+
+def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None:
+    """Write titles, notes, legends and labels around the panels, in lines that end where these end.
 
     Parameters
     ----------
@@ -230,6 +254,8 @@ def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
         Its panels, from `put_panels`.
     look : Theme
         How large; a page that grows becomes higher where there is much to say.
+    top : float
+        How much room is taken over all panels [pt].
 
     Examples
     --------
@@ -240,7 +266,7 @@ def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
     >>> dataset = xr.Dataset({"p": ("z", [1e5, 9e4], {"units": "Pa"})}, coords={"z": [0.0, 900.0]})
     >>> panel, look = Panel("profile", "Pressure", (Line("p", "z", "air"),), y_label="height"), THEMES["notes"]
     >>> drawing = blank((4.0, 3.0), look)
-    >>> settle(Pen(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look), [[]]), look)
+    >>> settle(Pen(drawing), put_panels(drawing, (panel,), look, dataset, painter(dataset, look)), look)
     >>> drawing.axes[0].get_ylabel()
     'height'
     """
@@ -249,6 +275,8 @@ def settle(pen: Pen, plates: list[Plate], look: Theme) -> None:
     assert engine is not None
     columns: dict[tuple[int, int], int] = {}
     for _ in range(_ROUNDS):
+        if top:
+            engine.set(rect=(0.0, 0.0, 1.0, 1.0 - top / 72 / drawing.get_figheight()))  # type: ignore[call-arg]
         engine.execute(drawing)
         for plate in plates:
             plate.axes.apply_aspect()
@@ -274,11 +302,11 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
     power = 0
     if panel.kind == "skewt":
         fit_skewt(axes, width, height, size)
-    else:
+    elif panel.kind != "atmosphere":  # whose way across is no measure
         log = panel.x_scale == "log"
         power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
     if x_label:
-        axes.set_xlabel(pen.wrap(labelled(x_label, x_unit, power), width, size))
+        axes.set_xlabel(pen.wrap(labelled(x_label, x_unit, power) if x_unit else x_label, width, size))
     else:
         axes.tick_params(axis="x", labelbottom=False)
     log = panel.y_scale == "log"
@@ -288,7 +316,7 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
 
 
 def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dict[tuple[int, int], int]) -> float:
-    """Put the legend on the axes and break the numbers into lines, and return how much room both need [pt].
+    """Put the legend on the axes and break the note into lines, and return how much room both need [pt].
 
     Legends of equally many entries in a row have equally many columns, which are kept by row and entries.
     """
@@ -313,13 +341,12 @@ def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dic
         for line in legend.get_lines():
             line.set_linewidth(max(line.get_linewidth(), look.line))
         height += pen.height(legend) + _GAP * size
-    said = [pen.wrap(line, room, size) for line in (plate.panel.note, *plate.sentences) if line]
-    plate.note.set_text("\n".join(said))
-    return height + (pen.height(plate.note) + _GAP * size if said else 0.0)
+    plate.note.set_text(pen.wrap(plate.panel.note, room, size))
+    return height + (pen.height(plate.note) + _GAP * size if plate.panel.note else 0.0)
 
 
 def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme) -> None:
-    """Write the title at a height over the axes [pt], and under it the numbers."""
+    """Write the title at a height over the axes [pt], and under it the note."""
     extent, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
     title = pen.wrap(plate.panel.title, (extent.x1 - edge) / point, look.title, "bold")
     left = (edge - extent.x0) / extent.width

@@ -1,5 +1,7 @@
 // From the values of a run, in SI, to the curves of a graph in the units that are read.
 
+import { wayOf } from "./atmosphere.js";
+
 const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
 
 // The values of a run by name. Those that go with time may grow while the page is open.
@@ -52,6 +54,7 @@ const along = (values, count) => (values.length === 1 && count > 1 ? new Array(c
 
 // The curves of a panel, those that the run has values of.
 export function curvesOf(panel, numbers) {
+  if (panel.kind === "atmosphere") return wayOf(panel, numbers);
   const seen = {};
   const found = [];
   for (const line of panel.lines) {

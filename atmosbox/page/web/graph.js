@@ -1,5 +1,6 @@
 // One graph: uPlot gives axes, grid and size, the curves are drawn as the figures of a run draw them.
 
+import { drawAtmosphere } from "./atmosphere.js";
 import { curveColour, curveDash, look } from "./colour.js";
 import { logTicks, powerText, scaled, tickTexts, ticks } from "./figure.js";
 import { drawCurve, markerSvg } from "./ink.js";
@@ -91,6 +92,7 @@ export class Graph {
   #texts(axis, plot) {
     const { texts, power } = tickTexts(this.#ticks(axis, plot));
     const { label, unit } = this.panel[axis];
+    if (axis === "x" && this.panel.kind === "atmosphere") return texts.map(() => ""); // the way across is no measure
     const words = [powerText(power), unit].filter(Boolean).join(" ");
     const text = words ? `${label} (${words})` : label;
     const spot = this.part(axis === "x" ? ".along" : ".up");
@@ -148,6 +150,10 @@ export class Graph {
       this.range[axis] = [floor || (kind === "histogram" && low === 0) ? Math.min(low, 0) : low - margin * span, high + margin * span];
     }
     if (this.fixed) Object.assign(this.range, this.fixed);
+    if (kind === "atmosphere" && known.y.length) {
+      const high = Math.max(...known.y, 1e-3);
+      this.range.y = [-0.12 * high, 1.1 * high];
+    }
     if (kind === "skewt" && known.y.length) {
       this.range.y = [Math.log10(Math.min(...known.y) / 1.02), Math.log10(this.foot)];
     }
@@ -199,6 +205,11 @@ export class Graph {
       drawSkewt(context, this.panel, this.curves, this.foot, 10 ** this.range.y[0], (x, y) => this.#spot(x, y), unit);
     }
     this.#marks(context, bbox, unit);
+    if (this.panel.kind === "atmosphere") {
+      drawAtmosphere(context, bbox, this.curves, this.time, (height) => this.#spot(0, height)[1], unit);
+      context.restore();
+      return;
+    }
     for (const curve of this.curves) drawCurve(context, curve, {
       spot: (x, y) => this.#spot(x, y), unit, across: this.panel.across, colour: this.colour(curve), several: this.#several(curve),
       floor: this.plot.valToPos(this.range.y[0], "y", true),
@@ -227,6 +238,7 @@ export class Graph {
   at(time) {
     this.time = time;
     if (time === null) return;
+    if (this.panel.kind === "atmosphere") this.plot.redraw(false);
     if (this.overTime && this.whole) {
       const place = this.to.x(time), [low, high] = this.range.x;
       const left = this.plot.valToPos(Math.min(Math.max(Number.isFinite(place) ? place : low, low), high), "x");

@@ -17,7 +17,7 @@ from atmosbox.scene.statistics import successive_error
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["lifted_headlines", "lifted_panels", "lifted_theory", "misfit_panel"]
+__all__ = ["atmosphere_panel", "lifted_headlines", "lifted_panels", "lifted_theory"]
 
 Array = NDArray[np.float64]
 BLOCK = 5
@@ -25,7 +25,7 @@ BLOCK = 5
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
-    """Return temperature against pressure with its kink, vapour and liquid, and parcel minus adiabat.
+    """Return temperature against pressure with its kink, vapour and liquid, beside the parcel on its way.
 
     Parameters
     ----------
@@ -37,6 +37,7 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
     cloud = ascent.base > 1.02 * ascent.top_pressure
     base = (Line("adiabat_temperature", "cloud_base_theory", "condensation level", "reference"),) if cloud else ()
     return (
+        atmosphere_panel("The parcel and its cloud" if cloud else "The parcel on its way"),
         Panel(
             "profile",
             "A kink at the cloud base" if cloud else "Too dry for a cloud",
@@ -49,7 +50,10 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
             ),
             x_label="temperature",
             x_unit="degC",
-            headlines=("cloud_base",) if cloud else (),
+            headlines=(
+                *(("cloud_base",) if cloud else ()),
+                *(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2]),
+            ),
             y_label="pressure",
             y_unit="hPa",
             y_scale="log",
@@ -71,36 +75,23 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
             y_scale="log",
             y_invert=True,
         ),
-        misfit_panel(adiabat, tuple(f"temperature_at_{level / 100.0:.0f}_hpa" for level in ascent.levels[1::2])),
     )
 
 
-def misfit_panel(adiabat: str, headlines: tuple[str, ...] = ()) -> Panel:
-    """Return temperature minus that of the adiabat, with its error, against pressure.
+def atmosphere_panel(title: str, headlines: tuple[str, ...] = (), way: str = "") -> Panel:
+    """Return the picture of the parcel on its way, with ground, cloud and rain.
 
     Parameters
     ----------
-    adiabat
-        What the adiabat is called.
+    title
+        What is seen.
     headlines
-        Names of the numbers that are written into it.
+        Names of the numbers that go with it.
+    way
+        What is written along the way across; nothing for a parcel that rises where it is.
     """
-    parcel, theory = "parcel_temperature", "adiabat_temperature"
-    return Panel(
-        "profile",
-        "Parcel minus adiabat",
-        (
-            Line(parcel, "parcel_pressure", "parcel", error="parcel_temperature_se", minus=theory),
-            Line(theory, "parcel_pressure", adiabat, "theory", minus=theory),
-        ),
-        x_label="difference",
-        x_unit="K",
-        y_label="pressure",
-        y_unit="hPa",
-        y_scale="log",
-        y_invert=True,
-        headlines=headlines,
-    )
+    line = Line("elapsed_time", "parcel_height", "parcel")
+    return Panel("atmosphere", title, (line,), x_label=way, y_label="height", y_unit="km", headlines=headlines)
 
 
 def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict[str, Array]:

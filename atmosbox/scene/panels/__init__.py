@@ -6,7 +6,18 @@ drawn long afterwards, on a machine that has neither the scene nor the engine.
 """
 
 from atmosbox.scene.panels.line import ROLES, Line
-from atmosbox.scene.panels.panel import DISC_VARIABLES, KINDS, SCALES, SKEWT_AXES, Panel
+from atmosbox.scene.panels.panel import ATMOSPHERE_VARIABLES, DISC_VARIABLES, KINDS, SCALES, SKEWT_AXES, Panel
 from atmosbox.scene.panels.record import from_json, to_json
 
-__all__ = ["DISC_VARIABLES", "KINDS", "ROLES", "SCALES", "SKEWT_AXES", "Line", "Panel", "from_json", "to_json"]
+__all__ = [
+    "ATMOSPHERE_VARIABLES",
+    "DISC_VARIABLES",
+    "KINDS",
+    "ROLES",
+    "SCALES",
+    "SKEWT_AXES",
+    "Line",
+    "Panel",
+    "from_json",
+    "to_json",
+]

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields
 from atmosbox.scene.panels.line import Line
 from atmosbox.scene.panels.text_check import check_choice, check_text
 
-__all__ = ["DISC_VARIABLES", "KINDS", "SCALES", "SKEWT_AXES", "Panel"]
+__all__ = ["ATMOSPHERE_VARIABLES", "DISC_VARIABLES", "KINDS", "SCALES", "SKEWT_AXES", "Panel"]
 
-KINDS = ("line", "profile", "histogram", "discs", "skewt")
+KINDS = ("line", "profile", "histogram", "discs", "skewt", "atmosphere")
 SCALES = ("linear", "log")
 SKEWT_AXES = {
     "x_unit": "degC",
@@ -19,6 +19,15 @@ SKEWT_AXES = {
     "x_invert": False,
     "y_invert": True,
 }
+ATMOSPHERE_VARIABLES = (
+    "parcel_temperature",
+    "environment_pressure",
+    "cloud_liquid_water_mixing_ratio",
+    "rain_mixing_ratio",
+    "relative_humidity",
+    "cloud_base",
+)
+"""What the picture of an atmosphere shows of the parcel beside its height, where the run measures it."""
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
 
 
@@ -28,14 +37,15 @@ class Panel:
 
     Parameters
     ----------
-    kind : {"line", "profile", "histogram", "discs", "skewt"}
+    kind : {"line", "profile", "histogram", "discs", "skewt", "atmosphere"}
         ``line``: the measured variable up the page, for instance against time. ``profile``: height or
         pressure up the page, the measured variable along it. ``histogram``: the data as steps between the
         bounds of their bins. ``discs``: the molecules of a flat box themselves, from the variables
         `DISC_VARIABLES`; it has no lines. ``skewt``: temperatures over pressure in a skew-T log-p diagram, whose
         axes are always in degC and hPa. CAPE and CIN are shaded between the first measured curve and the first
         of the environment: areas between *temperatures*, as is the custom, although the numbers CAPE and CIN are
-        those of virtual temperatures.
+        those of virtual temperatures. ``atmosphere``: the parcel on its way, over the ground or over mountains, with
+        its cloud and its rain; its one line is the height of the parcel over time.
     title : str
         What the graph shows, in a few words.
     lines : tuple of Line

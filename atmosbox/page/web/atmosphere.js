@@ -1,0 +1,157 @@
+// The atmosphere around a lifted parcel: ground or mountains, the parcel where it is now, its cloud, its rain, its gauges.
+
+import { curveColour, look, theme } from "./colour.js";
+
+const CLOUD = 2e-4; // liquid per dry air [kg/kg] of a thin cumulus, from which on a cloud is drawn
+const GAP = 0.07; // how high above the mountains the parcel is drawn, in heights of the picture
+const PUFFS = 9; // how many puffs a cloud is wide
+const COLOURS = {
+  light: { low: "#e4f0f8", high: "#9cc4e2", ground: "#8aa37b", rock: "#9a8f80", cloud: "#ffffff", rim: "#8c97a3", clear: "#cfe3f1" },
+  dark: { low: "#3b5468", high: "#1d3247", ground: "#4d6342", rock: "#6b6256", cloud: "#dfe6ee", rim: "#8c97a3", clear: "#4d7390" },
+};
+
+// The way of a run as a curve of its graph: heights [km] over time, and what was measured on it.
+export function wayOf(panel, numbers) {
+  const time = numbers.get("elapsed_time"), height = numbers.get("parcel_height");
+  if (!time?.length || !height?.length) return [];
+  const [temperature, pressure, liquid, rain, humidity, base] = panel.along.map((name) => numbers.get(name) ?? []);
+  const y = height.map((value) => (value === null ? NaN : value / 1000));
+  return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, rain, humidity, base: base[0] ?? Infinity } }];
+}
+
+// Draw the ways of all runs up to a time into a box of the canvas; `up` turns a height into a pixel.
+export function drawAtmosphere(context, box, curves, time, up, unit) {
+  const colours = COLOURS[theme()];
+  const sky = context.createLinearGradient(0, box.top + box.height, 0, box.top);
+  sky.addColorStop(0, colours.low);
+  sky.addColorStop(1, colours.high);
+  context.fillStyle = sky;
+  context.fillRect(box.left, box.top, box.width, box.height);
+  const ways = curves.map((curve, number) => placed(curve, number, curves.length, time, box));
+  for (const way of ways) drawCloud(context, box, way, up, unit, colours);
+  if (ways.length) drawGround(context, box, ways[0], up, colours);
+  for (const way of ways) drawRain(context, box, way, up, unit);
+  ways.forEach((way, number) => {
+    drawParcel(context, way, up, unit, curveColour("data", number), colours);
+    drawGauges(context, box, way, number, ways.length, unit);
+  });
+}
+
+// A way with its places in the picture: straight up, each run in a part of its own, or from end to end over mountains.
+function placed({ x, y, way }, number, runs, time, box) {
+  const highest = y.reduce((most, value, place) => (value > y[most] ? place : most), 0);
+  const crosses = y[highest] - Math.min(...y.slice(highest)) > 0.1 * (Math.max(...y) - Math.min(...y));
+  const wide = box.width / runs, span = x.at(-1) - x[0] || 1;
+  const now = time === null ? x.length - 1 : Math.max(0, x.findLastIndex((each) => each <= time));
+  const across = (place) => (crosses
+    ? box.left + box.width * (0.05 + 0.9 * (x[place] - x[0]) / span) : box.left + wide * (number + 0.3));
+  // below the measured base there is no cloud, but single clusters of molecules
+  const cloudy = (place) => (way.liquid[place] ?? 0) > CLOUD && !(way.pressure[place] > way.base);
+  return { y, ...way, crosses, across, cloudy, now, wide };
+}
+
+function drawGround(context, box, { y, crosses, across }, up, colours) {
+  const bottom = box.top + box.height, right = box.left + box.width, below = crosses ? GAP * box.height : 0;
+  context.fillStyle = crosses ? colours.rock : colours.ground;
+  context.beginPath();
+  context.moveTo(box.left, bottom);
+  context.lineTo(box.left, up(crosses ? y[0] : 0) + below);
+  if (crosses) y.forEach((height, place) => context.lineTo(across(place), up(height) + below));
+  context.lineTo(right, up(crosses ? y.at(-1) : 0) + below);
+  context.lineTo(right, bottom);
+  context.fill();
+}
+
+// First the rims of all puffs, then what fills them, so that a cloud has one outline.
+function drawCloud(context, box, { y, now, liquid, cloudy, crosses, across, wide }, up, unit, colours) {
+  const places = Array.from({ length: now + 1 }, (_, place) => place).filter(cloudy);
+  if (!places.length) return;
+  const puffs = [];
+  context.save();
+  if (crosses) {
+    const most = Math.max(...places.map((place) => liquid[place]));
+    for (const place of places) puffs.push([across(place), up(y[place]), 13 * unit * Math.sqrt(liquid[place] / most)]);
+  } else {
+    const clear = y.findLastIndex((_, place) => place <= now && !cloudy(place));
+    const base = up(y[Math.min(clear + 1, now)]), top = up(y[now]);
+    const rows = Math.max(2, Math.round((base - top) / (9 * unit)));
+    for (let row = 0; row < rows; row += 1) {
+      for (let column = 0; column < PUFFS; column += 1) {
+        const jitter = Math.abs(Math.sin(12.9898 * row + 78.233 * column) * 43758.5453) % 1; // the same in every picture
+        const half = wide * (0.24 - 0.08 * row / rows) * (2 * column / (PUFFS - 1) - 1);
+        puffs.push([across(now) + half, base + (top - base) * row / (rows - 1), (9 + 6 * jitter) * unit]);
+      }
+    }
+    context.beginPath();
+    context.rect(box.left, box.top, box.width, base - box.top);
+    context.clip();
+  }
+  for (const [colour, wider] of [[colours.rim, 1.5 * unit], [colours.cloud, 0]]) {
+    context.fillStyle = colour;
+    for (const [x, height, radius] of puffs) disc(context, x, height, radius + wider);
+  }
+  context.restore();
+}
+
+function drawRain(context, box, { y, now, rain, cloudy, crosses, across, wide }, up, unit) {
+  const last = rain.at(-1) ?? 0;
+  if (!(rain[now] > 0)) return;
+  context.strokeStyle = look().liquid;
+  context.lineWidth = 1.6 * unit;
+  context.beginPath();
+  if (crosses) {
+    for (let place = 1; place <= now; place += 1) {
+      if (rain[place] - rain[place - 1] < 0.02 * last) continue;
+      context.moveTo(across(place), up(y[place]));
+      context.lineTo(across(place) - 3 * unit, up(y[place]) + GAP * box.height);
+    }
+  } else {
+    const base = up(y[Math.min(y.findLastIndex((_, place) => place <= now && !cloudy(place)) + 1, now)]);
+    for (let streak = -4; streak <= 4; streak += 1) {
+      const x = across(now) + 0.05 * streak * wide;
+      context.moveTo(x, base);
+      context.lineTo(x - 3 * unit, up(0));
+    }
+  }
+  context.stroke();
+}
+
+// The parcel, as large as it has grown by its temperature and its pressure.
+function drawParcel(context, { y, now, temperature, pressure, cloudy, across }, up, unit, rim, colours) {
+  const grown = Math.cbrt((temperature[now] / temperature[0]) * (pressure[0] / pressure[now])) || 1;
+  context.fillStyle = rim;
+  disc(context, across(now), up(y[now]), (8 * grown + 2) * unit);
+  context.fillStyle = cloudy(now) ? colours.rim : colours.clear;
+  disc(context, across(now), up(y[now]), 8 * grown * unit);
+}
+
+// Thermometer, barometer and, where there is water, hygrometer, in figures that the last row can read.
+function drawGauges(context, box, { now, temperature, pressure, humidity, crosses, wide }, number, runs, unit) {
+  const rows = [
+    [temperature[now], (kelvin) => `${(kelvin - 273.15).toFixed(0)} °C`, look().warm],
+    [pressure[now], (pascal) => `${(pascal / 100).toFixed(0)} hPa`, look().ink],
+    [humidity[now], (share) => `${(100 * share).toFixed(0)} % RH`, look().liquid],
+  ].filter(([value]) => Number.isFinite(value));
+  const size = Math.min(24, 0.13 * wide / unit) * unit;
+  context.save();
+  context.font = `600 ${size}px system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif`;
+  context.textAlign = crosses && number === 0 ? "left" : "right";
+  context.lineJoin = "round";
+  context.lineWidth = 4 * unit;
+  context.strokeStyle = look().card;
+  const x = crosses && number === 0 ? box.left + 8 * unit : box.left + wide * (crosses ? runs : number + 1) - 8 * unit;
+  rows.forEach(([value, words, colour], row) => {
+    const base = box.top + (row + 1) * 1.25 * size;
+    const text = words(value).replace("-", "−");
+    context.strokeText(text, x, base);
+    context.fillStyle = colour;
+    context.fillText(text, x, base);
+  });
+  context.restore();
+}
+
+function disc(context, x, y, radius) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 7);
+  context.fill();
+}

@@ -1,0 +1,357 @@
+"""The atmosphere around a lifted parcel: ground or mountains, the parcel on its way, its cloud and its rain."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from atmosbox.plot.curve import read
+from atmosbox.plot.theme import DARK, FAINT, OKABE_ITO, Theme
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Ascent", "ascent_of", "draw_atmosphere", "draw_ground", "draw_way"]
+
+Entry = tuple[tuple[Artist, ...], str]
+
+_, _, _, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO
+_SKY = LinearSegmentedColormap.from_list("sky", ("#e4f0f8", "#9cc4e2"))
+_GROUND, _ROCK, _CLOUD, _RIM, _CLEAR = "#8aa37b", "#9a8f80", "#ffffff", "#8c97a3", "#cfe3f1"
+_SMALLEST_CLOUD = 2e-4
+"""Liquid per dry air from which on a cloud is drawn: .2 g/kg is that of a thin cumulus, which can be seen."""
+_FAINTEST_RAIN = 0.02
+"""Rain of a frame from which on it is drawn, in parts of all that falls."""
+_DESCENT = 0.1
+"""A way that goes down again by so much of its height leads over mountains."""
+_RADIUS = 0.75
+"""Radius of the parcel at the start, in sizes of the type."""
+_MIDDLE = 0.36
+"""Where the way up stands, in widths of the picture."""
+_PUFFS = 9
+"""How many puffs a cloud is wide."""
+_GAP = 0.07
+"""How high above the mountains the parcel is drawn, in heights of the picture."""
+
+
+class Ascent(NamedTuple):
+    """The way of a parcel as the file tells it, one value a frame."""
+
+    time: NDArray[np.float64]
+    """Elapsed time, from 0 to 1."""
+    height: NDArray[np.float64]
+    """Height [km]."""
+    temperature: NDArray[np.float64]
+    """Measured temperature [degC]."""
+    pressure: NDArray[np.float64]
+    """Pressure of the environment at that height [hPa]."""
+    radius: NDArray[np.float64]
+    """Radius of the parcel in radii at the start, from its temperature and its pressure."""
+    liquid: NDArray[np.float64]
+    """Measured liquid per dry air [kg kg-1]; 0 in a scene without water."""
+    rain: NDArray[np.float64]
+    """Measured rain per dry air up to then [kg kg-1]; 0 where none falls."""
+    base: float
+    """Height of the measured cloud base [km]; NaN where the run measures none."""
+
+    @property
+    def crosses(self) -> bool:
+        """Whether the way leads over mountains: it goes down again."""
+        highest = int(self.height.argmax())
+        return bool(self.height[highest] - self.height[highest:].min() > _DESCENT * np.ptp(self.height))
+
+    @property
+    def cloudy(self) -> NDArray[np.bool_]:
+        """In which frames there is a cloud; below the measured base there is none, but single clusters of molecules."""
+        return np.asarray((self.liquid > _SMALLEST_CLOUD) & ~(self.height < self.base))
+
+
+def ascent_of(dataset: xr.Dataset) -> Ascent:
+    """Return the way of the parcel of a run.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The run, with ``parcel_height``, ``parcel_temperature`` and ``environment_pressure``; with water also
+        ``cloud_liquid_water_mixing_ratio``, with rain ``rain_mixing_ratio``.
+
+    Raises
+    ------
+    FileError
+        If one of the first three is missing or empty.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> dataset = xr.Dataset(
+    ...     {
+    ...         "parcel_height": ("elapsed_time", [0.0, 1000.0]),
+    ...         "parcel_temperature": ("elapsed_time", [298.15, 288.4]),
+    ...         "environment_pressure": ("elapsed_time", [1e5, 9e4]),
+    ...     },
+    ...     coords={"elapsed_time": [0.0, 2.0]},
+    ... )
+    >>> way = ascent_of(dataset)
+    >>> way.height.tolist(), way.crosses, way.cloudy.any()
+    ([0.0, 1.0], False, np.False_)
+    """
+    height, kelvin, pascal = (
+        read(dataset, name).values.astype(np.float64)
+        for name in ("parcel_height", "parcel_temperature", "environment_pressure")
+    )
+    time = read(dataset, "elapsed_time").values.astype(np.float64)
+    none = np.zeros_like(height)
+    liquid, rain = (
+        dataset[name].values.astype(np.float64) if name in dataset else none
+        for name in ("cloud_liquid_water_mixing_ratio", "rain_mixing_ratio")
+    )
+    return Ascent(
+        time / time[-1] if time[-1] > 0.0 else none,
+        height / 1e3,
+        kelvin - 273.15,
+        pascal / 1e2,
+        np.cbrt(kelvin / kelvin[0] * pascal[0] / pascal),
+        np.nan_to_num(liquid),
+        np.nan_to_num(rain),
+        _base(dataset, height, pascal),
+    )
+
+
+def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
+    """Draw the whole way of a parcel through the atmosphere, with what it measured on it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    dataset : xarray.Dataset
+        The run, as `ascent_of` takes it.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    list of tuple
+        The entries of the legend: parcel, and cloud and rain where there are any.
+
+    Raises
+    ------
+    FileError
+        If the file lacks the way.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> way = {"parcel_height": [0.0, 2e3], "parcel_temperature": [298.0, 283.0], "environment_pressure": [1e5, 8e4]}
+    >>> dataset = xr.Dataset({n: ("elapsed_time", v) for n, v in way.items()}, coords={"elapsed_time": [0.0, 1.0]})
+    >>> [label for _, label in draw_atmosphere(Figure().add_subplot(), dataset, THEMES["notes"])]
+    ['parcel']
+    """
+    way = ascent_of(dataset)
+    draw_ground(axes, way, theme)
+    if way.crosses:
+        stations = _turns(way.height)
+    else:
+        heights = np.linspace(way.height[0], way.height[-1], 5 if theme.grows else 4)  # a slide has less room
+        stations = np.unique([int(np.abs(way.height - height).argmin()) for height in heights])
+    return draw_way(axes, way, way.height.size - 1, stations, theme)
+
+
+def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
+    """Draw what stands still: the sky, the ground or the mountains, and the way; set the limits of the axes.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    way : Ascent
+        The whole way.
+    theme : Theme
+        How large.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
+    >>> axes = Figure().add_subplot()
+    >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, one, none, none, np.nan), THEMES["notes"])
+    >>> [round(float(height), 2) for height in axes.get_ylim()]
+    [-0.6, 5.65]
+    """
+    low, high = min(0.0, float(way.height.min())), max(float(way.height.max()), 1e-3)
+    room = high - low
+    axes.set(xlim=(0.0, 1.0), ylim=(low - 0.12 * room, high + 0.13 * room))
+    axes.set_xticks([])
+    axes.spines["bottom"].set_visible(False)
+    bottom, top = axes.get_ylim()
+    gradient = np.linspace(0.0, 1.0, 64)[:, None]
+    axes.imshow(gradient, _SKY, aspect="auto", extent=(0.0, 1.0, bottom, top), origin="lower", zorder=0.0)
+    across = _across(way)
+    if way.crosses:
+        ends = np.concatenate([[0.0], across, [1.0]])
+        slope = np.concatenate([way.height[:1], way.height, way.height[-1:]]) - _GAP * room
+        axes.fill_between(ends, bottom, slope, color=_ROCK, linewidth=0.0, zorder=2.2)
+    else:
+        axes.axhspan(bottom, low, color=_GROUND, linewidth=0.0, zorder=1.0)
+    axes.plot(across, way.height, color=FAINT, linewidth=theme.line / 2, linestyle=(0.0, (2.0, 2.0)), zorder=3.0)
+    axes.set(xlim=(0.0, 1.0), ylim=(bottom, top), autoscale_on=False)
+
+
+def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], theme: Theme) -> list[Entry]:
+    """Draw the parcel at some frames, and the cloud and the rain that it made up to a frame.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Axes with the ground.
+    way : Ascent
+        The whole way.
+    until : int
+        The frame.
+    stations : ndarray of int
+        The frames in which the parcel is drawn, with its temperature and its pressure.
+    theme : Theme
+        How large.
+
+    Returns
+    -------
+    list of tuple
+        The entries of the legend: parcel, and cloud and rain where there are any.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from atmosbox.plot.theme import THEMES
+    >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
+    >>> way = Ascent(up / 5.0, up, one, one, one, 1e-3 * (up > 2.0), none, 1.9)
+    >>> axes = Figure().add_subplot()
+    >>> draw_ground(axes, way, THEMES["notes"])
+    >>> [label for _, label in draw_way(axes, way, 8, np.array([0, 8]), THEMES["notes"])]
+    ['parcel', 'cloud']
+    """
+    entries: list[Entry] = []
+    across, seen = _across(way), way.cloudy & (np.arange(way.height.size) <= until)
+    bottom, top = axes.get_ylim()
+    if seen.any() and way.crosses:
+        _puffs(axes, across[seen], way.height[seen], 1.4 * np.sqrt(way.liquid[seen] / way.liquid.max()), theme)
+    elif seen.any():
+        base = way.base if np.isfinite(way.base) else float(way.height[seen.argmax()])
+        _tower(axes, base, float(way.height[: until + 1].max()), theme)
+    if seen.any():
+        entries.append(((Patch(facecolor=_CLOUD, edgecolor=_RIM, linewidth=theme.line),), "cloud"))
+    fallen = way.rain[: until + 1]
+    if fallen[-1] > 0.0:
+        falling = np.flatnonzero(np.diff(fallen) > _FAINTEST_RAIN * way.rain[-1])
+        if way.crosses:
+            start, low = way.height[falling], way.height[falling] - _GAP * (top - bottom)
+            rain = _streaks(axes, across[falling], start, low, theme)
+        else:
+            rain = _streaks(axes, np.linspace(_MIDDLE - 0.25, _MIDDLE + 0.25, 9), base, 0.0, theme)
+        entries.append((rain, "rain"))
+    x, y = across[stations], way.height[stations]
+    area = np.pi * (_RADIUS * theme.text * way.radius[stations]) ** 2
+    colours = [_RIM if cloudy else _CLEAR for cloudy in way.cloudy[stations]]
+    axes.scatter(x, y, area, colours, edgecolors=_BLUE, linewidths=theme.line, zorder=4.0)
+    for place, frame in enumerate(stations):
+        at, warm = (across[frame], way.height[frame]), f"{way.temperature[frame]:.0f} °C"
+        if way.crosses:
+            side = 1 if place == 0 and stations.size > 1 else -1 if frame == way.height.size - 1 else 0
+            _say(axes, warm, at, (side, 1), theme, bold=True)
+        else:
+            _say(axes, warm, at, (1, 0), theme, bold=True, lower=-0.55)
+            _say(axes, f"{way.pressure[frame]:.0f} hPa", at, (1, 0), theme, lower=0.55)
+    parcel = Line2D(
+        [], [], linestyle="none", marker="o", markersize=theme.text, markerfacecolor=_CLEAR, markeredgecolor=_BLUE,
+        markeredgewidth=theme.line,
+    )  # fmt: skip
+    return [((parcel,), "parcel"), *entries]
+
+
+def _across(way: Ascent) -> NDArray[np.float64]:
+    """Return where along the picture the parcel is: straight up in the middle, or from end to end."""
+    return 0.04 + 0.92 * way.time if way.crosses else np.full_like(way.time, _MIDDLE)
+
+
+def _base(dataset: xr.Dataset, height: NDArray[np.float64], pressure: NDArray[np.float64]) -> float:
+    """Return the height of the measured cloud base [km]; NaN where there is none."""
+    if "cloud_base" not in dataset:
+        return float("nan")
+    return float(np.interp(-np.log(float(dataset.cloud_base)), -np.log(pressure), height)) / 1e3
+
+
+def _turns(height: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return where a way begins, turns and ends."""
+    rising = np.sign(np.diff(height))
+    rising[rising == 0.0] = 1.0
+    return np.concatenate([[0], np.flatnonzero(np.diff(rising)) + 1, [height.size - 1]])
+
+
+def _puffs(
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], size: NDArray[np.float64] | float, theme: Theme
+) -> list[PathCollection]:
+    """Draw a cloud out of round puffs of a radius in sizes of the type: first their common rim, then what fills it."""
+    area = np.broadcast_to(np.pi * (np.asarray(size) * theme.text) ** 2, np.shape(x))
+    rim = axes.scatter(x, y, area, _RIM, linewidths=1.6 * theme.line, edgecolors=_RIM, zorder=1.8)
+    return [rim, axes.scatter(x, y, area, _CLOUD, linewidths=0.0, zorder=1.9)]
+
+
+def _tower(axes: Axes, base: float, top: float, theme: Theme) -> None:
+    """Draw a cloud over a flat base, which grows narrower upward."""
+    bottom, ceiling = axes.get_ylim()
+    rows = max(2, round(16.0 * (top - base) / (ceiling - bottom)))
+    share, place = np.repeat(np.linspace(0.0, 1.0, rows), _PUFFS), np.tile(np.linspace(-1.0, 1.0, _PUFFS), rows)
+    rng = np.random.default_rng(5)  # the same cloud in every picture
+    half = 0.36 - 0.14 * share * (top - base) / (ceiling - bottom)
+    radius = 1.2 + 0.5 * rng.random(share.size)
+    up = base + np.clip(share, 0.0, 1.0) * (top - base)
+    puffs = _puffs(axes, _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size)), up, radius, theme)
+    above = Rectangle((0.0, base), 1.0, ceiling - base, transform=axes.transData)
+    for each in puffs:
+        each.set_clip_path(above)
+
+
+def _streaks(
+    axes: Axes,
+    across: NDArray[np.float64],
+    above: NDArray[np.float64] | float,
+    below: NDArray[np.float64] | float,
+    theme: Theme,
+) -> tuple[Artist, ...]:
+    """Draw rain from one height to another."""
+    above, below = np.broadcast_to(above, across.shape), np.broadcast_to(below, across.shape)
+    lines = [[(x, high), (x - 0.012, low)] for x, high, low in zip(across, above, below, strict=True)]
+    axes.add_collection(LineCollection(lines, colors=_BLUE, linewidths=theme.line, zorder=2.5), autolim=False)
+    return (Line2D([], [], color=_BLUE, linewidth=theme.line),)
+
+
+def _say(
+    axes: Axes,
+    words: str,
+    at: tuple[float, float],
+    side: tuple[int, int],
+    theme: Theme,
+    *,
+    bold: bool = False,
+    lower: float = 0.0,
+) -> None:
+    """Write beside a parcel: to the right (1, 0), above (0, 1), and so on; lower by so many sizes of the type."""
+    right, up = side
+    away = 1.6 * _RADIUS * theme.text * (1.0 if up else 1.25)
+    axes.annotate(
+        words.replace("-", "−"), at, (0.0 if up else away * right, away * up - lower * theme.text),
+        textcoords="offset points", ha=("center", "left", "right")[right], va=("center", "bottom", "top")[up],
+        size=theme.text, weight="bold" if bold else "normal", color=_VERMILLION if bold else DARK, zorder=5.0,
+        path_effects=[withStroke(linewidth=2.0 * theme.line, foreground="white", alpha=0.8)],
+    )  # fmt: skip
