@@ -16,6 +16,8 @@ failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-
 terminate.
 """
 
+import atexit
+import signal
 import sys
 import warnings
 
@@ -51,6 +53,8 @@ def main() -> None:
         With the status of the command.
     """
     warnings.formatwarning = lambda message, *rest, **named: f"warning: {message}\n"
+    # Python's own tidying up is no part of the command: Ctrl-C would change the status of what is done
+    atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
     try:
         app(prog_name="atmosbox")
     except KeyboardInterrupt:

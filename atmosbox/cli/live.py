@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import signal
 import socket
 import sys
@@ -62,6 +63,9 @@ def live(
     port: Annotated[
         str | None, typer.Option(metavar="N", help="Port of the page.  [default: the first free one from 8642 on]")
     ] = None,
+    no_token: Annotated[
+        bool, typer.Option("--no-token", help="Let in whoever reaches the port, also without the token of the address.")
+    ] = False,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
     quiet: Annotated[bool, quiet_option("Print the address, no more.")] = False,
     verbose: Verbose = False,
@@ -70,6 +74,8 @@ def live(
 
     The page shows molecules and graphs while the engine runs. Its record button writes the same netCDF file as
     run. While no browser looks, the box rests, unless it is being recorded.
+
+    The address has a token that is new each time, so that another account of this computer cannot steer the box.
     """
     number = _port(port)
 
@@ -95,7 +101,9 @@ def live(
         if number is None and used != PORT:
             tell(f"note: port {PORT} is in use, so the page is at port {used}")
         if not loopback(host):
-            tell(f"warning: who can reach this computer can use this page, at http://{socket.gethostname()}:{used}/")
+            elsewhere = f"http://{socket.gethostname()}:{used}/" + (f"?token={token}" if token else "")
+            who = "reaches this computer and knows the address" if token else "can reach this computer"
+            tell(f"warning: who {who} can use this page, at {elsewhere}")
         if not no_browser and _display():
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
         elif not quiet:
@@ -103,7 +111,8 @@ def live(
         if not quiet:
             tell("Ctrl-C ends it; what is being recorded is saved")
 
-    ended, left = run(session, live_page(), host=host, port=number, opened=opened)
+    token = None if no_token else secrets.token_urlsafe(16)
+    ended, left = run(session, live_page(), host=host, port=number, token=token, opened=opened)
     for sentence in left:
         tell(sentence)
     raise typer.Exit(TERMINATED if ended == signal.SIGTERM else INTERRUPTED)

@@ -8,11 +8,12 @@ import errno
 import http
 import ipaddress
 import json
+import secrets
 import signal
 import socket
 from collections.abc import Callable, Coroutine
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 from websockets.asyncio.server import Server as SocketServer
 from websockets.asyncio.server import ServerConnection, serve
@@ -86,11 +87,12 @@ def allowed(host: str | None, origin: str | None, *, names: frozenset[str] = fro
 class _Service:
     """The pages, and the thread that the box runs in."""
 
-    def __init__(self, session: Session, document: str, names: frozenset[str]) -> None:
+    def __init__(self, session: Session, document: str, names: frozenset[str], token: str | None) -> None:
         self._loop = asyncio.get_running_loop()
         self._audience = Audience()
         self._document = document.encode("utf-8")
         self._names = names
+        self._token = token
         self.worker = Worker(session, self._publish)
 
     def _publish(self, page: int | None, message: str | bytes) -> None:
@@ -107,6 +109,9 @@ class _Service:
         if not allowed(host, origin, names=self._names):
             return connection.respond(http.HTTPStatus.FORBIDDEN, "This page is for this computer alone.\n")
         path = urlsplit(request.path).path
+        if not self._knows(request.path):
+            said = "Only who knows the whole address may use this page: take it, with its token, from the terminal.\n"
+            return connection.respond(http.HTTPStatus.FORBIDDEN, said)
         if path == "/socket":
             return None
         if path != "/":
@@ -118,12 +123,20 @@ class _Service:
             ("Content-Length", str(len(self._document))),
             ("Cache-Control", "no-store"),
             ("X-Frame-Options", "DENY"),
+            ("Referrer-Policy", "no-referrer"),
             ("X-Content-Type-Options", "nosniff"),
         ):
             with contextlib.suppress(KeyError):
                 del answer.headers[name]
             answer.headers[name] = value
         return answer
+
+    def _knows(self, address: str) -> bool:
+        """Tell whether a request has the token that the address of the page has."""
+        if self._token is None:
+            return True
+        said = parse_qs(urlsplit(address).query).get("token", [""])
+        return len(said) == 1 and secrets.compare_digest(said[0].encode(), self._token.encode())
 
     async def attend(self, connection: ServerConnection) -> None:
         """Serve one page until it is gone."""
@@ -202,6 +215,7 @@ def run(
     *,
     host: str = "127.0.0.1",
     port: int | None = None,
+    token: str | None = None,
     opened: Callable[[str, int], None],
 ) -> tuple[int, list[str]]:
     """Serve a session until Ctrl-C or a request to end, and save what is recorded.
@@ -214,6 +228,9 @@ def run(
         The HTML of the page.
     host, port
         Where; of the ports from `PORT` on the first that is free, if none is given.
+    token
+        What a browser must have in the address of the page, ``?token=...``, so that another account of the same computer
+        cannot steer the box; None lets everybody in who reaches the port.
     opened
         Told the address of the page and the port, once it is there.
 
@@ -229,7 +246,7 @@ def run(
     EngineError
         If the engine cannot go on.
     """
-    return asyncio.run(serve_session(session, document, _signal, host=host, port=port, opened=opened))
+    return asyncio.run(serve_session(session, document, _signal, host=host, port=port, token=token, opened=opened))
 
 
 async def serve_session(
@@ -239,19 +256,20 @@ async def serve_session(
     *,
     host: str = "127.0.0.1",
     port: int | None = None,
+    token: str | None = None,
     opened: Callable[[str, int], None],
 ) -> tuple[int, list[str]]:
     """Serve a session until something says that it ends; see `run`.
 
     Parameters
     ----------
-    session, document, host, port, opened
+    session, document, host, port, token, opened
         See `run`.
     ending
         Waits for the end, and returns what it was.
     """
     names = frozenset({host.casefold(), socket.gethostname().casefold()}) - {""}
-    service = _Service(session, document, names)
+    service = _Service(session, document, names, token)
     server = await _listen(service, host, port)
     ended = asyncio.create_task(ending())
     try:
@@ -259,7 +277,7 @@ async def serve_session(
         number = int(next(iter(server.sockets)).getsockname()[1])
         own = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
         shown = f"[{own}]" if ":" in own else own
-        opened(f"http://{shown}:{number}/", number)
+        opened(f"http://{shown}:{number}/{f'?token={token}' if token else ''}", number)
         while not ended.done() and service.worker.alive:
             await asyncio.wait([ended], timeout=0.5)
     finally:

@@ -15,6 +15,7 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
 
 from atmosbox.cli import app
 from atmosbox.errors import EngineError, SettingError
@@ -59,6 +60,21 @@ def test_the_page_is_served_and_nothing_else(site):
 )
 def test_another_site_gets_nothing(site, headers):
     assert ask(site, **headers)[0] in (400, 403)
+
+
+def test_only_who_has_the_token_may_look_and_steer(tmp_path, serve):
+    session = Session(prepare("temperature", {"molecules": 100}), folder=tmp_path)
+    with serve(session, token="open-sesame") as site:
+        assert site.address.endswith(f":{site.port}/?token=open-sesame")
+        for wrong in ("/", "/?token=", "/?token=open", "/?token=open-sesame&token=x", "/?Token=open-sesame", "/socket"):
+            status, _, body = ask(site, wrong)
+            assert status == 403
+            assert "open-sesame" not in body
+        assert ask(site, "/?token=open-sesame")[0] == 200
+        with pytest.raises(InvalidStatus), site.visit():
+            pass
+        with connect(f"ws://127.0.0.1:{site.port}/socket?token=open-sesame", max_size=2**24) as socket:
+            assert socket.recv()
 
 
 @pytest.mark.parametrize("name", ["Host", "Origin"])
@@ -244,16 +260,14 @@ def test_an_engine_that_stalls_pauses_and_says_why(site, monkeypatch):
 @posix
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_ctrl_c_saves_the_recording_and_says_so(tmp_path, number, status):
-    from websockets.sync.client import connect
-
     words = ["live", "elastic-collisions", "--set", "molecules=10", "--no-browser", "--out", "mine.nc"]
     with subprocess.Popen(
         [sys.executable, "-m", "atmosbox", *words], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True, env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
     ) as program:  # fmt: skip
         address = program.stdout.readline().strip()
-        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/", address)
-        with connect(address.replace("http", "ws") + "socket") as page:
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/\?token=[\w-]{22}", address)
+        with connect(address.replace("http", "ws").replace("/?", "/socket?")) as page:
             page.send(json.dumps({"type": "record", "file": None}))
             page.send(json.dumps({"type": "play"}))
             while True:
