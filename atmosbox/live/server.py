@@ -229,8 +229,8 @@ def run(
     host, port
         Where; of the ports from `PORT` on the first that is free, if none is given.
     token
-        What a browser must have in the address of the page, ``?token=...``, so that another account of the same computer
-        cannot steer the box; None lets everybody in who reaches the port.
+        What a browser must have in the address of the page, ``?token=...``, so that another account of the same
+        computer cannot steer the box; None lets everybody in who reaches the port.
     opened
         Told the address of the page and the port, once it is there.
 
