@@ -20,6 +20,7 @@ Python programmer would catch, and knows the status with which the command line 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import ClassVar
 
 __all__ = [
@@ -98,6 +99,16 @@ class AtmosboxError(Exception):
 
     exit_code: ClassVar[int] = 1
 
+    def reword(self, words: Callable[[str], str]) -> None:
+        """Say the same in other words, for a caller who does not type commands; what was given stays as it is.
+
+        Parameters
+        ----------
+        words
+            Returns a sentence, or a part of it, in those words.
+        """
+        self.args = tuple(words(part) if isinstance(part, str) else part for part in self.args)
+
 
 class SettingError(AtmosboxError, ValueError):
     """A setting was given a value that it may not have.
@@ -133,6 +144,11 @@ class SettingError(AtmosboxError, ValueError):
         self.value = value
         self.problem = problem
         self.fix = fix
+
+    def reword(self, words: Callable[[str], str]) -> None:
+        """Say the same in other words; the value stays as the user gave it."""
+        self.setting, self.problem, self.fix = words(self.setting), words(self.problem), words(self.fix)
+        self.args = (self.setting, self.value, self.problem, self.fix)
 
     def __str__(self) -> str:
         """Return the sentence."""

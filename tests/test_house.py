@@ -89,7 +89,7 @@ def test_every_library_the_package_imports_is_a_dependency():
                 imported.add(node.module.split(".")[0])
     used = {name.lower() for name in imported - sys.stdlib_module_names - {"atmosbox"}}
     used = {{"markdown_it": "markdown-it-py"}.get(name, name).replace("_", "-") for name in used}
-    carried = {"llvmlite", "rich", "pil"}  # by numba, by typer and by matplotlib
+    carried = {"llvmlite", "rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
     extras = {
         re.match(r"[\w-]+", line).group().lower()
         for extra in ("movie", "cluster")

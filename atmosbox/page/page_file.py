@@ -15,7 +15,7 @@ from atmosbox.page.frame import pack
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["save"]
+__all__ = ["page_text", "save"]
 
 
 def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str = "auto", force: bool = False) -> Path:
@@ -55,12 +55,29 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
     Traceback (most recent call last):
     atmosbox.errors.SettingError: theme = pink is unknown: give --theme auto, light or dark.
     """
+    _check_theme(theme)
+    target = check_writable(path, force, example="page.html")
+    write_whole(target, page_text(runs, theme=theme).encode("utf-8"))
+    return target
+
+
+def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto") -> str:
+    """Return the HTML of the page that `save` writes.
+
+    Raises
+    ------
+    FileError
+        If a run holds no molecules.
+    SettingError
+        If the theme is unknown.
+    """
     from atmosbox.page.saved_run import pages
 
+    _check_theme(theme)
+    told = pages(runs)
+    return view_page([page.record for page in told], [pack(page.frames) for page in told], theme=theme)
+
+
+def _check_theme(theme: str) -> None:
     if theme not in THEMES:
         raise SettingError("theme", theme, "is unknown", f"give --theme {', '.join(THEMES[:-1])} or {THEMES[-1]}")
-    target = check_writable(path, force, example="page.html")
-    told = pages(runs)
-    text = view_page([page.record for page in told], [pack(page.frames) for page in told], theme=theme)
-    write_whole(target, text.encode("utf-8"))
-    return target

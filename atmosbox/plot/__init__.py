@@ -10,9 +10,14 @@ large), `tilt` and `pen` (one panel), `place` and `layout` (all of them), `compa
 `camera`, `box_picture` and `box_figure` (the molecules in their box), `figure_file` (PNG, SVG, PDF).
 """
 
+import sys
+
+from atmosbox.callable_room import CallableRoom
 from atmosbox.plot.box_figure import figure_with_box
 from atmosbox.plot.figure_file import FORMATS, save
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import THEMES
 
 __all__ = ["FORMATS", "THEMES", "figure", "figure_with_box", "save"]
+
+sys.modules[__name__].__class__ = CallableRoom  # atmosbox.plot(run) draws it

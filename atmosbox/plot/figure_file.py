@@ -73,21 +73,23 @@ def save(
     """
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    drawing = figure_with_box(dataset, theme) if with_box else _drawn(dataset, theme)
+    drawing = drawn(dataset, theme, with_box=with_box)
     title = str(dataset.attrs.get("title", "atmosbox"))
     parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
     write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
     return path
 
 
-def _drawn(dataset: xr.Dataset, theme: str) -> Figure:
-    """Return the figure of a run, or of a measurement of many."""
+def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False) -> Figure:
+    """Return the figure of a run, with its box if that is wanted, or of a measurement of many."""
+    if with_box:
+        return figure_with_box(dataset, theme)
     if "rung" in dataset.dims:
         return tradeoff_figure.figure(dataset, theme)
     return sweep_figure.figure(dataset, theme) if sweep_figure.is_sweep(dataset) else figure(dataset, theme)
 
 
-def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: str) -> bytes:
+def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: str, dpi: int = 300) -> bytes:
     """Return the bytes of a figure.
 
     Parameters
@@ -100,6 +102,8 @@ def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: st
         The theme it was drawn in.
     title, parameters : str
         What the file says of itself.
+    dpi : int
+        Dots per inch of a PNG.
 
     Examples
     --------
@@ -113,5 +117,5 @@ def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: st
     }
     stream = io.BytesIO()
     with style(find(theme)):
-        drawing.savefig(stream, format=kind, dpi=300, metadata=metadata[kind])
+        drawing.savefig(stream, format=kind, dpi=dpi, metadata=metadata[kind])
     return stream.getvalue()

@@ -9,19 +9,22 @@ An installed atmosbox has the modules of that folder here, beside this file. A c
 up, so a checkout, installed or not, adds that folder to ``__path__``.
 """
 
+import ast
 import difflib
 import importlib
+import importlib.util
 import os
 import pkgutil
 import sys
 import traceback
 import zlib
+from importlib.abc import InspectLoader
 from pathlib import Path
 from types import ModuleType
 
 from atmosbox.errors import FileError, UnknownSceneError, shown
 
-__all__ = ["REQUIRED", "load", "names"]
+__all__ = ["REQUIRED", "load", "names", "summaries"]
 
 REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
 """What every scenario module must define."""
@@ -60,6 +63,25 @@ def names() -> tuple[str, ...]:
     """
     found = {module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")}
     return tuple(sorted(name.replace("_", "-") for name in found))
+
+
+def summaries() -> dict[str, str]:
+    """Return the first line of each scene's story by its name; no scene is imported for it.
+
+    Examples
+    --------
+    >>> summaries()["lifting-dry"]
+    'A parcel of dry air rises and cools.'
+    """
+    found = {}
+    for name in names():
+        spec = importlib.util.find_spec(f"{__name__}.{name.replace('-', '_')}")
+        source = None
+        if spec is not None and isinstance(spec.loader, InspectLoader):
+            source = spec.loader.get_source(spec.name)
+        text = ast.get_docstring(ast.parse(source or "")) or ""
+        found[name] = text.partition("\n\n")[0].replace("\n", " ")
+    return found
 
 
 def load(name_or_path: str | os.PathLike[str]) -> ModuleType:

@@ -176,6 +176,7 @@ def run(
     scene: str | os.PathLike[str],
     *,
     out: str | os.PathLike[str] | None = None,
+    force: bool = False,
     progress: Progress | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
@@ -189,7 +190,9 @@ def run(
     scene
         A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
     out
-        Where to write the netCDF file; nothing is written without it. An existing file is never replaced.
+        Where to write the netCDF file; nothing is written without it.
+    force
+        Whether a file of that name may be replaced.
     progress
         Called with the share that is done and a word on what is being done.
     engine
@@ -223,7 +226,7 @@ def run(
     prepared = prepare(scene, settings, engine=engine, accuracy=accuracy, save_molecules=save_molecules)
     checkpoint = None
     if out is not None:
-        checkpoint = Checkpoint(out)
+        checkpoint = Checkpoint(out, force=force)
     given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
     words = ", ".join([repr(str(scene)), *(f"{name}={value!r}" for name, value in given.items())])
     return execute(prepared, checkpoint=checkpoint, progress=progress, command=f"atmosbox.run({words})").dataset

@@ -5,9 +5,14 @@ Read in this order: `axis` (one setting that varies), `plan` (the grid, its memb
 and `result` (one dataset of it).
 """
 
+import sys
+
+from atmosbox.callable_room import CallableRoom
 from atmosbox.sweep.axis import Axis, parse_vary
 from atmosbox.sweep.conduct import SweepInterrupted, Swept, sweep
 from atmosbox.sweep.plan import Plan, member_seed, plan
 from atmosbox.sweep.result import FEWEST
 
 __all__ = ["FEWEST", "Axis", "Plan", "SweepInterrupted", "Swept", "member_seed", "parse_vary", "plan", "sweep"]
+
+sys.modules[__name__].__class__ = CallableRoom  # atmosbox.sweep("lifting-dry", ...) runs it

@@ -81,11 +81,11 @@ def _check_workers(client: Client, address: str) -> None:
 
     def version() -> str:  # goes to the workers as it stands, for one without atmosbox, too
         try:
-            from atmosbox import sweep
+            from atmosbox.sweep.member import run as needed  # noqa: F401
             from atmosbox.version import __version__
         except ImportError:
             return ""
-        return __version__ if sweep else ""
+        return __version__
 
     try:
         client.wait_for_workers(1, timeout=PATIENCE)

@@ -11,7 +11,6 @@ from pathlib import Path
 from jobs.registry import DOCS, ROOT, Findings, job
 
 from atmosbox import scenarios
-from atmosbox.cli.list_scenes import summaries
 from atmosbox.file import dataset as diagnostics
 from atmosbox.file.provenance import global_attributes
 from atmosbox.simulation import runner
@@ -20,7 +19,7 @@ from atmosbox.simulation import runner
 @job("scenes", quick=True)
 def scenes(found: Findings) -> None:
     """Make the table of the scenes, each with its first line."""
-    rows = [[f"[{name}](scenes/{name}.md)", text] for name, text in summaries().items()]
+    rows = [[f"[{name}](scenes/{name}.md)", text] for name, text in scenarios.summaries().items()]
     found.table(["scene", "what it shows"], rows)
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from jobs.registry import Findings, job
 
 import atmosbox
-from atmosbox.cli.compare import lines
 from atmosbox.page import save
 from atmosbox.plot.compare import compared, naming
 from atmosbox.plot.compare.compared_file import spoken
 from atmosbox.plot.comparison import figure
+from atmosbox.text.comparison_table import comparison_lines
 
 WIDTH, HEIGHT = 1280, 720
 FLAGS = "--no-sandbox --disable-gpu --disable-background-networking --enable-unsafe-swiftshader --use-angle=swiftshader"
@@ -24,7 +24,7 @@ def warm_and_cold(found: Findings) -> None:
     files = ["cold.nc", "warm.nc"]
     runs = [atmosbox.run("lifting-dry", temperature=f"{celsius} degC") for celsius in (5, 25)]
     names = naming(runs, [Path(file).stem for file in files])
-    table = "\n".join(lines(files, names, compared(runs), 100))
+    table = "\n".join(comparison_lines(files, names, compared(runs), 100))
     found.text(f"```console\n$ atmosbox compare cold.nc warm.nc\n{table}\n```")
     labels = [spoken(label) for label in names.labels]
     found.figure(figure(runs, labels, spoken(f"Lifting dry air: {names.title}")), "compared", 115)

@@ -1,0 +1,366 @@
+"""What an editor knows of `atmosbox`: made by tools/stub.py from the scenes, not to be edited by hand."""
+
+import os
+from typing import Any, Literal, overload
+
+from atmosbox.interface import compare as compare
+from atmosbox.interface import open as open
+from atmosbox.interface import plot as plot
+from atmosbox.interface import scenes as scenes
+from atmosbox.interface import show as show
+from atmosbox.interface import sweep as sweep
+from atmosbox.interface.notebook import Show
+from atmosbox.interface.run_dataset import RunDataset
+from atmosbox.version import __version__ as __version__
+
+__all__ = ["__version__", "compare", "open", "plot", "run", "scenes", "show", "sweep"]
+
+@overload
+def run(
+    scene: Literal["atmosphere"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 3000,
+    temperature: float | str = 288.15,
+    surface_pressure: float | str = 1013.25,
+    gravity: float | str = 9.80665,
+    height: float | str = 25.0,
+    knudsen: float | str = 0.3,
+    floor: Literal["heat-bath", "isolated"] = "heat-bath",
+    start: Literal["equilibrium", "bottom"] = "equilibrium",
+    plane: bool = False,
+    duration: float | str = 400.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Why the air does not fly away, and why it thins with height.
+
+    molecules: number of molecules; 50 to 1000000
+    temperature [K]: temperature of the floor, and of the air at the start; 10 K to 2000 K
+    surface_pressure [hPa]: pressure at the floor; 1 hPa to 100000 hPa
+    gravity [m s-2]: acceleration of gravity; 0.1 m s-2 to 100 m s-2
+    height [km]: height of the ceiling; 0.1 km to 1000 km
+    knudsen: mean free path at the floor in scale heights; 0.02 to 10
+    floor: what the floor is: warm, or smooth so that no heat passes; heat-bath or isolated
+    start: where the molecules start; equilibrium or bottom
+    plane: whether the air is a plane of discs; on or off
+    duration: how long to watch, in times that sound takes to climb a scale height; 1 to 100000
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["condensation"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 10000,
+    temperature: float | str = 20.0,
+    pressure: float | str = 1000.0,
+    humidity: float | str = 150.0,
+    area: float | str = 2.0,
+    drops: int | str = 0,
+    drop_size: float | str = 6.0,
+    duration: float | str = 40.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Clouds form where more vapour meets water than leaves it.
+
+    molecules: number of molecules of air and vapour; 50 to 1000000
+    temperature [degC]: temperature of the walls; -60 degC to 95 degC
+    pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 50000 hPa
+    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
+    area: area of the mist, in faces of the box; 0.01 to 100
+    drops: number of nuclei of drops that can be seen; 0 for a mist; 0 to 50
+    drop_size: how many times wider the drops are than real ones; 1 to 20
+    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["elastic-collisions"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 60,
+    mass_ratio: float | str = 20.0,
+    filling: float | str = 15.0,
+    side: float | str = 1.0,
+    speed: float | str = 0.5,
+    duration: float | str = 60.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Discs of unlike mass collide in a plane, and share their energy.
+
+    molecules: number of discs; 2 to 5000
+    mass_ratio: mass of the heaviest disc in that of the lightest; 1 to 1000000
+    filling [%]: share of the table that the discs cover; 0.01 % to 70 %
+    side [m]: side of the table; 0.01 m to 100 m
+    speed [m s-1]: speed of every disc at the start; 0.001 m s-1 to 1000 m s-1
+    duration [s]: how long to watch; 0.1 s to 1000000 s
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["evaporation"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 15000,
+    pool: int | str = 3000,
+    temperature: float | str = 30.0,
+    humidity: float | str = 20.0,
+    pressure: float | str = 1000.0,
+    duration: float | str = 20.0,
+    diameter: float | str = 0.37,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Water evaporates, and what is left of it cools.
+
+    molecules: number of molecules of air and vapour at the start; 200 to 1000000
+    pool: number of molecules in the pool at the start; 1 to 1000000
+    temperature [degC]: temperature of the air and of the pool at the start; -60 degC to 95 degC
+    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
+    pressure [hPa]: pressure of the air, which stays; 1 hPa to 20000 hPa
+    duration [ns]: how long to watch; 0.01 ns to 10000 ns
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1 nm
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["lifting-dry"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 4000,
+    temperature: float | str = 15.0,
+    pressure: float | str = 1000.0,
+    top_pressure: float | str = 300.0,
+    lapse_rate: float | str = 6.5,
+    rotation: bool = True,
+    ascent: float | str = 1600.0,
+    diameter: float | str = 1.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""A parcel of dry air rises and cools.
+
+    molecules: number of molecules in the parcel; 50 to 1000000
+    temperature [degC]: temperature of the parcel and of the air at the ground; -80 degC to 60 degC
+    pressure [hPa]: pressure at the ground; 200 hPa to 1100 hPa
+    top_pressure [hPa]: pressure at which the ascent ends; 50 hPa to 1000 hPa
+    lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
+    rotation: whether molecules rotate; without it gamma is 5/3; on or off
+    ascent: length of the ascent in mean free times at its start; 5 to 1000000
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["lifting-moist"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 30000,
+    temperature: float | str = 25.0,
+    dewpoint: float | str = 17.0,
+    pressure: float | str = 1000.0,
+    top_pressure: float | str = 300.0,
+    lapse_rate: float | str = 6.5,
+    rain: bool = False,
+    cloud_water: float | str = 1.0,
+    ascent: float | str = 400.0,
+    area: float | str = 30.0,
+    diameter: float | str = 1.3,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""A parcel of moist air rises past its cloud base.
+
+    molecules: number of molecules in the parcel; 200 to 1000000
+    temperature [degC]: temperature of parcel and air at the ground; -60 degC to 45 degC
+    dewpoint [degC]: dewpoint of the parcel at the ground; -100 degC to 45 degC
+    pressure [hPa]: pressure at the ground; 300 hPa to 1100 hPa
+    top_pressure [hPa]: pressure at which the ascent ends; 100 hPa to 1000 hPa
+    lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
+    rain: whether it rains when the cloud holds too much; on or off
+    cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
+    ascent: length of the ascent in mean free times at its start; 20 to 1000000
+    area: area of all droplets, in floors of the box; 0.1 to 100
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["lifting-sounding"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    sounding: str = "weisman-klemp",
+    molecules: int | str = 20000,
+    top_pressure: float | str = 150.0,
+    rain: bool = False,
+    cloud_water: float | str = 1.0,
+    ascent: float | str = 800.0,
+    area: float | str = 30.0,
+    diameter: float | str = 1.3,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""A parcel of air rises through a sounding, and may become a thunderstorm.
+
+    sounding: file of a sounding, or weisman-klemp for the analytic one; any text
+    molecules: number of molecules in the parcel; 200 to 1000000
+    top_pressure [hPa]: pressure at which the ascent ends; 50 hPa to 900 hPa
+    rain: whether it rains when the cloud holds too much; on or off
+    cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
+    ascent: length of the ascent in mean free times at its start; 20 to 1000000
+    area: area of all droplets, in floors of the box; 0.1 to 100
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["mountains"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 30000,
+    temperature: float | str = 25.0,
+    dewpoint: float | str = 17.0,
+    pressure: float | str = 1000.0,
+    first: float | str = 2.0,
+    valley: float | str = 1.0,
+    second: float | str = 3.0,
+    lapse_rate: float | str = 6.5,
+    rain: bool = True,
+    cloud_water: float | str = 1.0,
+    travel: float | str = 500.0,
+    area: float | str = 30.0,
+    diameter: float | str = 1.3,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Air that crosses mountains arrives warm and dry: the foehn.
+
+    molecules: number of molecules in the parcel; 200 to 1000000
+    temperature [degC]: temperature of parcel and air in the plain; -40 degC to 45 degC
+    dewpoint [degC]: dewpoint of the parcel in the plain; -80 degC to 45 degC
+    pressure [hPa]: pressure in the plain; 500 hPa to 1100 hPa
+    first [km]: height of the first mountain; 0 km to 6 km
+    valley [km]: height of the valley between; 0 km to 6 km
+    second [km]: height of the second mountain; 0.1 km to 6 km
+    lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
+    rain: whether it rains when the cloud holds too much; on or off
+    cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
+    travel: length of the way in mean free times at its start; 20 to 1000000
+    area: area of all droplets, in floors of the box; 0.1 to 100
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["temperature"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 200,
+    temperature: float | str = 25.0,
+    start_temperature: float | str = -150.0,
+    pressure: float | str = 1000.0,
+    start: Literal["maxwell", "equal"] = "maxwell",
+    duration: float | str = 20.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""What temperature is: the motion of molecules.
+
+    molecules: number of molecules; 1 to 1000000
+    temperature [degC]: temperature of the walls; -270 degC to 2000 degC
+    start_temperature [degC]: temperature at which the molecules start; -273 degC to 2000 degC
+    pressure [hPa]: pressure of the air once it is as warm as the walls; 0.01 hPa to 100000 hPa
+    start: speeds at the start: all different, or all equal; maxwell or equal
+    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["temperature-large"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 800,
+    temperature: float | str = 25.0,
+    start_temperature: float | str = -150.0,
+    pressure: float | str = 1000.0,
+    start: Literal["maxwell", "equal"] = "maxwell",
+    duration: float | str = 20.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""What temperature is, with four times as many molecules.
+
+    molecules: number of molecules; 1 to 1000000
+    temperature [degC]: temperature of the walls; -270 degC to 2000 degC
+    start_temperature [degC]: temperature at which the molecules start; -273 degC to 2000 degC
+    pressure [hPa]: pressure of the air once it is as warm as the walls; 0.01 hPa to 100000 hPa
+    start: speeds at the start: all different, or all equal; maxwell or equal
+    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    **settings: Any,
+) -> RunDataset:
+    """Run a scene of your own, or any by its name; `atmosbox.scenes(scene)` shows its settings."""

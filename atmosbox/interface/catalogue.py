@@ -1,0 +1,87 @@
+"""Which scenes there are, and what may be set in one."""
+
+from __future__ import annotations
+
+import html
+import os
+from collections.abc import Sequence
+from typing import overload
+
+from atmosbox.interface.wording import in_python
+
+__all__ = ["Printed", "scenes"]
+
+_WIDTH = 100
+
+
+class Printed(tuple[str, ...]):
+    """Names that print as a table, in a terminal and in a notebook.
+
+    Examples
+    --------
+    >>> Printed(["one", "two"], ["one  first", "two  second"])
+    one  first
+    two  second
+    """
+
+    lines: Sequence[str]
+
+    def __new__(cls, names: Sequence[str], lines: Sequence[str]) -> Printed:
+        """Return the names with the lines that show them."""
+        made = super().__new__(cls, names)
+        made.lines = lines
+        return made
+
+    def __repr__(self) -> str:
+        """Return the table."""
+        return "\n".join(self.lines)
+
+    def _repr_html_(self) -> str:
+        """Return the table for a notebook."""
+        return f'<pre style="line-height:1.35;overflow-x:auto">{html.escape(repr(self))}</pre>'
+
+
+@overload
+def scenes() -> Printed: ...
+@overload
+def scenes(scene: str | os.PathLike[str]) -> Printed: ...
+
+
+def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:
+    """Return the names of all scenes, or the settings of one; printed, each has a line that says what it is.
+
+    Parameters
+    ----------
+    scene
+        Name of a scene, or the path of your own, whose settings are wanted.
+
+    Returns
+    -------
+    tuple of str
+        The names, which print as a table.
+
+    Raises
+    ------
+    UnknownSceneError
+        If there is no scene of this name.
+
+    Examples
+    --------
+    >>> import atmosbox as ab
+    >>> "lifting-dry" in ab.scenes(), "temperature" in ab.scenes("lifting-dry")
+    (True, True)
+    """
+    from atmosbox import scenarios
+    from atmosbox.text.table import table
+
+    if scene is None:
+        found = scenarios.summaries()
+        return Printed(list(found), table(["", ""], list(found.items()), _WIDTH))
+    from atmosbox.text.report import parameter_lines
+
+    with in_python():
+        module = scenarios.load(scene)
+        declared = module.Settings.describe()
+        story = (module.__doc__ or "").strip().partition("\n\n")[0].replace("\n", " ")
+        lines = [f"{os.fspath(scene)}: {story}", "", *parameter_lines(declared, _WIDTH)]
+        return Printed([parameter.name for parameter in declared], lines)

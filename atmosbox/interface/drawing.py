@@ -1,0 +1,190 @@
+"""The figure of a run, and that of several runs with their numbers side by side."""
+
+from __future__ import annotations
+
+import base64
+import html
+import os
+from typing import TYPE_CHECKING, Literal
+
+from atmosbox.errors import SettingError
+from atmosbox.interface.wording import in_python
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+__all__ = ["Comparison", "compare", "plot"]
+
+_DPI = 110  # of a picture in a notebook
+_WIDTH = 120
+
+
+def opened(run: xr.Dataset | str | os.PathLike[str]) -> xr.Dataset:
+    """Return a run, read from its file if that is what is given."""
+    if isinstance(run, str | os.PathLike):
+        from atmosbox.file.netcdf import read
+
+        return read(run)
+    return run
+
+
+def _shown(drawing: Figure, theme: str) -> Figure:
+    """Return a figure that a notebook shows as it would be saved."""
+    from atmosbox.plot.figure_file import render
+
+    def picture() -> bytes:
+        return render(drawing, "png", theme, title="", parameters="", dpi=_DPI)
+
+    drawing._repr_png_ = picture  # type: ignore[attr-defined]
+    return drawing
+
+
+def plot(
+    run: xr.Dataset | str | os.PathLike[str],
+    *,
+    theme: Literal["notes", "slides"] = "notes",
+    with_box: bool = False,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+) -> Figure:
+    """Draw the figure of a run, of a sweep or of a measured trade.
+
+    Parameters
+    ----------
+    run
+        The dataset, or the path of its file.
+    theme
+        A figure for a page, or one for a screen of 16:9 with large type.
+    with_box
+        Whether the molecules are drawn at the start, half-way and at the end, over the graphs; the run must have been
+        made with ``save_molecules=True``.
+    out
+        A file to write as well: PNG, SVG or PDF, as its name says.
+    force
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure; a notebook shows it.
+
+    Raises
+    ------
+    FileError
+        If the run has nothing to draw, or the file cannot be written.
+    SettingError
+        If the theme or the format is unknown.
+
+    Examples
+    --------
+    >>> import atmosbox as ab
+    >>> figure = ab.plot(ab.run("elastic-collisions", duration="2 s"))
+    >>> len(figure.axes) > 1
+    True
+    """
+    from atmosbox.plot.figure_file import drawn, save
+    from atmosbox.plot.theme import find
+
+    with in_python():
+        find(theme)
+        dataset = opened(run)
+        if out is not None:
+            save(dataset, out, theme=theme, force=force, with_box=with_box)
+        return _shown(drawn(dataset, theme, with_box=with_box), theme)
+
+
+class Comparison:
+    """Several runs laid over each other: a table of their numbers, and one figure.
+
+    A notebook shows both; ``print`` shows the table.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    table : str
+        The headline numbers of all runs, with the difference of each from the first and its standard error.
+    """
+
+    def __init__(self, figure: Figure, table: str) -> None:
+        self.figure = figure
+        self.table = table
+
+    def __repr__(self) -> str:
+        """Return the table."""
+        return self.table
+
+    def _repr_html_(self) -> str:
+        """Return table and figure."""
+        picture = base64.b64encode(self.figure._repr_png_()).decode()  # type: ignore[attr-defined]
+        return (
+            f'<pre style="line-height:1.35;overflow-x:auto">{html.escape(self.table)}</pre>'
+            f'<img alt="The graphs of the runs, laid over each other." src="data:image/png;base64,{picture}">'
+        )
+
+
+def compare(
+    *runs: xr.Dataset | str | os.PathLike[str],
+    theme: Literal["notes", "slides"] = "notes",
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+) -> Comparison:
+    """Lay runs over each other: one figure, and by how much their numbers differ.
+
+    Parameters
+    ----------
+    *runs
+        Two to six runs: datasets, or paths of files.
+    theme
+        A figure for a page, or one for a screen.
+    out
+        A file for the figure: PNG, SVG or PDF, as its name says.
+    force
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    Comparison
+        Its ``figure`` and its ``table``; what is not the same in all runs is named.
+
+    Raises
+    ------
+    SettingError
+        If there are fewer than two runs or more than six.
+    FileError
+        If the runs have no graph in common, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import atmosbox as ab
+    >>> one, other = (ab.run("elastic-collisions", duration="2 s", seed=seed) for seed in (1, 2))
+    >>> print(ab.compare(one, other).table.splitlines()[0])
+    elastic-collisions: seed 1 / 2
+    """
+    from pathlib import Path
+
+    from atmosbox.plot.compare import compared, naming
+    from atmosbox.plot.compare.compared_file import save, spoken
+    from atmosbox.plot.comparison import MOST, figure
+    from atmosbox.plot.theme import find
+    from atmosbox.text.comparison_table import comparison_lines
+
+    with in_python():
+        if not 2 <= len(runs) <= MOST:
+            raise SettingError("runs", None, f"are {len(runs)}", "give two to six")
+        find(theme)
+        called = [Path(run).stem if isinstance(run, str | os.PathLike) else _ordinal(k) for k, run in enumerate(runs)]
+        datasets = [opened(run) for run in runs]
+        names = naming(datasets, called)
+        if out is not None:
+            save(datasets, names, out, theme=theme, force=force)
+        scenes = dict.fromkeys(str(dataset.attrs.get("title", "")) for dataset in datasets)
+        title = spoken(f"{' and '.join(scenes)}: {names.title}")
+        drawing = _shown(figure(datasets, [spoken(label) for label in names.labels], title, theme), theme)
+        return Comparison(drawing, "\n".join(comparison_lines(called, names, compared(datasets), _WIDTH)))
+
+
+def _ordinal(k: int) -> str:
+    return ("first", "second", "third", "fourth", "fifth", "sixth")[k]

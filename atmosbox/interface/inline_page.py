@@ -1,0 +1,125 @@
+"""The page of a run where a notebook is read: the molecules in their box, in three dimensions, below the cell."""
+
+from __future__ import annotations
+
+import html
+import os
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from atmosbox.interface.notebook import in_notebook
+from atmosbox.interface.wording import in_python
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["InlinePage", "show"]
+
+
+class InlinePage:
+    """A page as a notebook shows it, in a frame of its own that needs no network.
+
+    Attributes
+    ----------
+    text : str
+        The HTML of the page, complete.
+    height : int
+        How high the frame is, in pixels.
+    """
+
+    def __init__(self, text: str, height: int) -> None:
+        self.text = text
+        self.height = height
+
+    def __repr__(self) -> str:
+        """Say how large the page is and how to keep it."""
+        return f'page of {len(self.text) / 1e6:.1f} MB; page.save("page.html") keeps it'
+
+    def _repr_html_(self) -> str:
+        """Return the frame that shows it."""
+        return (
+            f'<iframe srcdoc="{html.escape(self.text)}" title="The molecules of the run in their box, and its graphs"'
+            f' style="width:100%;height:{self.height}px;border:0" allow="fullscreen" loading="lazy"></iframe>'
+        )
+
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write the page to a file of its own, which opens from disk.
+
+        Parameters
+        ----------
+        path
+            The file; it should end in ``.html``.
+        force
+            Whether a file of that name may be replaced.
+
+        Raises
+        ------
+        FileError
+            If the file exists or cannot be written.
+        """
+        from atmosbox.file.output_path import check_writable, write_whole
+
+        with in_python():
+            target = check_writable(path, force, example="page.html")
+            write_whole(target, self.text.encode("utf-8"))
+        return target
+
+
+def show(
+    *runs: xr.Dataset | str | os.PathLike[str],
+    height: int = 720,
+    theme: Literal["auto", "light", "dark"] = "auto",
+) -> InlinePage:
+    """Show the molecules of a run in three dimensions, with its graphs on the same clock.
+
+    In a notebook the page stands below the cell; elsewhere it opens in the browser.
+
+    Parameters
+    ----------
+    *runs
+        One run, or two that stand side by side and share the clock: datasets or paths of files, made with
+        ``save_molecules=True``.
+    height
+        How high the page is in a notebook, in pixels.
+    theme
+        Its colours; ``"auto"`` takes those that the reader's computer prefers.
+
+    Returns
+    -------
+    InlinePage
+        The page; its ``save`` writes it to a file to hand out.
+
+    Raises
+    ------
+    FileError
+        If a run holds no molecules.
+    SettingError
+        If there are none or more than two runs, or the theme is unknown.
+
+    Examples
+    --------
+    >>> import atmosbox as ab
+    >>> ab.show(ab.run("temperature", molecules=50, duration="5 ns"))
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: The run holds no molecules: type atmosbox.run("temperature", save_molecules=True).
+    """
+    from atmosbox.errors import SettingError
+    from atmosbox.interface.drawing import opened
+    from atmosbox.page.page_file import page_text
+
+    with in_python():
+        if not 1 <= len(runs) <= 2:
+            raise SettingError("runs", None, f"are {len(runs)}", "give one run, or two to stand side by side")
+        page = InlinePage(page_text([opened(run) for run in runs], theme=theme), height)
+    if not in_notebook():
+        _open(page)
+    return page
+
+
+def _open(page: InlinePage) -> None:
+    """Open a page in the browser, from a file that stays until the computer's temporary files are cleared."""
+    import tempfile
+
+    folder = Path(tempfile.mkdtemp(prefix="atmosbox-page-"))
+    webbrowser.open(page.save(folder / "page.html").as_uri())

@@ -1,0 +1,136 @@
+"""Run a scene, and open what was saved of a run."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+from atmosbox.interface.notebook import Show, progress_bar
+from atmosbox.interface.wording import in_python
+
+if TYPE_CHECKING:
+    from atmosbox.interface.run_dataset import RunDataset
+
+__all__ = ["open", "run"]
+
+
+def run(
+    scene: str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    **settings: Any,
+) -> RunDataset:
+    """Run a scene and return what was measured, with the answer of theory beside it.
+
+    The molecules of the scene's box fly and collide for the scene's time; temperature and pressure are
+    measured on the way, with error bars, and the energy ledger is closed. Printed, what is returned begins with the
+    headline table of the run.
+
+    Parameters
+    ----------
+    scene
+        Name of a scene, such as ``"lifting-dry"`` (`atmosbox.scenes` lists them), or the path of your own.
+    out
+        File to write the dataset to, as CF netCDF; by default none is written.
+    force
+        Whether a file of that name may be replaced.
+    progress
+        By default a bar is shown in a notebook and on a terminal; False shows none. A function is called in its
+        place, with the share that is done and a word on what is being done.
+    engine
+        What lets time pass, with its options: ``"stepped:delta=0.02"``; ``"exact"`` if nothing is said.
+    accuracy
+        How accurate the run shall be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
+        or ``"2%"``. Picks the engine, and the settings that are not given.
+    save_molecules
+        Whether to keep the position and velocity of every molecule in every frame, as `atmosbox.show` needs them.
+    **settings
+        The scene's settings, by name, as numbers in their documented units or as text with a unit:
+        ``molecules=4000, temperature="25degC"``.
+
+    Returns
+    -------
+    xarray.Dataset
+        The measurements in SI units, on ``elapsed_time`` (in s, ns or ps, as the scene says) and, where a
+        scene has them, ``height`` [m] and ``speed`` [m s-1].
+
+    Raises
+    ------
+    UnknownSceneError
+        If there is no scene of this name.
+    SettingError
+        If a setting is unknown, of a wrong dimension or out of its range.
+    FileError
+        If your own scene cannot be read, or ``out`` cannot be written.
+    EngineError
+        If the engine cannot go on.
+
+    Examples
+    --------
+    Lifted air cools, though no heat leaves it:
+
+    >>> import atmosbox as ab
+    >>> dataset = ab.run("lifting-dry", molecules=200, seed=1)
+    >>> bool(dataset.air_temperature[-1] < dataset.air_temperature[0])
+    True
+
+    A refusal names the argument to give:
+
+    >>> ab.run("lifting-dry", molecules=0.5)
+    Traceback (most recent call last):
+    atmosbox.errors.UnitError: molecules = 0.5 is not whole, but a whole number from 50 to 1000000 is wanted:
+    give molecules=4000.
+    """
+    from atmosbox.interface.run_dataset import as_run
+    from atmosbox.simulation.runner import run as start
+
+    with in_python(), progress_bar(os.fspath(scene), progress) as show:
+        return as_run(
+            start(
+                scene,
+                out=out,
+                force=force,
+                progress=show,
+                engine=engine,
+                accuracy=accuracy,
+                save_molecules=save_molecules,
+                **settings,
+            )
+        )
+
+
+def open(path: str | os.PathLike[str]) -> RunDataset:
+    """Return a run that was saved.
+
+    Parameters
+    ----------
+    path
+        A file that `atmosbox.run` or ``atmosbox run`` has written.
+
+    Returns
+    -------
+    xarray.Dataset
+        The run, in memory; the file is closed again.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, damaged, of another program or of a later atmosbox.
+
+    Examples
+    --------
+    >>> import atmosbox as ab
+    >>> ab.open("no such file.nc")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: no such file.nc does not exist: check the name and the folder.
+    """
+    from atmosbox.file.netcdf import read
+    from atmosbox.interface.run_dataset import as_run
+
+    with in_python():
+        return as_run(read(path))

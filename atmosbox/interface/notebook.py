@@ -1,0 +1,84 @@
+"""A notebook: whether this is one, and a bar in it that shows how far a run is."""
+
+from __future__ import annotations
+
+import contextlib
+import html
+import sys
+import time
+from collections.abc import Callable, Iterator
+
+__all__ = ["in_notebook", "progress_bar"]
+
+Show = Callable[[float, str], None]
+
+
+def in_notebook() -> bool:
+    """Return whether this program runs in a notebook, whose cells show HTML.
+
+    Examples
+    --------
+    >>> in_notebook()
+    False
+    """
+    ipython = sys.modules.get("IPython")  # a notebook has imported it
+    shell = ipython.get_ipython() if ipython is not None else None
+    return getattr(shell, "kernel", None) is not None
+
+
+@contextlib.contextmanager
+def progress_bar(name: str, progress: Show | bool | None = None) -> Iterator[Show | None]:
+    """Show how far a run is, in a notebook below its cell, on a terminal in its last line, elsewhere not at all.
+
+    Parameters
+    ----------
+    name
+        What runs.
+    progress
+        A function to call with the share that is done and a word on what is being done, in place of a bar; False
+        for neither.
+
+    Yields
+    ------
+    callable or None
+        What the run calls.
+    """
+    if callable(progress):
+        yield progress
+    elif progress is False:
+        yield None
+    elif in_notebook():
+        with _notebook_bar(name) as show:
+            yield show
+    elif progress or (sys.stderr is not None and sys.stderr.isatty()):
+        from atmosbox.text.progress import progress as terminal_bar
+
+        with terminal_bar(name, quiet=False) as show:
+            yield show
+    else:
+        yield None
+
+
+@contextlib.contextmanager
+def _notebook_bar(name: str) -> Iterator[Show]:
+    """Show a bar below the cell, which goes when the run has ended."""
+    from IPython.display import HTML, display
+
+    began = time.monotonic()
+    handle = display(HTML(_bar(name, 0.0, "", 0.0)), display_id=True)
+
+    def show(share: float, doing: str) -> None:
+        word = "" if doing in ("running", "done") else doing
+        handle.update(HTML(_bar(name, share, word, time.monotonic() - began)))
+
+    try:
+        yield show
+    finally:
+        handle.update(HTML(""))
+
+
+def _bar(name: str, share: float, doing: str, seconds: float) -> str:
+    """Return the bar as HTML: its name, its length, and for how long it will still move."""
+    said = html.escape(f"{name}: {doing}" if doing else name)
+    left = f"{seconds * (1.0 - share) / share:.0f} s to go" if share > 0.02 and seconds > 1.0 else ""
+    return f'<label>{said} <progress max="1" value="{share:.3f}"></progress> {100.0 * share:.0f} % {left}</label>'

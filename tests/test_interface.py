@@ -1,0 +1,265 @@
+"""What a script or a notebook calls: `atmosbox.run` and its kin."""
+
+import ast
+import importlib.util
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import atmosbox as ab
+from atmosbox import errors
+from atmosbox.interface import inline_page, notebook
+from atmosbox.interface.wording import python_words
+
+ROOT = Path(__file__).resolve().parents[1]
+SCENE = "elastic-collisions"
+
+
+@pytest.fixture(scope="module")
+def lifted():
+    return ab.run("lifting-dry", molecules=200)
+
+
+@pytest.fixture(scope="module")
+def boxed():
+    return ab.run("temperature", molecules=50, duration="20 ns", save_molecules=True)
+
+
+# A run and its numbers
+
+
+def test_a_run_begins_with_its_numbers_and_is_a_dataset_in_all_else(lifted):
+    head, _, table, *rest = repr(lifted).splitlines()
+    assert head.startswith("lifting-dry: ")
+    assert "200 molecules" in head
+    assert table.split()[:3] == ["quantity", "measured", "theory"]
+    assert rest[0].startswith("temperature at 700 hPa [degC]")
+    plain = xr.Dataset(lifted.variables, attrs=lifted.attrs).set_coords(lifted.coords)
+    assert repr(lifted).endswith(repr(plain))
+    assert lifted.identical(plain)
+    shown = lifted._repr_html_()
+    assert shown.index("temperature at 700 hPa") < shown.index("xarray.Dataset") < shown.index("parcel_temperature")
+
+
+def test_what_is_made_of_a_run_prints_as_well(lifted):
+    assert repr(lifted.isel(elapsed_time=-1)).startswith("lifting-dry: ")
+    assert repr(pickle.loads(pickle.dumps(lifted))) == repr(lifted)
+    for less in (lifted[["air_temperature"]], lifted.drop_attrs(), lifted.drop_vars("temperature_at_300_hpa")):
+        assert repr(less).startswith("<xarray.Dataset>")
+        assert not less._repr_html_().startswith("<div><strong>")
+
+
+def test_a_saved_run_is_opened_as_it_was_and_replaced_only_by_force(tmp_path):
+    path = tmp_path / "run.nc"
+    made = ab.run(SCENE, duration="2 s", out=path)
+    assert repr(ab.open(path)).splitlines()[:8] == repr(made).splitlines()[:8]
+    with pytest.raises(errors.FileError, match="add force=True to replace it, or name another file with out"):
+        ab.run(SCENE, duration="2 s", out=path)
+    assert ab.run(SCENE, duration="2 s", seed=2, out=path, force=True).identical(ab.open(path))
+
+
+def test_the_figure_of_a_run_is_drawn_from_the_dataset_and_from_its_file(tmp_path, lifted):
+    file = tmp_path / "lifted.nc"
+    ab.run("lifting-dry", molecules=200, out=file)
+    one, other = ab.plot(lifted), ab.plot(file, out=tmp_path / "lifted.svg")
+    assert one._repr_png_()[1:4] == b"PNG"
+    assert one._repr_png_()[1000:] == other._repr_png_()[1000:]
+    assert (tmp_path / "lifted.svg").exists()
+
+
+def test_two_runs_are_laid_over_each_other_with_their_numbers(lifted):
+    warm = ab.run("lifting-dry", molecules=200, temperature="30 degC")
+    both = ab.compare(lifted, warm)
+    assert repr(both).splitlines()[0] == "lifting-dry: temperature 15 degC / 30 degC"
+    assert any(line.startswith("temperature at 300 hPa") for line in repr(both).splitlines())
+    assert {"<pre", "<img alt="} <= {word for word in ("<pre", "<img alt=") if word in both._repr_html_()}
+    assert len(both.figure.axes) > 1
+
+
+def test_a_sweep_takes_lists_and_words(tmp_path):
+    swept = ab.sweep(SCENE, {"molecules": [20, 40]}, members=2, jobs=1, duration="2 s", out=tmp_path / "s.nc")
+    assert swept.molecules.values.tolist() == [20, 40]
+    spelled = ab.sweep(SCENE, {"molecules": "20:40:2"}, members=2, jobs=1, duration="2 s")
+    np.testing.assert_array_equal(swept.energy_of_light_discs, spelled.energy_of_light_discs)
+    assert ab.plot(tmp_path / "s.nc").axes
+    starts = ab.sweep("temperature", {"start": ["equal", "maxwell"]}, jobs=1, molecules=50, duration="5 ns")
+    assert starts.start.values.tolist() == ["equal", "maxwell"]
+
+
+def test_a_room_of_the_same_name_as_a_function_is_both(lifted):
+    import atmosbox.plot
+    from atmosbox import plot, sweep
+
+    assert atmosbox.plot is plot is ab.plot
+    assert plot(lifted).axes
+    assert plot.FORMATS
+    assert sweep is ab.sweep
+    assert sweep.plan
+
+
+def test_the_scenes_and_their_settings_print_as_tables():
+    assert "lifting-dry" in ab.scenes()
+    assert "A parcel of dry air rises and cools." in repr(ab.scenes())
+    settings = ab.scenes("lifting-dry")
+    assert settings[0] == "molecules"
+    assert "number of molecules in the parcel" in settings._repr_html_()
+
+
+# Pages and bars
+
+
+def test_the_page_of_a_run_opens_in_the_browser_where_there_is_no_notebook(monkeypatch, boxed):
+    opened = []
+    monkeypatch.setattr(inline_page.webbrowser, "open", opened.append)
+    page = ab.show(boxed)
+    (address,) = opened
+    assert Path(address.removeprefix("file://")).read_text(encoding="utf-8") == page.text
+
+
+def test_the_page_runs_inside_a_notebook(monkeypatch, boxed, browser, tmp_path):
+    monkeypatch.setattr(inline_page, "in_notebook", lambda: True)
+    file = tmp_path / "notebook.html"
+    file.write_text(f"<body>{ab.show(boxed, height=500)._repr_html_()}</body>", encoding="utf-8")
+    tab = browser.new_page(viewport={"width": 1000, "height": 600})
+    faults = []
+    tab.on("pageerror", lambda fault: faults.append(fault))
+    tab.goto(file.as_uri())
+    frame = tab.frame_locator("iframe")
+    frame.locator("canvas").first.wait_for(timeout=20_000)
+    assert tab.locator("iframe").bounding_box()["height"] == 500
+    assert "Temperature" in frame.locator("h1").inner_text()
+    tab.close()
+    assert faults == []
+
+
+def test_a_notebook_shows_a_bar_that_goes_when_the_run_has_ended(monkeypatch):
+    shown = []
+
+    class Shell:
+        kernel = True
+
+    class Handle:
+        def update(self, content):
+            shown.append(content.data)
+
+    class Content:
+        def __init__(self, data):
+            self.data = data
+
+    display = type(sys)("IPython.display")
+    display.HTML = Content
+    display.display = lambda content, display_id: (shown.append(content.data), Handle())[1]
+    ipython = type(sys)("IPython")
+    ipython.get_ipython = Shell
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    assert notebook.in_notebook()
+    ab.run(SCENE, duration="20 s")
+    shares = [float(text.partition('value="')[2].partition('"')[0]) for text in shown[:-1]]
+    assert shares[0] == 0.0
+    assert shares[-1] == 1.0
+    assert shares == sorted(shares)
+    assert shown[-1] == ""
+    shown.clear()
+    ab.run(SCENE, duration="2 s", progress=False)
+    assert shown == []
+
+
+def test_a_function_of_ones_own_hears_how_far_a_run_is():
+    told = []
+    ab.run(SCENE, duration="2 s", progress=lambda share, word: told.append((share, word)))
+    assert told[-1] == (1.0, "done")
+
+
+# Refusals
+
+
+@pytest.mark.parametrize(
+    ("call", "fix"),
+    [
+        (lambda: ab.run("lifting-dry", molecules=0), "give molecules=4000."),
+        (lambda: ab.run("lifting-dry", temperature="5 hPa"), 'give temperature="15degC".'),
+        (lambda: ab.run("lifting-dry", rotation="maybe"), "give rotation=True."),
+        (lambda: ab.run("lifting-dry", molecule=300), "give molecules=4000."),
+        (lambda: ab.run("lifting-dry", engine="exakt"), 'give engine="exact".'),
+        (lambda: ab.run("lifting-dry", accuracy="good"), 'accuracy="'),
+        (lambda: ab.run("lifting-dri"), "atmosbox.scenes() shows all."),
+        (lambda: ab.sweep("temperature", {}), "give vary={"),
+        (lambda: ab.sweep("temperature", {"molecules": [100]}, members=0), "give members=8."),
+        (lambda: ab.sweep("temperature", {"molecules": "100:x"}), 'give vary={"molecules": "'),
+        (lambda: ab.compare("a.nc"), "give two to six."),
+        (lambda: ab.open("a.nc"), "check the name and the folder."),
+    ],
+)
+def test_a_refusal_says_what_to_write_in_python(call, fix):
+    with pytest.raises(errors.AtmosboxError) as refused:
+        call()
+    assert fix in str(refused.value)
+    assert "--" not in str(refused.value)
+
+
+def test_a_run_without_molecules_says_how_to_keep_them(lifted):
+    with pytest.raises(errors.FileError, match=r'type atmosbox\.run\("lifting-dry", save_molecules=True\)\.$'):
+        ab.show(lifted)
+
+
+def sentences():
+    """Return every text of the package that names an option of the command line, with X where a value is put in."""
+    for path in [*ROOT.glob("atmosbox/**/*.py"), *ROOT.glob("scenarios/*.py")]:
+        if {"cli", "interface", "engine"} & set(path.relative_to(ROOT).parts[:2]):
+            continue
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        documentation = {node.value for node in nodes if isinstance(node, ast.Expr)}
+        inner = {part for node in nodes if isinstance(node, ast.JoinedStr) for part in node.values}
+        for node in nodes:
+            if isinstance(node, ast.JoinedStr | ast.Constant) and node not in documentation | inner:
+                parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+                text = "".join(str(part.value) if isinstance(part, ast.Constant) else "X" for part in parts)
+                if " --" in text:
+                    yield f"{path.name}:{node.lineno}", text
+
+
+def test_no_refusal_of_the_package_keeps_an_option_when_it_is_said_in_python():
+    found = dict(sentences())
+    assert len(found) > 30
+    kept = {place: python_words(text) for place, text in found.items() if "--" in python_words(text)}
+    assert {place: text for place, text in kept.items() if "dask worker" not in text} == {}
+
+
+# What an editor knows
+
+
+def test_what_an_editor_knows_is_what_the_scenes_say():
+    spec = importlib.util.spec_from_file_location("tools_stub", ROOT / "tools" / "stub.py")
+    made = importlib.util.module_from_spec(spec)
+    before = sys.path[:]
+    try:
+        spec.loader.exec_module(made)
+    finally:
+        sys.path[:] = before
+    assert (ROOT / "atmosbox" / "__init__.pyi").read_text(encoding="utf-8") == made.stub(), (
+        "the settings of a scene have changed: run python tools/stub.py"
+    )
+
+
+def test_an_editor_completes_the_settings_of_a_scene():
+    jedi = pytest.importorskip("jedi")
+    project = jedi.Project(ROOT, added_sys_path=[str(ROOT)])
+    for typed, wanted in (('ab.run("lifting-dry", top', "top_pressure="), ("ab.comp", "compare")):
+        script = jedi.Script(f"import atmosbox as ab\n{typed}", path=ROOT / "typed.py", project=project)
+        assert wanted in [each.name for each in script.complete()]
+
+
+def test_importing_atmosbox_takes_no_time():
+    """Both are measured as processor time, so that a busy machine does not matter; Python itself is taken off."""
+    code = "import time; began = time.process_time(); import atmosbox; print(time.process_time() - began)"
+    spent = min(
+        float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout)
+        for _ in range(3)
+    )
+    assert spent < 0.1
