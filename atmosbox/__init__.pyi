@@ -32,7 +32,7 @@ def run(
     height: float | str = 25.0,
     knudsen: float | str = 0.3,
     floor: Literal["heat-bath", "isolated"] = "heat-bath",
-    start: Literal["equilibrium", "bottom"] = "equilibrium",
+    start: Literal["uniform", "equilibrium", "bottom"] = "uniform",
     plane: bool = False,
     duration: float | str = 400.0,
     seed: int | str = 1,
@@ -46,7 +46,7 @@ def run(
     height [km]: height of the ceiling; 0.1 km to 1000 km
     knudsen: mean free path at the floor in scale heights; 0.02 to 10
     floor: what the floor is: warm, or smooth so that no heat passes; heat-bath or isolated
-    start: where the molecules start; equilibrium or bottom
+    start: where the molecules start: spread evenly, in the profile of equilibrium, or near the floor; uniform or equilibrium or bottom
     plane: whether the air is a plane of discs; on or off
     duration: how long to watch, in times that sound takes to climb a scale height; 1 to 100000
     seed: seed of the random numbers; 0 to 9223372036854775807
