@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Periodic, Specular, maxwell_velocities, random_positions
+from atmosbox.engine import HeatBath, Periodic, Specular, maxwell_velocities
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -213,10 +213,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     diameter = np.full(n, column.diameter)
     sides = (True, True, False)
     if settings.start == "equilibrium":
-        position = random_positions(length, diameter, rng, periodic=sides, planar=plane, scale_height=1.0)
+        position = engine.scatter(length, diameter, rng, periodic=sides, planar=plane, scale_height=1.0)
     else:
         filled = min(FILLED if settings.start == "uniform" else 0.1, column.height)
-        position = random_positions(length, diameter, rng, periodic=sides, planar=plane, top=filled)
+        position = engine.scatter(length, diameter, rng, periodic=sides, planar=plane, top=filled)
     parcel = engine.make(
         position,
         maxwell_velocities(1.0, np.ones(n), rng, planar=plane, exact=True),

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import Drops, HeatBath, Liquid, Mist, random_positions
+from atmosbox.engine import Drops, HeatBath, Liquid, Mist
 from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
@@ -115,7 +115,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     scale, length = start.scale, (start.side + 1.0,) * 3
     gas = moist_air(n, start.vapour, rng)
     wide = np.concatenate([np.full(drops, 2.0 * settings.drop_size * MOLECULE), np.ones(n)])
-    place = random_positions(length, wide, rng)
+    place = engine.scatter(length, wide, rng)
     parcel = engine.make(
         place[drops:],
         gas.velocity,

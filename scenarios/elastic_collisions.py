@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import equal_speeds, random_positions
+from atmosbox.engine import equal_speeds
 from atmosbox.scene import (
     Air,
     Discs,
@@ -70,7 +70,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     thickness = 2.0 * float(diameter.max())
     length = (1.0, thickness, 1.0)
     parcel = engine.make(
-        random_positions(length, diameter, rng, planar=True),
+        engine.scatter(length, diameter, rng, planar=True),
         equal_speeds(1.0, n, rng, planar=True),
         length=length,
         mass=mass,

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import FollowPressure, Piston, Specular, maxwell_velocities, random_positions, rotational_energies
+from atmosbox.engine import FollowPressure, Piston, Specular, maxwell_velocities, rotational_energies
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -127,7 +127,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         list(times), list(pressures), mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess
     )
     parcel = engine.make(
-        random_positions(length, np.ones(n), rng),
+        engine.scatter(length, np.ones(n), rng),
         maxwell_velocities(1.0, np.ones(n), rng, exact=True),
         length=length,
         walls=(Specular(),) * 5 + (Piston(),),

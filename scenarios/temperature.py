@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, equal_speeds, maxwell_velocities, random_positions
+from atmosbox.engine import HeatBath, equal_speeds, maxwell_velocities
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -117,7 +117,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         else equal_speeds(math.sqrt(3.0 * cold), n, rng)
     )
     parcel = engine.make(
-        random_positions(length, np.ones(n), rng),
+        engine.scatter(length, np.ones(n), rng),
         velocity,
         length=length,
         walls=(HeatBath(1.0),) * 6,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.engine import Piston, Specular, random_positions
+from atmosbox.engine import Piston, Specular
 from atmosbox.scene.moisture import moist_air
 from atmosbox.scene.units import Scale
 
@@ -109,7 +109,7 @@ def moist_parcel(
     gas = moist_air(molecules, vapour, rng)
     length = tuple(sides + 1.0)
     return engine.make(
-        random_positions(length, np.ones(molecules), rng),
+        engine.scatter(length, np.ones(molecules), rng),
         gas.velocity,
         length=length,
         walls=(Specular(),) * 5 + (Piston(),),

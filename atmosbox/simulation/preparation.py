@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -135,6 +135,9 @@ def card(prepared: Prepared) -> Card:
     >>> dict(card(prepare("lifting-dry", {"molecules": 100})).facts)["gamma"]
     '7/5'
     """
+    if prepared.engine.name == EXACT.name and prepared.scene in scenarios.names():
+        # the start of a scene that is shipped is known to be lawful; that of a user's own is tried out
+        prepared = replace(prepared, engine=replace(prepared.engine, described=True))
     setup = build(prepared)
     story = (prepared.module.__doc__ or "").strip()
     title = getattr(prepared.module, "title", prepared.scene)

@@ -125,8 +125,6 @@ def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, he
 
     `heat` is the heat capacity of a molecule of air with all that is as warm and holds no water.
     """
-    from scipy import special  # loads slowly
-
     vapor = np.minimum(saturated_vapor(pressure, temperature), water)
     wet = vapor < water
     y = np.log(temperature / TRIPLE_TEMPERATURE)
@@ -134,19 +132,17 @@ def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, he
     air = heat * y - np.log((pressure - e) / REFERENCE_PRESSURE)
     triple = BINDING / TRIPLE_TEMPERATURE - EXCESS
     cloudy = LIQUID_HEAT * water * y + vapor * latent(temperature)
-    clear = water * (VAPOR_HEAT * y + triple) - special.xlogy(water, e / TRIPLE_PRESSURE)
+    clear = water * (VAPOR_HEAT * y + triple) - _x_log_y(water, e / TRIPLE_PRESSURE)
     total: FloatArray = air + np.where(wet, cloudy, clear)
     return total
 
 
 def temperature_of_entropy(target: FloatArray, pressure: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
     """Return the temperature at which air and water have this entropy per molecule of air."""
-    from scipy import special  # loads slowly
-
     s, p, w, c = np.broadcast_arrays(target, pressure, water, heat)
     e = p * w / (1.0 + w)
     triple = BINDING / TRIPLE_TEMPERATURE - EXCESS
-    rest = s + np.log((p - e) / REFERENCE_PRESSURE) + special.xlogy(w, e / TRIPLE_PRESSURE) - w * triple
+    rest = s + np.log((p - e) / REFERENCE_PRESSURE) + _x_log_y(w, e / TRIPLE_PRESSURE) - w * triple
     clear = TRIPLE_TEMPERATURE * np.exp(rest / (c + VAPOR_HEAT * w))
     cloudy = saturation(clear) < e
     temperature: FloatArray = np.array(clear)
@@ -160,6 +156,12 @@ def temperature_of_entropy(target: FloatArray, pressure: FloatArray, water: Floa
         bounds = [np.log(t / TRIPLE_TEMPERATURE) for t in (clear[cloudy], dewpoint_of(e[cloudy]))]
         temperature[cloudy] = TRIPLE_TEMPERATURE * np.exp(root(excess, *bounds))
     return temperature
+
+
+def _x_log_y(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return x ln y, which is 0 where x is 0."""
+    product: FloatArray = x * np.log(np.where(x > 0.0, y, 1.0))
+    return product
 
 
 def _saturated_entropy(

@@ -32,6 +32,7 @@ def random_positions(
     planar: bool = False,
     top: float | None = None,
     scale_height: float | None = None,
+    apart: bool = True,
 ) -> Array:
     """Scatter molecules at random, then push apart those that overlap.
 
@@ -51,6 +52,8 @@ def random_positions(
         Only heights below this one are used [length]; the whole box by default.
     scale_height
         Thins the molecules with height as an isothermal atmosphere does [length].
+    apart
+        Whether those that overlap are pushed apart; without it nothing is compiled, and no engine takes the result.
 
     Returns
     -------
@@ -96,6 +99,8 @@ def random_positions(
     phi = packing_fraction(list(sides), sigma, planar=planar)
     if np.ptp(sigma) == 0.0 and phi > (_DENSEST_RANDOM_PLANE if planar else _DENSEST_RANDOM):
         raise _too_dense(n, sides, sigma, planar)
+    if not apart:
+        return x
     for _ in range(_PATIENCE):
         if push_apart(x, 0.5 * sigma, low, high, turn, _ROUNDS, _GAP) == 0:
             return x

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +13,9 @@ from atmosbox.scene.parameter import Value, by_name
 from atmosbox.scene.spelling import assignments, nearest
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from atmosbox.engine import Parcel
 
@@ -31,6 +32,8 @@ class EngineChoice:
         The engine.
     options
         The options that were given, by name; the engine has its own defaults for the rest.
+    described
+        Whether its boxes are only described: checked, but never advanced, so that nothing has to be compiled.
 
     Examples
     --------
@@ -40,6 +43,7 @@ class EngineChoice:
 
     engine: Engine
     options: Mapping[str, Value] = field(default_factory=dict)
+    described: bool = False
 
     def __str__(self) -> str:
         """Return the words that ask for it."""
@@ -57,6 +61,14 @@ class EngineChoice:
         """Whether the pressure is n kT, without Z: the molecules of the engine have no excluded volume."""
         return self.engine.ideal or self.options.get("collisions") is False
 
+    def scatter(
+        self, length: Sequence[float], diameter: ArrayLike, rng: np.random.Generator, **options: Any
+    ) -> NDArray[np.float64]:
+        """Return centres at random in a box: `atmosbox.engine.random_positions`, for a box that `make` is to make."""
+        from atmosbox.engine import random_positions
+
+        return random_positions(length, diameter, rng, apart=not self.described, **options)
+
     def make(self, position: ArrayLike, velocity: ArrayLike, **box: Any) -> Parcel:
         """Return a parcel of this engine: what a scene calls in place of `atmosbox.engine.ParcelSet`.
 
@@ -73,6 +85,10 @@ class EngineChoice:
                 able = " or ".join(f"--engine {engine.name}" for engine in ENGINES.values() if engine.moist is not None)
                 raise SettingError("engine", str(self), "knows no liquid water", f"give {able}")
             parcel = self.engine.moist(box["liquid"])
+        if self.described:
+            from atmosbox.scene.engines.described_parcel import DescribedParcel
+
+            parcel = DescribedParcel
         return parcel(position, velocity, **self.options, **box)
 
 

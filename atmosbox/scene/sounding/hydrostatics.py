@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox import theory as law
 from atmosbox.scene.sounding.profile import Sounding
+from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
 
 __all__ = ["hydrostatic_height"]
 
@@ -29,8 +29,7 @@ def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
 
     Notes
     -----
-    T_v, R_d and g are MetPy's. The integral from level to level is the trapezoid in ln p, that of MetPy's
-    ``thickness_hydrostatic``.
+    The integral from level to level is the trapezoid in ln p, that of MetPy's ``thickness_hydrostatic``.
 
     References
     ----------
@@ -44,15 +43,8 @@ def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
     >>> round(float(hydrostatic_height(air)[3]), -2)
     5500.0
     """
-    import metpy.calc as mpcalc
-    from metpy import constants
-    from metpy.units import units
-
-    with warnings.catch_warnings(action="ignore"):
-        virtual = mpcalc.virtual_temperature_from_dewpoint(
-            sounding.pressure * units.Pa, sounding.temperature * units.K, sounding.dewpoint * units.K
-        )
-    warmth = np.asarray(virtual.to("K").magnitude, dtype=np.float64)
-    scale = float((constants.Rd / constants.g).to("m / K").magnitude)
-    layers = scale * (warmth[1:] + warmth[:-1]) / 2 * np.log(sounding.pressure[:-1] / sounding.pressure[1:])
+    vapour = law.mixing_ratio(law.saturation_vapor_pressure(sounding.dewpoint), sounding.pressure)
+    virtual = np.asarray(law.virtual_temperature(sounding.temperature, vapour))
+    scale = GAS_CONSTANT / (DRY_AIR.molar_mass * STANDARD_GRAVITY)
+    layers = scale * (virtual[1:] + virtual[:-1]) / 2 * np.log(sounding.pressure[:-1] / sounding.pressure[1:])
     return np.concatenate([[0.0], np.cumsum(layers)])
