@@ -229,7 +229,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             off * expected,
             "molecules at a wall are packed a little differently from those inside",
             "s-1",
-            "s-1",
+            "ns-1",
             "collisions of a molecule",
         ),
     )

@@ -25,7 +25,7 @@ from atmosbox.errors import SettingError
 from atmosbox.file import netcdf as output
 from atmosbox.file import provenance
 from atmosbox.scene import engines
-from atmosbox.scene.headline import Headline
+from atmosbox.scene.headline import ENGINE_IS_OFF, Headline
 from atmosbox.simulation import accuracy, runner
 from atmosbox.simulation.accuracy import TARGETS, ExpectedError, Measured, Table, Wish, choose, expect, parse
 from atmosbox.simulation.accuracy import cheapest as cheapest_of
@@ -372,9 +372,9 @@ def test_a_known_bias_excuses_a_misfit_to_its_side_alone(value, known, agrees):
 
 def test_a_misfit_that_only_a_known_bias_excuses_is_told():
     lines = headline_lines([headline(302.5, bias=2.0)], 200)
-    assert lines[1].endswith("known bias")
-    assert lines[-1] == "temperature: up to +2.00 K off, for so far off was this engine measured to be."
-    assert headline_lines([headline(300.5, bias=2.0)], 200)[1].endswith("yes")
+    assert lines[1].endswith("as stated")
+    assert lines[-1] == "temperature: up to 2.20 K off, for so far off was this engine measured to be."
+    assert headline_lines([headline(300.3, bias=2.0)], 200)[1].endswith("yes")
 
 
 def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_file_is_read(tmp_path, monkeypatch):
@@ -394,10 +394,10 @@ def test_the_bias_of_an_approximate_engine_is_counted_in_the_run_and_when_its_fi
     cold["mean_temperature_se"] = cold.mean_temperature_se.copy(data=10.0)
     again = output.read(output.write(cold, tmp_path / "classic.nc"))
     warm = next(one for one in runner.headlines_of(again) if one.name == "mean_temperature")
-    assert (warm.bias, warm.agrees, warm.excused) == (-3.0, True, True)
+    assert (warm.bias, warm.verdict, warm.excuse) == (-3.0, "as stated", ENGINE_IS_OFF)
     (said,) = (one for one in runner.verify(again) if one.name == "mean_temperature")
     assert said.passed
-    assert said.sentence.endswith("known to be off by -3")
+    assert said.sentence.endswith(ENGINE_IS_OFF)
     other = runner.execute(runner.prepare("temperature", {**settings, "pressure": 900.0}, engine="classic:delta=8"))
     assert all(one.bias == 0.0 for one in other.headlines)
 

@@ -35,6 +35,12 @@ class _Headline(Protocol):
     @property
     def tolerance(self) -> float | None: ...
     @property
+    def chance(self) -> float: ...
+    @property
+    def known(self) -> float: ...
+    @property
+    def verdict(self) -> str | None: ...
+    @property
     def unit(self) -> str: ...
     @property
     def display_unit(self) -> str: ...
@@ -56,7 +62,9 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
     -------
     dict
         Variables without dimensions by their names; the attribute ``display_units`` keeps the unit in which
-        a table shows them.
+        a table shows them. Where there is a theory, ``misfit_allowed_by_chance`` and ``misfit_allowed_as_known`` say
+        how far the value may be from it, and ``within_error`` whether it is: yes by chance alone, as stated with what
+        the model is known to be off by, or no.
 
     Examples
     --------
@@ -79,6 +87,9 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
         if number is not None
     }
     held[parent.name].attrs["display_units"] = headline.display_unit
+    if headline.verdict is not None:
+        allowed = {"misfit_allowed_by_chance": headline.chance, "misfit_allowed_as_known": headline.known}
+        held[parent.name].attrs |= {**allowed, "within_error": headline.verdict}
     return held
 
 

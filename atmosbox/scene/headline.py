@@ -5,10 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-__all__ = ["CHANCE_ALONE", "Headline"]
+__all__ = ["AS_STATED", "CHANCE_ALONE", "CHANCE_LIMIT", "ENGINE_IS_OFF", "NO", "YES", "Headline"]
 
 CHANCE_ALONE = "none: the model has no other error than chance"
 """Reason of a tolerance of zero."""
+ENGINE_IS_OFF = "so far off was this engine measured to be"
+"""Reason of a bias of the engine."""
+CHANCE_LIMIT = 4.0
+"""How many standard errors chance may make of a misfit: it makes more once in 16,000 times."""
+YES, AS_STATED, NO = "yes", "as stated", "no"
+"""What may be said of a misfit: chance alone explains it; with the known error of the model; nothing does."""
 
 
 @dataclass(frozen=True)
@@ -38,17 +44,17 @@ class Headline:
 
     Examples
     --------
-    With an error bar of 2 K, 3 K of misfit is no disagreement:
+    With an error bar of 2 K, 3 K of misfit may be chance:
 
     >>> warm = Headline("air_temperature", 291.0, 2.0, 288.0, 0.0, "an ideal gas", "K", "degC", "temperature")
-    >>> warm.misfit, warm.agrees
-    (3.0, True)
+    >>> warm.misfit, warm.chance, warm.verdict
+    (3.0, 8.0, 'yes')
 
     An engine that is known to be 5 K too warm may be that, but not as much too cold:
 
     >>> sharp = replace(warm, standard_error=0.5, bias=5.0)
-    >>> sharp.agrees, sharp.excused, replace(sharp, value=283.0).agrees
-    (True, True, False)
+    >>> sharp.known, sharp.verdict, replace(sharp, value=283.0).verdict
+    (5.0, 'as stated', 'no')
     """
 
     name: str
@@ -69,22 +75,51 @@ class Headline:
         return None if self.theory is None else self.value - self.theory
 
     @property
+    def difference_unit(self) -> str:
+        """The unit in which a table shows differences: K for temperatures in degC, and none for a pure number."""
+        return {"degC": "K", "1": ""}.get(self.display_unit, self.display_unit)
+
+    @property
+    def chance(self) -> float:
+        """How large a misfit chance alone may make [unit]: four standard errors."""
+        return CHANCE_LIMIT * self.standard_error
+
+    @property
+    def known(self) -> float:
+        """By how much more the model, or its engine, is known to be off [unit].
+
+        The tolerance to either side, and the measured bias of the engine to its own, with four standard errors of it.
+        """
+        return self._allowed(self.bias, self.bias_se) - self.chance
+
+    @property
     def allowed(self) -> float:
-        """How large the misfit may be [unit]: four standard errors, the tolerance, and a bias to the same side."""
-        chance = 4.0 * math.hypot(self.standard_error, self.bias_se) + self.tolerance
-        return chance + max(math.copysign(1.0, self.misfit or 0.0) * self.bias, 0.0)
+        """How large the misfit may be [unit]: by `chance`, and by the `known` error."""
+        return self._allowed(self.bias, self.bias_se)
+
+    def _allowed(self, bias: float, bias_se: float) -> float:
+        """Return how large the misfit may be with such a bias of the engine [unit]."""
+        aside = max(math.copysign(1.0, self.misfit or 0.0) * bias, 0.0)
+        return CHANCE_LIMIT * math.hypot(self.standard_error, bias_se) + self.tolerance + aside
 
     @property
-    def excused(self) -> bool:
-        """Whether it agrees for no other reason than that its engine is known to be so far off."""
-        return bool(self.agrees) and not replace(self, bias=0.0, bias_se=0.0).agrees
-
-    @property
-    def agrees(self) -> bool | None:
-        """Whether the misfit is within what is `allowed`; None without a theory.
+    def verdict(self) -> str | None:
+        """Whether chance alone explains the misfit, only with the known error, or nothing; None without a theory.
 
         A measurement or an error bar that is not a finite number agrees with nothing.
         """
         if self.misfit is None:
             return None
-        return math.isfinite(self.allowed) and abs(self.misfit) <= self.allowed
+        if not math.isfinite(self.allowed) or not abs(self.misfit) <= self.allowed:
+            return NO
+        return YES if abs(self.misfit) <= self.chance else AS_STATED
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether the misfit is within what is `allowed`; None without a theory."""
+        return None if self.verdict is None else self.verdict != NO
+
+    @property
+    def excuse(self) -> str:
+        """Why the misfit may be larger than by chance: the reason of the tolerance, or that the engine is off."""
+        return self.reason if abs(self.misfit or 0.0) <= self._allowed(0.0, 0.0) else ENGINE_IS_OFF

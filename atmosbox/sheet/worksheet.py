@@ -13,6 +13,7 @@ import jinja2
 
 from atmosbox.errors import ConfigError
 from atmosbox.scene.conversion import from_si
+from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.generic import WORDS, AnyScene, left_out
 from atmosbox.sheet.number_text import bare, fixed, measured, spelled, theoretical
 from atmosbox.sheet.sheet_run import Trial, execute, trials
@@ -219,9 +220,8 @@ def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
     excuses: dict[str, list[str]] = {}
     for run in runs:
         for each in run.headlines.values():
-            far = each.misfit is not None and abs(each.misfit) > 4.0 * each.standard_error
-            if each.name in rows and each.agrees and far:
-                unit = {"degC": "K"}.get(each.display_unit, spelled(each.display_unit))
-                allowed = f"{bare(from_si(each.tolerance, each.display_unit, difference=True), 2)} {unit}".rstrip()
-                excuses.setdefault(each.reason, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
+            if each.name in rows and each.verdict == AS_STATED:
+                known = bare(from_si(each.known, each.display_unit, difference=True), 2)
+                allowed = f"{known} {spelled(each.difference_unit)}".rstrip()
+                excuses.setdefault(each.excuse, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
     return [f"More than chance: {'; '.join(numbers)}, for {reason}." for reason, numbers in excuses.items()]

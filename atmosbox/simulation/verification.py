@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from atmosbox.errors import FileError
+from atmosbox.scene.conversion import from_si
 from atmosbox.scene.engines import EXACT
-from atmosbox.scene.headline import Headline
+from atmosbox.scene.headline import AS_STATED, Headline
 from atmosbox.simulation.accuracy import ExpectedError
 
 if TYPE_CHECKING:
@@ -114,15 +115,20 @@ def verify(dataset: xr.Dataset) -> list[Check]:
         checks.append(_balance(dataset))
     for headline in headlines_of(dataset):
         if headline.agrees is not None:
-            checks.append(
-                Check(
-                    headline.name,
-                    bool(headline.agrees),
-                    f"{headline.label}: misfit {headline.misfit:.3g} {headline.unit}, allowed {headline.allowed:.3g}"
-                    + (f", for its engine is known to be off by {headline.bias:.3g}" if headline.excused else ""),
-                )
-            )
+            checks.append(Check(headline.name, bool(headline.agrees), _agreement(headline)))
     return checks
+
+
+def _agreement(headline: Headline) -> str:
+    """Return how far a headline is from theory, how far chance may take it, and how far the model is known to be."""
+    misfit, chance, known = (
+        f"{from_si(size, headline.display_unit, difference=True):{form}} {headline.difference_unit}".rstrip()
+        for size, form in ((headline.misfit or 0.0, "+.3g"), (headline.chance, ".2g"), (headline.known, ".2g"))
+    )
+    told = f"{headline.label}: misfit {misfit}, allowed {chance} by chance"
+    if headline.known > 0.0:
+        told += f" and {known} as known"
+    return f"{told}, for {headline.excuse}" if headline.verdict == AS_STATED else told
 
 
 def _balance(dataset: xr.Dataset) -> Check:

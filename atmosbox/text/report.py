@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from atmosbox.scene.conversion import from_si
+from atmosbox.scene.headline import AS_STATED, CHANCE_LIMIT
 from atmosbox.scene.quantity import phrase
 from atmosbox.text.table import digits, measurement, number, table, wrapped
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from atmosbox.scene.parameter import Parameter
     from atmosbox.simulation.runner import Card, Outcome
 
-_VERDICT = {True: "yes", False: "no", None: "-"}
 _ALIKE = {1: "", 2: "both "}
 
 
@@ -47,6 +47,9 @@ def _shown(headline: Headline) -> dict[str, Any]:
         "misfit": difference(headline.misfit),
         "tolerance": difference(headline.tolerance),
         "bias": difference(headline.bias),
+        "allowed": difference(headline.allowed),
+        "chance": difference(headline.chance),
+        "known": difference(headline.known),
     }
 
 
@@ -57,55 +60,54 @@ def headline_json(headline: Headline) -> dict[str, Any]:
         "label": headline.label,
         "unit": headline.display_unit,
         **_shown(headline),
-        "reason": headline.reason,
+        "reason": headline.excuse,
         "agrees": headline.agrees,
+        "within_error": headline.verdict,
     }
 
 
 def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
-    r"""Return the table of what was measured and what theory says, and why a model may be off.
+    r"""Return the table of what was measured and what theory says, what is allowed for, and why a model may be off.
 
     Examples
     --------
     >>> from atmosbox.scene.headline import Headline
-    >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.0, "none", "K", "degC", "temperature")
+    >>> warm = Headline("t", 291.0, 2.0, 288.0, 0.5, "the box is small", "K", "degC", "temperature")
     >>> print("\n".join(headline_lines([warm], 100)))
-    quantity            measured    theory  misfit       within error?
-    temperature [degC]  17.9 ± 2.0  14.9    +3.0 (1.5σ)  yes
+    quantity            measured    theory  misfit       allowed  within error?
+    temperature [degC]  17.9 ± 2.0  14.9    +3.0 (1.5σ)  4σ+0.5   yes
+    allowed: 4 standard errors σ, by chance, + the known error of the model
     """
     rows: list[list[str]] = []
     notes: dict[str, list[str]] = {}
     for headline in headlines:
         shown = _shown(headline)
         value, error = shown["value"], shown["standard_error"]
-        decimals, power = digits(value, error if error > 0.0 else shown["tolerance"])
-        theory = misfit = "-"
-        if shown["theory"] is not None:
+        near = error or (shown["tolerance"] if shown["theory"] else 0.1 * abs(value))
+        decimals, power = digits(value, near)
+        theory = misfit = allowed = "-"
+        if headline.verdict is not None:
             theory = number(shown["theory"], decimals, power)
             misfit = number(shown["misfit"], decimals, power, "+")
             if error > 0.0 and math.isfinite(shown["misfit"] / error):
                 misfit += f" ({abs(shown['misfit']) / error:.1f}σ)"
-            if headline.agrees and abs(shown["misfit"]) > 4.0 * error:
-                may_be = number(shown["tolerance"], decimals, power)
-                reason = headline.reason
-                if headline.excused:
-                    may_be = number(shown["bias"], decimals, power, "+")
-                    reason = "so far off was this engine measured to be"
-                notes.setdefault(reason, []).append(f"{headline.label}: up to {may_be}{_unit(headline)} off")
+            known = number(shown["known"], decimals, power) if error > 0.0 else number(shown["known"])
+            chance = [f"{CHANCE_LIMIT:g}σ"] if error > 0.0 else []
+            allowed = "+".join([*chance, known] if not chance or float(known) else chance)
+            if headline.verdict == AS_STATED:
+                known = f"{known} {headline.difference_unit}".rstrip()
+                notes.setdefault(headline.excuse, []).append(f"{headline.label}: up to {known} off")
         unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
-        verdict = "known bias" if headline.excused else _VERDICT[headline.agrees]
         found = measurement(value, error) if error > 0.0 else number(value, decimals, power)
-        rows.append([headline.label + unit, found, theory, misfit, verdict])
-    header = ["quantity", "measured", "theory", "misfit", "within error?"]
-    lines = table(header, rows, width) if rows else ["No frame is late enough for an average."]
+        rows.append([headline.label + unit, found, theory, misfit, allowed, headline.verdict or "-"])
+    if not rows:
+        return ["No frame is late enough for an average."]
+    lines = table(["quantity", "measured", "theory", "misfit", "allowed", "within error?"], rows, width)
+    if any("σ" in row[4] for row in rows):
+        known = ", + the known error of the model" if any("+" in row[4] for row in rows) else ""
+        lines += wrapped(f"allowed: {CHANCE_LIMIT:g} standard errors σ, by chance{known}", width)
     told = [f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}for {reason}." for reason, which in notes.items()]
     return [*lines, *(line for note in told for line in wrapped(note, width))]
-
-
-def _unit(headline: Headline) -> str:
-    """Return the unit of a difference with a blank before it."""
-    unit = {"degC": "K", "1": ""}.get(headline.display_unit, headline.display_unit)
-    return f" {unit}" if unit else ""
 
 
 def ledger_line(ledger: float, limit: float) -> str:

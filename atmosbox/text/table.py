@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Sequence
 
 LONGEST_LINE = 100  # columns of running text, however wide the terminal is
-NARROWEST = 20  # columns for a cell that is broken into lines
+NARROWEST = 16  # columns for a cell that is broken into lines
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
@@ -39,7 +39,9 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
     sizes = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
     for column in (-1, 0):
         excess = max(sum(sizes) + 2 * len(sizes) - 2 - width, 0)
-        sizes[column] = max(sizes[column] - excess, min(sizes[column], NARROWEST))
+        words = [*header[column].split(), *(row[column] for row in rows)]  # the name of a column is broken first
+        least = min(max(map(len, words), default=0), NARROWEST)
+        sizes[column] = max(sizes[column] - excess, least)
     if sum(sizes) + 2 * len(sizes) - 2 > width:
         return _blocks(header, rows, width)
     made = []
