@@ -103,6 +103,17 @@ def _crowding(density: float, side: float, molecules: int) -> float:
     return filled * (6.75 / side + 3.0 / molecules)
 
 
+def _memory(density: float, side: float) -> float:
+    r"""Return the correlation time of the energy of the gas between its walls [reduced time].
+
+    A surplus leaves with the molecules that hit a wall, :math:`2kT` each of the :math:`\tfrac32 kT` that a molecule
+    has, and must first be conducted to the walls: :math:`L / 2\bar c + L^2 / 3 \pi^2 D`, with the diffusivity
+    :math:`D = 0.678 / \tfrac32 n \sigma^2` of a thin gas (Chapman and Enskog), the least there is.
+    """
+    diffusivity = 0.678 / (1.5 * density)
+    return side / (2.0 * float(law.mean_speed(1.0, 1.0))) + side**2 / (3.0 * math.pi**2 * diffusivity)
+
+
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the cold gas between warm walls."""
     si = settings.si
@@ -168,25 +179,19 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     warm = dataset.isel(elapsed_time=slice(SETTLE, None))
     if warm.sizes["elapsed_time"] < 41:
         return ()
-    temperature = overlapping_average(warm.air_temperature.values)
-    pressure = overlapping_average(warm.air_pressure.values)
-    bins = np.diff(dataset.speed_bnds.values, axis=1)[:, 0]
-    share = dataset.speed_probability_density.values * bins
-    spread = dataset.speed_probability_density_se.values * bins
-    speed = dataset.speed.values
+    memory = _memory(density, side) * scale.time / si.duration * FRAMES
+    temperature = overlapping_average(warm.air_temperature.values, memory=memory)
+    pressure = overlapping_average(warm.air_pressure.values, memory=memory)
+    speed = overlapping_average(warm.mean_molecular_speed.values, memory=memory)
     lasted = float(warm.elapsed_time[-1] - warm.elapsed_time[0]) * 1e-9
     met = np.diff(warm.collision_count.values) * 2.0 / settings.molecules
-    per_second = overlapping_average(met * (len(met) / lasted))
+    per_second = overlapping_average(met * (len(met) / lasted), memory=memory)
     share_of_contacts = law.contact_share((side,) * 3, 1.0, settings.molecules)
     expected = float(law.collision_rate(density, 1.0, 1.0, 1.0)) * share_of_contacts / scale.time
     if ideal:  # pairs chosen at random: no excluded volume, and any other molecule may be the partner
         crowded = float(law.contact_value(law.packing_fraction(density, 1.0))) * share_of_contacts
         expected *= (1.0 - 1.0 / settings.molecules) / crowded
     mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
-    shape_error = float(np.sqrt(np.sum((spread * (speed - mean_speed)) ** 2)))
-    # all bins move together where the gas is a little warmer than its walls
-    warmth_error = 0.5 * mean_speed * float(temperature.standard_error) / si.temperature
-    bin_error = float(bins.mean() ** 2) / (12.0 * mean_speed)
     return (
         Headline(
             "mean_temperature",
@@ -212,11 +217,11 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         ),
         Headline(
             "mean_speed",
-            float(np.sum(share * speed) / share.sum()),
-            math.hypot(shape_error, warmth_error),
+            float(speed.mean),
+            float(speed.standard_error),
             mean_speed,
-            bin_error,
-            "the speeds are counted in bins",
+            0.0,
+            CHANCE_ALONE,
             "m s-1",
             "m s-1",
             "mean speed",

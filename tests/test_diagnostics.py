@@ -22,6 +22,9 @@ def headline(name="lapse_rate", value=9.7e-3, **fields):
         "unit": "K m-1",
         "display_unit": "K km-1",
         "reason": "a finite rise",
+        "chance": 4e-4,
+        "known": 4e-4,
+        "verdict": None,
     }
     return SimpleNamespace(**{"name": name, "value": value, "label": "lapse rate", **stated, **fields})
 

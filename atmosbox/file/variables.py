@@ -47,6 +47,7 @@ VARIABLES: dict[str, Variable] = {
         _TIME,
         ("air_temperature", "K", "temperature of the air in the box", "air_temperature"),
         ("air_pressure", "Pa", "pressure of the air on the walls", "air_pressure"),
+        ("mean_molecular_speed", "m s-1", "mean speed of the molecules"),
         cell_methods=_MEAN,
     ),
     **_declared(

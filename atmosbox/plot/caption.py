@@ -15,6 +15,8 @@ from atmosbox.scene.panels import Panel
 if TYPE_CHECKING:
     import xarray as xr
 
+HIDDEN = 0.5
+"""Known errors of the model up to so many standard errors are left out of figures."""
 _COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")
 
 
@@ -99,6 +101,12 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
     >>> dataset["t_theory"] = ((), 204.41, {"units": "K", "display_name": "adiabat"})
     >>> [words.split() for words in headline(dataset, "t")[3:]]
     [['adiabat', '204.41', 'K'], ['difference', '+0.12', 'K']]
+
+    What the model itself is known to be off by follows, unless chance hides it:
+
+    >>> dataset.t.attrs["misfit_allowed_as_known"] = 0.1
+    >>> headline(dataset, "t").difference.split()
+    ['difference', '+0.12', 'K,', 'model', '±', '0.10', 'K']
     """
     value = _scalar(dataset, name)
     if not math.isfinite(value):
@@ -116,13 +124,19 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
         return Reading(label, digits, spread, "", "")
     expected = float(convert(theory, unit, shown, name=name))
     called = str(read(dataset, f"{name}_theory").attrs.get("display_name", "theory"))
-    apart = float(convert(value - theory, unit, of_difference(shown), name=name, difference=True))
+    apart, model = (
+        float(convert(size, unit, of_difference(shown), name=name, difference=True))
+        for size in (value - theory, attrs.get("misfit_allowed_as_known", 0.0))
+    )
+    away = _known(apart, error, _symbol(of_difference(shown)), signed=True)
+    if error > 0.0 and model > HIDDEN * error:
+        away += f", model\u00a0±\u00a0{_known(model, error, _symbol(of_difference(shown)))}"
     return Reading(
         label,
         digits,
         spread,
         f"{called} {_known(expected, error, _symbol(shown))}",
-        f"difference {_known(apart, error, _symbol(of_difference(shown)), signed=True)}",
+        f"difference {away}",
     )
 
 

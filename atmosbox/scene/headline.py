@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 __all__ = ["AS_STATED", "CHANCE_ALONE", "CHANCE_LIMIT", "ENGINE_IS_OFF", "NO", "YES", "Headline"]
 
@@ -52,6 +52,7 @@ class Headline:
 
     An engine that is known to be 5 K too warm may be that, but not as much too cold:
 
+    >>> from dataclasses import replace
     >>> sharp = replace(warm, standard_error=0.5, bias=5.0)
     >>> sharp.known, sharp.verdict, replace(sharp, value=283.0).verdict
     (5.0, 'as stated', 'no')

@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Sequence
 
 LONGEST_LINE = 100  # columns of running text, however wide the terminal is
-NARROWEST = 16  # columns for a cell that is broken into lines
+NARROWEST = 20  # columns for a cell that is broken into lines
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:

@@ -18,7 +18,7 @@ _BLOCKS = 20
 
 
 class Speeds:
-    """The share of molecules by speed.
+    """The share of molecules by speed, and their mean speed in each frame.
 
     Parameters
     ----------
@@ -30,23 +30,28 @@ class Speeds:
         self._edges = np.asarray(edges, np.float64)
         self._counts = np.zeros(self._edges.size - 1)
         self._seen = 0
+        self._sum = 0.0
+        self._mean: list[float] = []
         self._frames: list[Array] = []
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count by speed."""
         self._counts += speed_counts(snapshot, self._edges)
         self._seen += parcel.number
+        self._sum += float(np.sqrt((snapshot.velocity**2).sum(axis=1)).sum())
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Close the counts of a frame."""
         self._frames.append(self._counts / max(self._seen, 1) / np.diff(self._edges))
+        self._mean.append(self._sum / max(self._seen, 1))
         self._counts = np.zeros_like(self._counts)
-        self._seen = 0
+        self._seen, self._sum = 0, 0.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the histogram with the standard errors of 20 blocks."""
+        """Return the mean speeds, and the histogram with the standard errors of 20 blocks."""
         edges = self._edges * scale.velocity
         out = Readings(speed=0.5 * (edges[1:] + edges[:-1]), speed_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
+        out["mean_molecular_speed"] = np.array(self._mean) * scale.velocity
         frames = np.array(self._frames[settle:])
         if len(frames) >= 2:
             mean, error = block_average(frames, min(_BLOCKS, len(frames)))
