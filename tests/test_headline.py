@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from atmosbox.cli.report import headline_lines
+from atmosbox.text.report import headline_lines
 from atmosbox.file.dataset import dataset
 from atmosbox.scene.headline import Headline
 from atmosbox.simulation.verification import verify
