@@ -261,6 +261,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_label="temperature",
             y_unit="degC",
             x_scale="log",
+            averages=60,
             headlines=("mean_temperature",),
         ),
         Panel(
@@ -274,6 +275,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_label="pressure",
             y_unit="hPa",
             x_scale="log",
+            averages=60,
             headlines=("mean_pressure",),
         ),
         Panel(

@@ -1047,6 +1047,7 @@ def test_measured_curves_are_averaged_over_equal_parts_of_the_axis_and_theory_is
     seen = time[time != 4.0]
     assert measured.y == pytest.approx([seen[seen < middle].mean(), seen[seen > middle].mean()])
     assert measured.x == pytest.approx(measured.y)
+    assert measured.error == pytest.approx([seen[seen < middle].std(), seen[seen > middle].std()])
     assert theory.y.tolist() == time.tolist()
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.file.molecules import molecules
@@ -16,6 +17,7 @@ from atmosbox.file.output_path import named, whole_file, write_whole
 from atmosbox.film.encoder import Picture, encode_gif, encode_mp4, movie_program
 from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.pace import Pace, pace
+from atmosbox.plot.layout import panels_of
 from atmosbox.plot.theme import Theme, find, style
 
 if TYPE_CHECKING:
@@ -92,7 +94,8 @@ def save(
     if count == 0:
         raise FileError("The file has no frame to film: the run was stopped before its first one; run it again.")
     held = None if graphs else molecules(dataset, otherwise=", or film its graphs alone with --graphs")
-    chosen = pace(count, fps=fps, seconds=seconds, smooth=held is not None and held.step < _SMOOTH)
+    smooth = held is not None and held.step < _SMOOTH
+    chosen = pace(count, fps=fps, seconds=seconds, smooth=smooth, along=None if smooth else _along(dataset))
     with style(look):
         sheet = Sheet(dataset, look, held, chosen.frames)
 
@@ -124,3 +127,12 @@ def sized(theme: Theme, kind: str) -> Theme:
     wide, high = _SIZES[kind][theme.name]
     dots = wide / _WIDE[theme.name]
     return replace(theme, wide=(wide / dots, high / dots), dots_per_inch=dots, grows=False)
+
+
+def _along(dataset: xr.Dataset) -> NDArray[np.float64] | None:
+    """Return the logarithm of time where the first graph over time is drawn along it: what changes early is seen."""
+    over_time = [panel for panel in panels_of(dataset) if panel.kind == "line"]
+    time = dataset["elapsed_time"].values.astype(np.float64)
+    if not over_time or over_time[0].x_scale != "log" or time[0] <= 0.0:
+        return None
+    return np.log(time)

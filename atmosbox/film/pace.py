@@ -47,7 +47,14 @@ class Pace:
         return self.frames.size / self.fps
 
 
-def pace(frames: int, *, fps: float | None = None, seconds: float | None = None, smooth: bool = False) -> Pace:
+def pace(
+    frames: int,
+    *,
+    fps: float | None = None,
+    seconds: float | None = None,
+    smooth: bool = False,
+    along: NDArray[np.float64] | None = None,
+) -> Pace:
     """Choose evenly spaced frames of a run, the last one included, so that the film lasts as long as wanted.
 
     Parameters
@@ -60,6 +67,8 @@ def pace(frames: int, *, fps: float | None = None, seconds: float | None = None,
         How long the film is to last: 12 seconds if nothing is said, or as long as the frames reach.
     smooth : bool
         Whether molecules move little from one frame to the next.
+    along : ndarray of float, (frame,), optional
+        What increases evenly from picture to picture, the logarithm of time for instance; else the number of the frame.
 
     Returns
     -------
@@ -75,6 +84,12 @@ def pace(frames: int, *, fps: float | None = None, seconds: float | None = None,
     --------
     >>> pace(1000).frames.size, pace(40).seconds, pace(40, seconds=8.0).fps
     (120, 4.0, 5.0)
+
+    Along the logarithm of time, half of the pictures show the first of two decades:
+
+    >>> early = pace(100, seconds=2.0, along=np.log(np.arange(1.0, 101.0))).frames < 10
+    >>> float(early.mean())
+    0.5
     """
     if fps is not None and not 0.1 <= fps <= FASTEST:
         raise SettingError("fps", fps, f"is not between 0.1 and {FASTEST:g} pictures a second", "give --fps 10")
@@ -87,4 +102,7 @@ def pace(frames: int, *, fps: float | None = None, seconds: float | None = None,
     if number > MOST:
         problem = f"at {rate:g} pictures a second are {number} pictures, more than the {MOST} that a film may have"
         raise SettingError("seconds", seconds, problem, f"give --seconds {math.floor(MOST / rate)} or less")
+    if along is not None and frames > 1:
+        wanted = np.linspace(along[0], along[-1], number)
+        return Pace(np.interp(wanted, along, np.arange(frames)).round().astype(np.int64), rate)
     return Pace(np.linspace(frames - 1, 0, number).round().astype(np.int64)[::-1], rate)

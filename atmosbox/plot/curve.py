@@ -74,7 +74,8 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     """Return a line of a panel as numbers.
 
     A single number beside a list of values is repeated along it. What a logarithmic axis cannot show is left
-    out (NaN). Measured values are averaged over equal parts of the axis if the panel says so.
+    out (NaN). Measured values are averaged over equal parts of the axis if the panel says so; their error is
+    then the scatter (standard deviation) of the single values in each part.
 
     Parameters
     ----------
@@ -125,7 +126,7 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
         ) from fault
     x, y = (measured, along) if measured_is_x else (along, measured)
     if panel.averages and line.role == "data" and error is None:
-        x, y = _averaged(x, y, panel)
+        x, y, error = _averaged(x, y, panel)
     return Curve(_for_scale(x, panel.x_scale), _for_scale(y, panel.y_scale), error)
 
 
@@ -230,18 +231,19 @@ def _unit(variable: xr.DataArray) -> str:
 
 def _averaged(
     x: NDArray[np.float64], y: NDArray[np.float64], panel: Panel
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the means of x and y over equal parts of the x axis, those of the parts that hold values."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None]:
+    """Return the means of x and y over equal parts of the x axis that hold values, and the scatter of y in each."""
     seen = np.isfinite(x) & np.isfinite(y) & ((x > 0.0) | (panel.x_scale == "linear"))
     x, y = x[seen], y[seen]
     if not x.size or np.ptp(x) == 0.0:
-        return x, y
+        return x, y, None
     along = np.log(x) if panel.x_scale == "log" else x
     part = np.minimum((along - along.min()) / np.ptp(along) * panel.averages, panel.averages - 1).astype(int)
     number = np.bincount(part)
     held = number > 0
     means = [np.bincount(part, each)[held] / number[held] for each in (x, y)]
-    return means[0], means[1]
+    square = np.bincount(part, (y - means[1][np.cumsum(held)[part] - 1]) ** 2)[held] / number[held]
+    return means[0], means[1], np.sqrt(square)
 
 
 def _for_scale(values: NDArray[np.float64], scale: str) -> NDArray[np.float64]:

@@ -124,6 +124,8 @@ def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
     )
     small = " · bars and bands: ± 1 standard error" if has_errors else ""
     small += ", hollow: not known" if has_hollow else ""
+    if any(panel.averages for panel in panels):
+        small += " · bars and bands of averages: scatter of single values, ± 1 standard deviation"
     return small + (f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else "")
 
 

@@ -87,21 +87,24 @@ function curveOf(panel, line, numbers) {
   return curve;
 }
 
-// Means of x and y over equal parts of the x axis, those of the parts that hold values.
+// Means of x and y over equal parts of the x axis that hold values, and the scatter of y in each.
 function averaged({ x, y }, panel) {
   const place = panel.x.log ? Math.log : (value) => value;
   const known = x.map((value, index) => index).filter((index) =>
     Number.isFinite(x[index]) && Number.isFinite(y[index]) && (!panel.x.log || x[index] > 0));
-  if (known.length < 2) return { x, y };
+  if (known.length < 2) return { x, y, error: null };
   const low = place(x[known[0]]), span = place(x[known.at(-1)]) - low;
-  if (!(span > 0)) return { x, y };
-  const parts = Array.from({ length: panel.averages }, () => [0, 0, 0]);
+  if (!(span > 0)) return { x, y, error: null };
+  const parts = Array.from({ length: panel.averages }, () => [0, 0, 0, 0]);
   for (const index of known) {
     const part = parts[Math.min(Math.floor((place(x[index]) - low) / span * panel.averages), panel.averages - 1)];
     part[0] += 1;
     part[1] += x[index];
     part[2] += y[index];
+    part[3] += (y[index] - y[known[0]]) ** 2; // about the first value, lest digits are lost
   }
   const held = parts.filter(([number]) => number > 0);
-  return { x: held.map(([number, sum]) => sum / number), y: held.map(([number, , sum]) => sum / number) };
+  const means = held.map(([number, , sum]) => sum / number);
+  const error = held.map(([number, , , sum], place) => Math.sqrt(Math.max(0, sum / number - (means[place] - y[known[0]]) ** 2)));
+  return { x: held.map(([number, sum]) => sum / number), y: means, error };
 }
