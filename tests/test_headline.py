@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from atmosbox.text.report import headline_lines
 from atmosbox.file.dataset import dataset
 from atmosbox.scene.headline import Headline
 from atmosbox.simulation.verification import verify
+from atmosbox.text.report import headline_lines
 
 
 def headline(value=10.0, standard_error=1.0, theory=12.0, tolerance=0.0):
