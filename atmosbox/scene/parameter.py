@@ -112,6 +112,21 @@ class Parameter:
             return self._switch(value)
         return self._word(value) if self.kind == "str" else self._number(value)
 
+    def takes(self, value: object) -> bool:
+        """Whether a value is of the kind that is set here, be it out of range.
+
+        Examples
+        --------
+        >>> height = Parameter("height", "km", 2.0, 0.0, 12.0)
+        >>> height.takes("50 km"), height.takes("2 ns")
+        (True, False)
+        """
+        try:
+            self.parse(value)
+        except SettingError as error:
+            return self.kind in ("int", "float") and not isinstance(error, UnitError)
+        return True
+
     def _switch(self, value: object) -> bool:
         try:
             return _SWITCH.validate_python(value.strip() if isinstance(value, str) else value)
@@ -196,7 +211,7 @@ def by_name(
         if name in values:
             raise SettingError(name, value, "is given twice", f"give --set {name} once")
         if name not in parameters:
-            near = nearest(name, parameters)
+            near = nearest(name, (known for known, parameter in parameters.items() if parameter.takes(value)))
             fix = f"give one of {', '.join(parameters)}"
             if near is not None:
                 usable = isinstance(value, str) and shown(value) == value
