@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.refusal import RefusedError
@@ -48,6 +49,18 @@ class Course:
         if not self.led:
             return min(time, self.end)
         return float(np.interp(time, self._time, self._moment))
+
+    def corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the times and moments between which the way is straight; it rests after the last.
+
+        Examples
+        --------
+        >>> [corner.tolist() for corner in Course(10.0).corners()]
+        [[0.0, 10.0], [0.0, 10.0]]
+        """
+        if self.led or not 0.0 < self.end < math.inf:
+            return np.array(self._time), np.array(self._moment)
+        return np.array([0.0, self.end]), np.array([0.0, self.end])
 
     def lead(self, time: float, towards: float) -> None:
         """Make for another moment of the plan, and rest there.

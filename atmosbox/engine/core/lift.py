@@ -19,14 +19,55 @@ is a parcel that lags: ln p is too high by what its finite speed adds to it with
 
 import math
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from atmosbox.engine.core.course import Course
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.parcel import Parcel
 from atmosbox.engine.core.refusal import RefusedError
 
-__all__ = ["FollowPressure"]
+__all__ = ["FollowPressure", "Gauges", "Lift", "ceiling_velocity"]
+
+_EXCESS, _VIRIAL = range(2)
+
+
+class Lift(NamedTuple):
+    """A pressure to follow, as the kernels know it.
+
+    ``time``, ``log_pressure : (corner,)`` the schedule [time; logarithm of energy/length^3]; ``course_time``,
+    ``course_moment : (turn,)`` which moment of it the parcel is at when [time]; ``measured : (2,)`` the average of
+    (Z - 1) / n [length^3] and the virial at the last turn [energy]; ``interval`` for how long the piston keeps a
+    velocity, ``relaxation`` in what time a gap of pressure is closed, ``memory`` of that average [time].
+    """
+
+    time: Any
+    log_pressure: Any
+    course_time: Any
+    course_moment: Any
+    measured: Any
+    interval: float
+    relaxation: float
+    memory: float
+
+
+class Gauges(NamedTuple):
+    """What the law of a lift asks of the gas at one time.
+
+    The time [time]; how many molecules there are, of how many degrees of freedom each and in how many dimensions; their
+    energy [energy], the virial of their contacts since the start [energy]; the density in the volume that centres can
+    reach [1/length^3] and the height of that volume [length].
+    """
+
+    time: float
+    number: int
+    freedom: float
+    dimensions: float
+    energy: float
+    virial: float
+    density: float
+    open_height: float
 
 
 class FollowPressure:
@@ -94,8 +135,7 @@ class FollowPressure:
         self._relaxation = relaxation * mean_free_time
         self.interval = interval * mean_free_time
         self._memory = 100.0 * mean_free_time
-        self._virial = 0.0
-        self._excess = excess
+        self._measured = np.array([excess, 0.0])
         self.course = Course(float(self._time[-1]))
 
     def log_pressure(self, time: float) -> float:
@@ -105,31 +145,88 @@ class FollowPressure:
     def pressure(self, parcel: Parcel) -> float:
         """Return the pressure of the parcel [energy/length^3]."""
         density = parcel.open_density
-        return density * _kT(parcel) * (1.0 + self._excess * density)
+        kT = 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))
+        return density * kT * (1.0 + float(self._measured[_EXCESS]) * density)
 
     def velocity(self, parcel: Parcel) -> float:
         """Return the velocity [length/time] of the ceiling for the next interval."""
-        density, kT = parcel.open_density, _kT(parcel)
-        self._average_virial(parcel, density * kT)
-        factor = 1.0 + self._excess * density
-        now = parcel.time
-        wanted = self.log_pressure(now)
-        fall = wanted - self.log_pressure(now + self.interval)
-        fall += self.interval / self._relaxation * (math.log(density * kT * factor) - wanted)
-        open_height = parcel.ceiling - (float(parcel.diameter.mean()) if parcel.number else 0.0)
-        return open_height * math.expm1(fall / stiffness(factor, parcel.degrees_of_freedom)) / self.interval
+        gauges = Gauges(
+            time=parcel.time,
+            number=parcel.number,
+            freedom=parcel.degrees_of_freedom,
+            dimensions=2.0 if parcel.planar else 3.0,
+            energy=parcel.internal_energy(),
+            virial=float(parcel.virial.sum()),
+            density=parcel.open_density,
+            open_height=parcel.ceiling - (float(parcel.diameter.mean()) if parcel.number else 0.0),
+        )
+        return float(_follow(gauges, self.law()))
 
-    def _average_virial(self, parcel: Parcel, ideal: float) -> None:
-        """Average what contacts add to the ideal pressure, (Z - 1) / n, which hardly changes while n falls."""
-        virial = float(parcel.virial.sum())
-        if parcel.time > 0.0 and ideal > 0.0:
-            rate = (virial - self._virial) / self.interval
-            dimensions = 2.0 if parcel.planar else 3.0
-            excess = rate / (dimensions * parcel.number * ideal)
-            self._excess += self.interval / self._memory * (excess - self._excess)
-        self._virial = virial
+    def law(self) -> Lift:
+        """Return what kernels need that move the piston themselves."""
+        times, moments = self.course.corners()
+        return Lift(
+            self._time, self._log, times, moments, self._measured, self.interval, self._relaxation, self._memory
+        )
 
 
+@kernel
+def _interpolate(x, xs, ys):
+    """Return y at x of a polygon, constant beyond its ends."""
+    if x <= xs[0]:
+        return ys[0]
+    high = xs.size - 1
+    if x >= xs[high]:
+        return ys[high]
+    low = 0
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if xs[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return ys[low] + (ys[high] - ys[low]) * ((x - xs[low]) / (xs[high] - xs[low]))
+
+
+@kernel
+def _log_pressure(time, lift):
+    """Return the logarithm of the pressure to follow at a time [time]."""
+    moment = _interpolate(time, lift.course_time, lift.course_moment)
+    return _interpolate(moment, lift.time, lift.log_pressure)
+
+
+@kernel
+def ceiling_velocity(at, lift):
+    """Return the velocity [length/time] of the ceiling for the next interval; see the head of this file.
+
+    Parameters
+    ----------
+    at
+        The gas now: `Gauges`.
+    lift
+        What to follow: `Lift`. The average of (Z - 1) / n, which hardly changes while n falls, is brought up to date.
+    """
+    kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
+    ideal = at.density * kT
+    if at.time > 0.0 and ideal > 0.0:
+        rate = (at.virial - lift.measured[_VIRIAL]) / lift.interval
+        excess = rate / (at.dimensions * at.number * ideal)
+        lift.measured[_EXCESS] += lift.interval / lift.memory * (excess - lift.measured[_EXCESS])
+    lift.measured[_VIRIAL] = at.virial
+    factor = 1.0 + lift.measured[_EXCESS] * at.density
+    wanted = _log_pressure(at.time, lift)
+    fall = wanted - _log_pressure(at.time + lift.interval, lift)
+    fall += lift.interval / lift.relaxation * (math.log(ideal * factor) - wanted)
+    return at.open_height * math.expm1(fall / stiffness(factor, at.freedom)) / lift.interval
+
+
+@kernel(entry=True)
+def _follow(at, lift):
+    """Return the velocity of the ceiling to whom Python asks."""
+    return ceiling_velocity(at, lift)
+
+
+@kernel
 def stiffness(compressibility_factor: float, freedom: float) -> float:
     """Return by how much ln p falls as the logarithm of the open volume rises, without heat [1].
 
@@ -148,7 +245,3 @@ def stiffness(compressibility_factor: float, freedom: float) -> float:
     (1.4, 1.530909)
     """
     return 1.0 + 2.0 / freedom * compressibility_factor + 1.0 - 1.0 / compressibility_factor
-
-
-def _kT(parcel: Parcel) -> float:
-    return 2.0 * parcel.internal_energy() / (parcel.degrees_of_freedom * max(parcel.number, 1))

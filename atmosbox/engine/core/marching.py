@@ -71,7 +71,7 @@ class MarchingParcel(Parcel):
             self._step += steps
             self._now = self._step * self._time_step
             if self._driver is not None and self._step >= turn:
-                self._turn = math.floor(self._now / self._driver.interval + _SLACK)
+                self._turns[0] = math.floor(self._now / self._driver.interval + _SLACK)
                 self._drive()
             if watch is not None:
                 watch(self.time)
@@ -80,7 +80,8 @@ class MarchingParcel(Parcel):
         """Return the number of the step before which the driver is asked again."""
         if self._driver is None:
             return math.inf
-        return max(self._step + 1, math.ceil((self._turn + 1) * self._driver.interval / self._time_step - _SLACK))
+        due = (int(self._turns[0]) + 1) * self._driver.interval
+        return max(self._step + 1, math.ceil(due / self._time_step - _SLACK))
 
     def _effort(self) -> int:
         """Return how much work a step is, in molecules moved; it sets how often ``watch`` is called."""

@@ -163,7 +163,7 @@ class Parcel(Adjustable):
         )
         self._now = 0.0
         self._asked: float | None = None
-        self._turn = 0
+        self._turns = np.zeros(1, np.int64)  # how often the driver has been asked since the start
         start = [v, x]
         del v, x  # so that an engine may let them go once it has its own
         self._begin(start.pop(), start.pop(), spin)
@@ -311,7 +311,7 @@ class Parcel(Adjustable):
         for axis in (0, 2) if self._planar else (0, 1, 2):
             share = share * (sides[axis] - (0.0 if self._periodic[axis] else diameter))
         each = 1.0 / share
-        return float(np.sum(np.full(self.number, each) if alike else each))
+        return float(self.number * each if alike else np.sum(each))
 
     @property
     def piston_velocity(self) -> float:

@@ -73,7 +73,8 @@ class Modes(NamedTuple):
 
     Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
     cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid; the
-    first kind that is a drop, 0 if none is; a periodic axis so short that a molecule meets several images of another.
+    first kind that is a drop, 0 if none is; a periodic axis so short that a molecule meets several images of another;
+    a piston that follows a pressure, whose turns compiled code makes.
     """
 
     contacts: bool
@@ -87,6 +88,7 @@ class Modes(NamedTuple):
     pool: bool = False
     drops: int = 0
     images: bool = False
+    ascends: bool = False
 
 
 class Box(NamedTuple):

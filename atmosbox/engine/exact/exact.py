@@ -21,11 +21,12 @@ import numpy as np
 from atmosbox.engine.core.jit import kernel, prefetch
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.calendar import next_event, schedule
+from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.cells import append, overlapped, slot_at
 from atmosbox.engine.exact.crossing import Crossed, cross
 from atmosbox.engine.exact.encounter import hit, meet, motion_at
-from atmosbox.engine.exact.prediction import CEILING, CONTACT, next_move, plan, side, size_and_radius
+from atmosbox.engine.exact.prediction import CEILING, CONTACT, plan, side, size_and_radius
+from atmosbox.engine.exact.turning import Next, ahead, gauges, replan_under, turn
 
 __all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
 
@@ -36,7 +37,8 @@ class Status(IntEnum):
     ``DONE`` the time asked for is reached; ``BUSY`` as many events are resolved as were asked for; ``ROW_FULL`` the
     row of a cell must grow; ``STALLED`` events pile up without progress in time; ``MEETS_LIQUID`` the next event is a
     molecule that meets a pool or a drop, which is left to the caller; ``CROWDED`` a molecule that evaporates finds no
-    free place.
+    free place; ``CRUSHED`` the piston has come too low; ``TURNED`` the piston has turned, and the cells must be laid
+    out anew for a box that has become higher or lower.
     """
 
     DONE = 0
@@ -45,6 +47,8 @@ class Status(IntEnum):
     STALLED = 3
     MEETS_LIQUID = 4
     CROWDED = 5
+    CRUSHED = 8
+    TURNED = 9
 
 
 _MANY = 4_000
@@ -236,24 +240,8 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
-        """Plan anew, at time ``now``, the moves of all that may meet the ceiling, or that were to meet it.
-
-        Below ``lowest``, the lowest place of the ceiling before it is asked again, a molecule leaves its slot first.
-        """
-        for i in range(gas.molecules.size):
-            if modes.phases and math.isinf(gas.molecules[i].clock):
-                continue
-            event = gas.events[i]
-            slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
-            size, radius = size_and_radius(i, gas, modes)
-            if gas.cells.boundary[size, 2, slots[2] + 1] < lowest - radius and np.int64(event.what) != CEILING:
-                continue
-            time, what = next_move(slots, now, motion_at(i, now, gas, modes), size, radius, gas, modes)
-            time += now
-            if event.contact_time < time:
-                what = CONTACT
-            event.what = what
-            schedule(gas.calendar, i, min(time, event.contact_time))
+        """Plan anew, at time ``now``, the moves of all that may meet a ceiling that comes down to ``lowest``."""
+        replan_under(lowest, now, gas, modes)
 
     @kernel(entry=True)
     def advance(gas, until, most):
@@ -264,6 +252,22 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         """
         status, done = proceed(gas, until, most, modes)
         return status.value, done
+
+    @kernel(entry=True)
+    def ascend(gas, ascent, until, most):
+        """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        done = 0
+        while True:
+            stop, then = ahead(until, gas, ascent)
+            status, some = proceed(gas, stop, most - done, modes)
+            done += some
+            if status != Status.DONE or then == Next.END:
+                return status.value, done
+            if then == Next.CRUSHED:
+                return Status.CRUSHED.value, done
+            at = gauges(stop, gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
+            if not turn(stop, at, gas, ascent, modes):
+                return Status.TURNED.value, done
 
     @kernel(entry=True)
     def overlap(gas):
@@ -292,4 +296,4 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                         second = max(i, j)
         return deepest, first, second
 
-    return place, advance, replan_ceiling, overlap
+    return place, ascend if modes.ascends else advance, replan_ceiling, overlap

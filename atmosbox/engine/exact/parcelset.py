@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.box import new_box
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
+from atmosbox.engine.core.lift import FollowPressure
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError
 from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas, Modes, aligned_records
@@ -22,6 +23,7 @@ from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, choose_grid, new_cells
 from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
+from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
 __all__ = ["ParcelSet"]
 
@@ -110,16 +112,14 @@ class ParcelSet(Parcel):
         if until < self.time:
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         while True:
-            stop = until
-            if self._driver is not None:
-                stop = min(stop, (self._turn + 1) * self._driver.interval)
+            stop = min(until, self._next_turn() if not self._ascends else math.inf)
             local = stop - float(self._walls.epoch[0])
             if local > self._epoch_length and self._shift(local, watch):
                 continue
             self._resolve(local, watch)
-            if self._driver is None or stop < (self._turn + 1) * self._driver.interval:
+            if self._ascends or stop < self._next_turn():
                 break
-            self._turn += 1
+            self._turns[0] += 1
             self._drive()
             if watch is not None:
                 watch(self.time)
@@ -131,7 +131,7 @@ class ParcelSet(Parcel):
 
     def _piston_turned(self) -> None:
         velocity = self.piston_velocity
-        if self.ceiling > 1.5 * self._filled or self.ceiling < 0.6 * self._filled:
+        if not LOWEST * self._filled <= self.ceiling <= HIGHEST * self._filled:
             self._lay_out()
             return
         lowest = self.ceiling
@@ -153,7 +153,7 @@ class ParcelSet(Parcel):
         """Resolve all events up to a local time."""
         self._asked = None
         crushed = math.inf
-        if self.piston_velocity < 0.0:
+        if self.piston_velocity < 0.0 and not self._ascends:
             crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
             if crushed <= self._now:
                 raise StalledError(why_crushed(self))
@@ -167,6 +167,13 @@ class ParcelSet(Parcel):
                 elif status in (Status.STALLED, Status.CROWDED):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_stalled(self) if status == Status.STALLED else why_crowded(self))
+                elif status == Status.CRUSHED:
+                    position, speed, since = self._walls.piston
+                    self._now = float(since + (position - self._lowest_ceiling) / -speed)
+                    raise StalledError(why_crushed(self))
+                elif status == Status.TURNED:
+                    self._now = float(self._walls.piston[2])
+                    self._piston_turned()
                 elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_crushed(self))
@@ -181,8 +188,27 @@ class ParcelSet(Parcel):
 
     def _proceed(self, until: float) -> Status:
         """Resolve a number of events up to a local time; tell why it stopped."""
-        status, _ = self._advance(self._gas(), until, _CHUNK)
+        status, _ = self._advance(self._gas(), *self._ascent(), until, _CHUNK)
         return Status(status)
+
+    @property
+    def _ascends(self) -> bool:
+        """Whether compiled code turns the piston: it knows one driver, and molecules of one size."""
+        return type(self._driver) is FollowPressure and self._same_size and not self._first_drop
+
+    def _ascent(self) -> tuple[Ascent] | tuple[()]:
+        """Return what the kernels must know that turn the piston, or nothing for the others."""
+        if not self._ascends:
+            return ()
+        assert isinstance(self._driver, FollowPressure)
+        diameter = float(self._diameter[0])
+        energy = self._start_energy, self._gravity_work
+        heights = float(self._filled), float(self._lowest_ceiling)
+        return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
+
+    def _next_turn(self) -> float:
+        """Return when the driver is asked next [time]."""
+        return math.inf if self._driver is None else (int(self._turns[0]) + 1) * self._driver.interval
 
     def _gas(self) -> Gas:
         """Return all that the kernels work on."""
@@ -199,8 +225,7 @@ class ParcelSet(Parcel):
         if self._now < self._epoch_length:
             self._resolve(self._epoch_length, watch)
         ahead = self._next_time()
-        if self._driver is not None:
-            ahead = min(ahead, (self._turn + 1) * self._driver.interval - float(self._walls.epoch[0]))
+        ahead = min(ahead, self._next_turn() - float(self._walls.epoch[0]))
         if math.isinf(ahead):
             return False
         self._rebase(max(1.0, math.floor(ahead / self._epoch_length)) * self._epoch_length)
@@ -263,6 +288,7 @@ class ParcelSet(Parcel):
             pool=bool(self._walls.law[4] == POOL),
             drops=self._first_drop,
             images=grid.images,
+            ascends=self._ascends,
         )
         self._find_kernels()
         self._events = aligned_records(n, EVENT)

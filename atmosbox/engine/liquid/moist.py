@@ -10,7 +10,7 @@ fastest of all, and what is drawn is accepted in proportion to the speed.
 import functools
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,11 +21,13 @@ from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.prediction import plan
+from atmosbox.engine.exact.turning import Ascent, Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, find_place
 from atmosbox.engine.liquid.phase import enter, withdraw
 from atmosbox.engine.liquid.reservoir import (
     AIR_MET,
     LIQUID,
+    RAINED_ENERGY,
     THERMAL,
     condense,
     direction,
@@ -37,9 +39,21 @@ from atmosbox.engine.liquid.reservoir import (
     wait,
 )
 
-__all__ = ["ceiling_at", "renew", "specialise"]
+__all__ = ["MoistAscent", "ceiling_at", "renew", "specialise"]
 
 _MAY_MEET, _LEAVES, _RAINS = range(3)
+
+
+class MoistAscent(NamedTuple):
+    """What the kernels know of moist air under a piston that follows a pressure.
+
+    ``dry`` what they know of any air; how many molecules of the vapour and of the liquid there are, and how many
+    rotational degrees of freedom all molecules have together.
+    """
+
+    dry: Ascent
+    vapours: int
+    rotations: float
 
 
 @kernel
@@ -181,6 +195,64 @@ def _emit(t, gas, reservoir, modes):
     return Status.DONE
 
 
+@kernel
+def _proceed(gas, reservoir, until, most, modes):
+    """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
+    done = 0
+    checked = 0
+    clock = reservoir.clock
+    while done < most:
+        # the molecules go on until the liquid does something
+        due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
+        status, some = proceed(gas, min(until, due), most - done, modes)
+        done += some + 1
+        if done - checked >= CHECK_EVERY:
+            _, t = next_event(gas.calendar)
+            if piled_up(min(t, due), done - checked, gas):
+                return Status.STALLED, done
+            checked = done
+        if modes.pool and status == Status.MEETS_LIQUID:
+            i, t = next_event(gas.calendar)
+            _touch(i, t, motion_at(i, t, gas, modes), 0.0, gas, reservoir, modes)
+            continue
+        if status == Status.BUSY:
+            continue
+        if status != Status.DONE or due > until:
+            return status, done
+        if clock[_MAY_MEET] == due:
+            _may_meet(due, gas, reservoir, modes)
+            _next_meeting(due, gas, reservoir, modes)
+        elif clock[_LEAVES] == due:
+            status = _emit(due, gas, reservoir, modes)
+            if status != Status.DONE:
+                return status, done
+        else:
+            rain_out(reservoir)
+            renew(due, gas.tallies.random, reservoir)
+    return Status.BUSY, done
+
+
+@kernel
+def _gauges(t, gas, reservoir, ascent):
+    """Return the `Gauges` of moist air at time t."""
+    missing = reservoir.top[0]
+    number = gas.molecules.size - missing
+    vapour = ascent.vapours - missing
+    condensed = reservoir.binding_energy * vapour + (reservoir.energy[THERMAL] + reservoir.energy[RAINED_ENERGY])
+    freedom = 3.0 + (ascent.rotations - reservoir.rotation * missing) / max(number, 1)
+    return gauges(t, number, freedom, condensed, gas, ascent.dry)
+
+
+@kernel
+def _wake(t, gas, reservoir, modes):
+    """Draw the times of the liquid anew at time t if the piston is so fast that it may wake molecules at rest."""
+    speed = 2.0 * abs(gas.walls.piston[1])
+    if speed > reservoir.bound[0]:
+        reservoir.bound[0] = speed
+        _next_meeting(t, gas, reservoir, modes)
+        renew(t, gas.tallies.random, reservoir)
+
+
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Return the kernels of one set of modes: ``begin``, which draws the first times, and ``advance``."""
@@ -195,37 +267,23 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     @kernel(entry=True)
     def advance(gas, reservoir, until, most):
         """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
-        done = 0
-        checked = 0
-        clock = reservoir.clock
-        while done < most:
-            # the molecules go on until the liquid does something
-            due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
-            status, some = proceed(gas, min(until, due), most - done, modes)
-            done += some + 1
-            if done - checked >= CHECK_EVERY:
-                _, t = next_event(gas.calendar)
-                if piled_up(min(t, due), done - checked, gas):
-                    return Status.STALLED.value, done
-                checked = done
-            if modes.pool and status == Status.MEETS_LIQUID:
-                i, t = next_event(gas.calendar)
-                _touch(i, t, motion_at(i, t, gas, modes), 0.0, gas, reservoir, modes)
-                continue
-            if status == Status.BUSY:
-                continue
-            if status != Status.DONE or due > until:
-                return status.value, done
-            if clock[_MAY_MEET] == due:
-                _may_meet(due, gas, reservoir, modes)
-                _next_meeting(due, gas, reservoir, modes)
-            elif clock[_LEAVES] == due:
-                status = _emit(due, gas, reservoir, modes)
-                if status != Status.DONE:
-                    return status.value, done
-            else:
-                rain_out(reservoir)
-                renew(due, gas.tallies.random, reservoir)
-        return Status.BUSY.value, done
+        status, done = _proceed(gas, reservoir, until, most, modes)
+        return status.value, done
 
-    return begin, advance
+    @kernel(entry=True)
+    def ascend(gas, reservoir, ascent, until, most):
+        """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        done = 0
+        while True:
+            stop, then = ahead(until, gas, ascent.dry)
+            status, some = _proceed(gas, reservoir, stop, most - done, modes)
+            done += some
+            if status != Status.DONE or then == Next.END:
+                return status.value, done
+            if then == Next.CRUSHED:
+                return Status.CRUSHED.value, done
+            if not turn(stop, _gauges(stop, gas, reservoir, ascent), gas, ascent.dry, modes):
+                return Status.TURNED.value, done
+            _wake(stop, gas, reservoir, modes)
+
+    return begin, ascend if modes.ascends else advance

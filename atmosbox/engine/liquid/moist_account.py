@@ -33,7 +33,7 @@ class MoistAccount(Parcel):
     _liquid: Liquid
     _reservoir: Reservoir
     _vapours: int
-    _turns: float
+    _rotations: float
 
     def _refuse_what_no_liquid_bears(self) -> None:
         """Refuse a plane gas, gravity, and a pool that is not the floor; make the floor a pool."""
@@ -78,7 +78,7 @@ class MoistAccount(Parcel):
         rotation = float(substance.rotation) if self._rotates else 0.0
         reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)
         self._reservoir = reservoir._replace(rotation=rotation)
-        self._turns = float(self._rotation.sum())
+        self._rotations = float(self._rotation.sum())
 
     @property
     def number(self) -> int:
@@ -148,7 +148,7 @@ class MoistAccount(Parcel):
     @property
     def degrees_of_freedom(self) -> float:
         """Translational and rotational degrees of freedom per molecule of the gas, on average."""
-        rotation = self._turns - self._reservoir.rotation * int(self._reservoir.top[0])
+        rotation = self._rotations - self._reservoir.rotation * int(self._reservoir.top[0])
         return 3.0 + rotation / max(self.number, 1)
 
     @property

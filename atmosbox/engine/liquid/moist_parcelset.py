@@ -10,6 +10,7 @@ from atmosbox.engine.core.parcel import Arrangement, Array
 from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.parcelset import ParcelSet
 from atmosbox.engine.liquid import moist
+from atmosbox.engine.liquid.moist import MoistAscent
 from atmosbox.engine.liquid.moist_account import MoistAccount
 from atmosbox.engine.liquid.substance import Liquid
 
@@ -100,7 +101,8 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         return super().memory() + self._reservoir_memory()
 
     def _proceed(self, until: float) -> Status:
-        status, _ = self._moist_advance(self._gas(), self._reservoir, until, _CHUNK)
+        ascent = [MoistAscent(dry, self._vapours, self._rotations) for dry in self._ascent()]
+        status, _ = self._moist_advance(self._gas(), self._reservoir, *ascent, until, _CHUNK)
         return Status(status)
 
     def _find_kernels(self) -> None:

@@ -1,0 +1,114 @@
+"""A piston that follows a pressure is turned by compiled code as its driver would turn it from Python."""
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from atmosbox.engine import FollowPressure, Mist, ParcelSet, Periodic, Piston, Pool, Specular, StalledError, Substance
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+
+WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
+UNDER_PISTON = (*(Specular(),) * 5, Piston())
+TAU = 2.0
+
+
+class InPython(FollowPressure):
+    """The same law; of another type, so that it is asked in Python."""
+
+
+def gas(planar=False):
+    random = np.random.default_rng(3)
+    many = (5, 1, 5) if planar else (4, 4, 4)
+    site = np.stack(np.meshgrid(*map(np.arange, many), indexing="ij"), axis=-1).reshape(-1, 3) + 0.5
+    velocity = random.normal(size=site.shape) * ([1, 0, 1] if planar else 1)
+    return site * 3.0, velocity
+
+
+def follow(first, last, kind=FollowPressure, duration=400.0):
+    return kind([0.0, duration], [first, last], mean_free_time=TAU)
+
+
+MIXTURE = {"mass": [1.0, 0.62] * 32, "rotation": [2.0, 3.0] * 32, "rotational_energy": 1.0}
+BOXES = {
+    "dry": lambda driver: ParcelSet(*gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, rotation=2.0),
+    "between periodic sides": lambda driver: ParcelSet(
+        *gas(), length=(12.0,) * 3, walls=((Periodic(),) * 4 + (Specular(), Piston())), driver=driver, layers=3
+    ),
+    "plane": lambda driver: ParcelSet(
+        *gas(planar=True), length=(15.0, 3.0, 15.0), walls=UNDER_PISTON, driver=driver, planar=True
+    ),
+    "mist": lambda driver: MoistParcelSet(
+        *gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, liquid=Mist(WATER, number=9, kT=1.0), **MIXTURE
+    ),
+    "pool": lambda driver: MoistParcelSet(
+        *gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, liquid=Pool(WATER, number=9, kT=1.0), **MIXTURE
+    ),
+}
+
+
+def pressure_of(name):
+    """Return about the pressure that the box has at the start."""
+    return follow(1.0, 1.0).pressure(BOXES[name](None))
+
+
+@pytest.mark.parametrize("name", BOXES)
+def test_compiled_code_gives_the_piston_the_velocity_that_python_would(name):
+    start = pressure_of(name)
+    box = BOXES[name](follow(start, 0.5 * start))
+    interval = box._driver.interval
+    fell = 0
+    for turn in (1, 2, 40, 41, 150):
+        box.advance((turn - 0.5) * interval)
+        before = copy.deepcopy(box._driver)
+        box.advance(turn * interval)
+        assert box.piston_velocity == pytest.approx(before.velocity(box), rel=1e-11, abs=1e-15)
+        assert box._driver._measured == pytest.approx(before._measured, rel=1e-12)
+        fell += box.piston_velocity < 0.0
+    assert box.contacts > 20
+    assert box.ceiling > 12.0
+    assert box.ledger() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["dry", "mist"])
+def test_a_driver_in_python_lifts_the_box_alike_until_rounding_has_grown(name):
+    start = pressure_of(name)
+    ours, theirs = BOXES[name](follow(start, 0.5 * start)), BOXES[name](follow(start, 0.5 * start, InPython))
+    assert ours._ascends
+    assert not theirs._ascends
+    for box in (ours, theirs):
+        box.advance(4.0 * TAU)
+    assert ours.contacts == theirs.contacts > 10
+    assert ours.ceiling == pytest.approx(theirs.ceiling, rel=1e-7)
+    assert ours.piston_velocity == pytest.approx(theirs.piston_velocity, rel=1e-4)
+
+
+@pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+@pytest.mark.parametrize("name", ["dry", "mist", "pool"])
+def test_a_lift_is_the_same_however_it_is_cut(name):
+    start = pressure_of(name)
+    whole, cut = (BOXES[name](follow(start, 0.2 * start)) for _ in range(2))
+    end = 450.0
+    whole.advance(end)
+    interval = cut._driver.interval
+    for time in sorted([*np.random.default_rng(1).uniform(0.0, end, 60), *(interval * k for k in (7, 8, 300))]):
+        cut.advance(time)
+    cut.advance(end)
+    assert whole.ceiling > 1.5**2 * 12.0  # the cells have been laid out anew
+    assert cut.snapshot().position.tobytes() == whole.snapshot().position.tobytes()
+    assert (cut.ceiling, cut.piston_velocity) == (whole.ceiling, whole.piston_velocity)
+    assert whole._turns[0] == math.floor(end / interval)
+    assert whole.ledger() < 1e-11
+    assert whole.escaped() == 0
+
+
+@pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+def test_a_lift_that_is_led_down_and_crushes_its_molecules_says_so():
+    start = pressure_of("dry")
+    box = BOXES["dry"](follow(start, 1e9 * start))
+    with pytest.raises(StalledError, match="the piston has come down"):
+        box.advance(400.0)
+    assert box.escaped() == 0
+    assert box.ceiling == pytest.approx(box._lowest_ceiling) or box.ceiling > box._lowest_ceiling
