@@ -448,7 +448,10 @@ HALF_TURNING = (Periodic(), *SMOOTH[:5])
         ({"walls": HALF_TURNING}, "x_low and x_high must both be periodic"),
         ({"walls": (*SMOOTH[:5], HeatBath(-1.0))}, "kT of wall z_high = -1.0"),
         ({"walls": (*SMOOTH[:5], "open")}, "z_high = 'open' is no law"),
-        ({"walls": TURNING, "length": (2.1, 4.0, 4.0), "position": [[1, 1, 1], [1, 3, 3]]}, "2.1 is too short"),
+        (
+            {"walls": TURNING, "length": (1.9, 4.0, 4.0), "position": [[1, 1, 1], [1, 3, 3]]},
+            "length = 1.9 along x is too short",
+        ),
         ({"driver": Pulse()}, "a driver needs a piston"),
         ({"driver": Pulse(interval=0.0), "walls": (*SMOOTH[:5], Piston())}, "interval of the driver = 0"),
         ({"driver": Pulse(interval=NAN), "walls": (*SMOOTH[:5], Piston())}, "interval of the driver = nan"),

@@ -1,18 +1,67 @@
 """Molecules that overlap are pushed apart along their line of centres, until none does."""
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.pair import nearest_along
 
 __all__ = ["push_apart"]
 
+Array = NDArray[np.float64]
+
+
+class _Spheres(NamedTuple):
+    """What is pushed: see `push_apart`; ``moved``, ``moves : (molecule,)`` who was in the last round and in this."""
+
+    x: Any
+    radius: Any
+    low: Any
+    high: Any
+    turn: Any
+    moved: Any
+    moves: Any
+
+
+class _Bins(NamedTuple):
+    """Where neighbours are looked for.
+
+    ``number``, ``origin``, ``size : (axis,)`` of the bins; ``head : (bin,)`` a molecule of each, ``follower :
+    (molecule,)`` the next one there, ``place : (molecule, axis)`` the bin of each.
+    """
+
+    number: Any
+    origin: Any
+    size: Any
+    head: Any
+    follower: Any
+    place: Any
+
+
+def _bins(radius: Array, low: Array, high: Array, turn: Array, gap: float) -> _Bins:
+    """Return bins that are wider than any pair in contact, and not many more than there are molecules."""
+    n = radius.size
+    widest = 2.0 * float(radius.max()) * (1.0 + gap)
+    most = max(int((2.0 * n) ** 0.5), 4)
+    turns = turn > 0.0
+    origin = np.where(turns, 0.0, low.min(axis=0))
+    size = np.where(turns, turn, np.maximum(high.max(axis=0) - origin, 1e-300))
+    number = np.clip(np.minimum(size / widest, float(most)).astype(np.int64), 1, None)
+    number[turns & (number < 3)] = 1
+    while math.prod(number.tolist()) > 4 * n + 64:
+        number[np.argmax(number)] = max(1, int(number.max()) // 2)
+        number[turns & (number < 3)] = 1
+    place = np.zeros((n, 3), np.int64)
+    return _Bins(number, origin, size, np.zeros(math.prod(number.tolist()), np.int64), np.zeros(n, np.int64), place)
+
 
 @kernel
-def _push_pair(x, radius, low, high, turn, gap, moves, i, j):
+def _push_pair(i, j, gap, spheres):
     """Push two molecules apart if they overlap; return whether they did."""
+    x, radius, low, high, turn = spheres.x, spheres.radius, spheres.low, spheres.high, spheres.turn
     dx = nearest_along(x[j, 0] - x[i, 0], turn[0], 1.0 / turn[0] if turn[0] > 0.0 else 0.0)
     dy = nearest_along(x[j, 1] - x[i, 1], turn[1], 1.0 / turn[1] if turn[1] > 0.0 else 0.0)
     dz = nearest_along(x[j, 2] - x[i, 2], turn[2], 1.0 / turn[2] if turn[2] > 0.0 else 0.0)
@@ -36,13 +85,12 @@ def _push_pair(x, radius, low, high, turn, gap, moves, i, j):
                 x[k, axis] -= turn[axis] * math.floor(x[k, axis] / turn[axis])
             else:
                 x[k, axis] = min(max(x[k, axis], low[k, axis]), high[k, axis])
-    moves[i] = True
-    moves[j] = True
+    spheres.moves[i] = True
+    spheres.moves[j] = True
     return 1
 
 
-@kernel(entry=True, allocates=True)
-def push_apart(x, radius, low, high, turn, rounds, gap):
+def push_apart(x: Array, radius: Array, low: Array, high: Array, turn: Array, rounds: int, gap: float) -> int:
     """Push overlapping molecules apart, some rounds; return how many pairs were pushed in the last one.
 
     Parameters
@@ -78,31 +126,19 @@ def push_apart(x, radius, low, high, turn, rounds, gap):
     >>> bool(x[1, 0] - x[0, 0] > 1.0)
     True
     """
-    n = radius.size
-    widest = 2.0 * radius.max() * (1.0 + gap)
-    number = np.ones(3, np.int64)
-    origin = np.zeros(3)
-    size = np.ones(3)
-    most = max(int((2.0 * n) ** 0.5), 4)
-    for axis in range(3):
-        if turn[axis] > 0.0:
-            size[axis] = turn[axis]
-        else:
-            origin[axis] = low[:, axis].min()
-            size[axis] = max(high[:, axis].max() - origin[axis], 1e-300)
-        number[axis] = max(1, min(int(size[axis] / widest), most))
-        if turn[axis] > 0.0 and number[axis] < 3:
-            number[axis] = 1
-    while number[0] * number[1] * number[2] > 4 * n + 64:
-        number[np.argmax(number)] = max(1, number.max() // 2)
-        for axis in range(3):
-            if turn[axis] > 0.0 and number[axis] < 3:
-                number[axis] = 1
-    head = np.empty(number[0] * number[1] * number[2], np.int64)
-    follower = np.empty(n, np.int64)
-    place = np.empty((n, 3), np.int64)
-    moved = np.ones(n, np.bool_)
-    moves = np.zeros(n, np.bool_)
+    moved, moves = np.ones(radius.size, np.bool_), np.zeros(radius.size, np.bool_)
+    return int(
+        _push(_Spheres(x, radius, low, high, turn, moved, moves), _bins(radius, low, high, turn, gap), rounds, gap)
+    )
+
+
+@kernel(entry=True)
+def _push(spheres, bins, rounds, gap):
+    """Push overlapping molecules apart: see `push_apart`."""
+    x, turn, moved, moves = spheres.x, spheres.turn, spheres.moved, spheres.moves
+    number, origin, size = bins.number, bins.origin, bins.size
+    head, follower, place = bins.head, bins.follower, bins.place
+    n = spheres.radius.size
     pushed = 0
     for _ in range(rounds):
         pushed = 0
@@ -139,9 +175,10 @@ def push_apart(x, radius, low, high, turn, rounds, gap):
                         j = head[(p * number[1] + q) * number[2] + r]
                         while j >= 0:
                             if j != i and (j > i or not moved[j]):
-                                pushed += _push_pair(x, radius, low, high, turn, gap, moves, i, j)
+                                pushed += _push_pair(i, j, gap, spheres)
                             j = follower[j]
         if pushed == 0:
             break
-        moved[:] = moves
+        for i in range(n):
+            moved[i] = moves[i]
     return pushed
