@@ -25,6 +25,7 @@ from atmosbox.cli.application import app
 
 # In the order in which ``--help`` lists them.
 from atmosbox.cli import list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare, sheet, check  # isort: skip
+from atmosbox.cli import prepare  # isort: skip
 
 __all__ = [
     "animate",
@@ -36,6 +37,7 @@ __all__ = [
     "live",
     "main",
     "plot",
+    "prepare",
     "run",
     "sheet",
     "sweep",

@@ -89,10 +89,10 @@ def live(
     from atmosbox.live import Session
     from atmosbox.live.server import PORT, loopback, run
     from atmosbox.page import live_page
+    from atmosbox.simulation.compilation import told
+    from atmosbox.text.progress import progress
 
-    if not quiet:
-        tell("compiling the engine, once")
-    with prints_to_stderr():
+    with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show, told(prepared, show):
         session = Session(prepared, folder=folder, out=name, force=force, command=typed(ctx))
 
     def opened(address: str, used: int) -> None:

@@ -11,6 +11,7 @@ from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
+from atmosbox.simulation.compilation import told
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
@@ -118,8 +119,9 @@ def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progre
     from atmosbox.file.provenance import global_attributes
 
     tell = progress or (lambda share, word: None)
-    tell(0.0, "compiling the engine, once")
-    setup = build(prepared)
+    with told(prepared, tell):
+        setup = build(prepared)
+        setup.parcel.advance(0.0)
     panels = prepared.module.panels
     attributes = global_attributes(
         prepared.parameters,
@@ -131,7 +133,6 @@ def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progre
         status="partial",
     )
     recording = Recording(prepared, setup, attributes)
-    setup.parcel.advance(0.0)
     last = spent = 0.0
 
     def watch(now: float) -> None:

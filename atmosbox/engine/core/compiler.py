@@ -3,7 +3,12 @@
 Besides this file only `stepped.window` calls numba, for its vectors.
 """
 
+import functools
+import hashlib
+import sys
+import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, ClassVar
 
 import llvmlite.ir as ir
@@ -12,7 +17,10 @@ from numba.core import caching, cgutils, config, types
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
-from atmosbox.engine.core.jit import cache_folder
+from atmosbox.engine.core.jit import announce, cache_folder
+
+if sys.platform != "win32":
+    import fcntl
 
 __all__ = ["compiled", "prange", "prefetch", "type_of", "use_threads"]
 
@@ -21,6 +29,7 @@ prange = numba.prange
 
 _SHARED: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 _CACHE = cache_folder()
+_LONGEST = 120.0  # seconds
 
 
 class _Locator(caching._CacheLocator):  # type: ignore[misc]
@@ -48,9 +57,62 @@ class _KeptKernel(caching.CompileResultCacheImpl):  # type: ignore[misc]
 
 
 class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
-    """The machine code of a kernel on disk."""
+    """The machine code of a kernel on disk; who does not find it there compiles it, and all others wait."""
 
     _impl_class = _KeptKernel
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the machine code for some types, or None if it must be compiled, which others are told."""
+        found = super().load_overload(sig, target_context)
+        if found is None and self._wait_for_others(sig, target_context):
+            found = super().load_overload(sig, target_context)
+        if found is None:
+            announce(self._py_func.__qualname__, True)
+        else:
+            self._let_others_go_on()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the machine code for some types."""
+        super().save_overload(sig, data)
+        self._let_others_go_on()
+        announce(self._py_func.__qualname__, False)
+
+    def _wait_for_others(self, sig: Any, target_context: Any) -> bool:
+        """Take the right to compile; tell whether another process had it until now.
+
+        The right ends with the process, and is not waited for longer than any compilation lasts.
+        """
+        if sys.platform == "win32":
+            return False
+        key = hashlib.sha256(repr(self._index_key(sig, target_context.codegen())).encode()).hexdigest()[:16]
+        waited = False
+        try:
+            folder = Path(self.cache_path)
+            folder.mkdir(exist_ok=True)
+            lock = (folder / f"{key}.lock").open("wb")
+        except OSError:
+            return False
+        self._locks.append(lock)
+        until = time.monotonic() + _LONGEST
+        while time.monotonic() < until:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                waited = True
+                time.sleep(0.05)
+            else:
+                break
+        return waited
+
+    def _let_others_go_on(self) -> None:
+        for lock in self._locks:
+            lock.close()
+        self._locks.clear()
+
+    @functools.cached_property
+    def _locks(self) -> list[Any]:
+        return []
 
 
 def compiled(function: Callable[..., Any], *, entry: bool, early: bool, allocates: bool, parallel: bool) -> Any:

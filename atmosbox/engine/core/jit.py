@@ -11,19 +11,30 @@ atmosbox from outside its folder, which a test enforces.
 """
 
 import ast
+import contextlib
 import functools
 import hashlib
 import os
 import stat
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-__all__ = ["COMPILED", "POSITIVE", "Kernel", "cache_folder", "kernel", "prefetch", "use_threads"]
+__all__ = [
+    "COMPILED",
+    "POSITIVE",
+    "Kernel",
+    "announce",
+    "cache_folder",
+    "compilations",
+    "kernel",
+    "prefetch",
+    "use_threads",
+]
 
 POSITIVE = (1 << 40) - 1
 """``index & POSITIVE`` tells the compiler that an index is not negative: that saves Python's counting from the end."""
@@ -122,6 +133,31 @@ def cache_folder() -> Path | None:
             continue
         return folder
     return None
+
+
+_WATCHES: list[Callable[[str, bool], None]] = []
+
+
+@contextlib.contextmanager
+def compilations(watch: Callable[[str, bool], None]) -> Iterator[None]:
+    """Be told of every kernel that is really compiled while a block runs, and not found among what is kept.
+
+    Parameters
+    ----------
+    watch
+        Called with the name of the kernel and True when its compilation begins, and with False when it has ended.
+    """
+    _WATCHES.append(watch)
+    try:
+        yield
+    finally:
+        _WATCHES.remove(watch)
+
+
+def announce(name: str, begins: bool) -> None:
+    """Tell all who wait for it that the compilation of a kernel begins, or has ended."""
+    for watch in tuple(_WATCHES):
+        watch(name, begins)
 
 
 class Kernel:

@@ -131,7 +131,7 @@ class ParcelSet(Parcel):
 
     def _piston_turned(self) -> None:
         velocity = self.piston_velocity
-        if not LOWEST * self._filled <= self.ceiling <= HIGHEST * self._filled:
+        if self._ascends or not LOWEST * self._filled <= self.ceiling <= HIGHEST * self._filled:
             self._lay_out()
             return
         lowest = self.ceiling

@@ -84,7 +84,7 @@ def measure(
     def compile_way(k: int) -> None:
         way = ways[own[k]]
         if (name := engines.choose(way.engine).name) not in compiled:
-            tell(0.0, f"compiling the engine {name}, once")
+            tell(0.0, f"trying the engine {name}")
             timed_run.warm_up(scene, way)
             compiled.add(name)
 

@@ -1,0 +1,107 @@
+"""The command ``prepare``: compile in advance what the first run of a scene would wait for."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from typing import Annotated
+
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Json, Verbose, quiet_option
+from atmosbox.cli.terminal import guarded, say, say_json, width
+from atmosbox.errors import AtmosboxError, EngineError
+from atmosbox.text.progress import progress
+from atmosbox.text.table import table
+
+Work = tuple[str, str | None]
+
+
+@app.command("prepare", epilog=examples("atmosbox prepare", "atmosbox prepare lifting-dry", "atmosbox prepare --all"))
+@guarded
+def prepare(
+    scenes: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[SCENE]...", help="Which scenes; all that come with atmosbox if none is named."),
+    ] = None,
+    every_engine: Annotated[
+        bool, typer.Option("--all", help="Also for the engines stepped and dsmc, where a scene can use them.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Annotated[bool, quiet_option("Print the folder of the machine code, no more.")] = False,
+    verbose: Verbose = False,
+) -> None:
+    """Compile the engine for all scenes, on all cores.
+
+    No command needs this: each compiles what it lacks, once. Before a class it saves all that waiting.
+    """
+    from atmosbox import scenarios
+    from atmosbox.simulation.compilation import cache_home, compiled_here
+
+    if cache_home() is None:
+        raise EngineError(
+            "Compiled kernels cannot be kept, since no folder can be written: set NUMBA_CACHE_DIR to one."
+        )
+    names = list(scenes or scenarios.names())
+    for name in names:
+        scenarios.load(name)
+    asked = [(name, engine) for engine in _engines(every_engine) for name in names]
+    began = time.perf_counter()
+    seconds: dict[Work, float] = {}
+    with progress("prepare", quiet=quiet or as_json) as show:
+        for done, (each, spent) in enumerate(_compiled(asked), 1):
+            if spent is not None:
+                seconds[each] = spent
+            show(done / len(asked), "running")
+    waited = time.perf_counter() - began
+    folder, size = str(cache_home()), compiled_here()
+    if as_json:
+        rows = [{"scene": name, "engine": engine or "exact", "seconds": s} for (name, engine), s in seconds.items()]
+        say_json({"folder": folder, "bytes": size, "seconds": waited, "compiled": rows})
+    elif quiet:
+        say(folder)
+    else:
+        lines = [(name, engine or "exact", f"{s:.1f} s" if s else "kept") for (name, engine), s in seconds.items()]
+        say("\n".join(table(["scene", "engine", "compiled in"], lines, width())))
+        say(f"\nready after {waited:.0f} s; {size / 1e6:.0f} MB of machine code are kept in {folder}")
+
+
+def _engines(every: bool) -> list[str | None]:
+    """Return the engines to compile for; None is that of the scene."""
+    return [None, "dsmc", "stepped"] if every else [None]
+
+
+def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
+    """Compile on all cores; yield each scene and engine with its seconds, None where they do not go together."""
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    # processes of their own, since a compiler holds the lock of its interpreter
+    with ProcessPoolExecutor(min(cores, len(asked)), multiprocessing.get_context("spawn")) as pool:
+        running = {pool.submit(_compile, *each): each for each in asked}
+        try:
+            for finished in as_completed(running):
+                yield running[finished], finished.result()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _compile(scene: str, engine: str | None) -> float | None:
+    """Compile for a scene and an engine in this process."""
+    import warnings
+
+    from atmosbox.simulation.compilation import compile_kernels
+    from atmosbox.simulation.preparation import prepare as prepared
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return compile_kernels(prepared(scene, {}, engine=engine))
+    except AtmosboxError:
+        if engine is None:
+            raise
+        return None

@@ -1,0 +1,137 @@
+"""What a first run waits for: kernels that are compiled, told as it goes on, and compiled in advance."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from atmosbox.engine.core.jit import cache_folder, compilations
+from atmosbox.simulation.preparation import Prepared, build
+
+__all__ = ["cache_home", "compile_kernels", "compiled_here", "expected_seconds", "told"]
+
+_USUAL = 15.0  # seconds, where this machine has not compiled a scene yet
+_BREATH = 0.2
+_NEVER_DONE = 0.97
+
+
+@contextlib.contextmanager
+def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[None]:
+    """Tell how far compilation is while a block runs, if anything is compiled in it at all.
+
+    How long it takes is known from the last time that this machine compiled the scene.
+
+    Parameters
+    ----------
+    prepared
+        What is run.
+    tell
+        Called with the share that is done and a sentence, from a thread of its own while the compiler works.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> with told(prepare("temperature", {}), print):
+    ...     pass
+    """
+    expected = expected_seconds(prepared)
+    sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
+    spent, began, depth = 0.0, 0.0, 0
+    over = threading.Event()
+    teller: threading.Thread | None = None
+
+    def go_on_telling() -> None:
+        while not over.wait(_BREATH):
+            if depth:
+                tell(min((spent + time.process_time() - began) / expected, _NEVER_DONE), sentence)
+
+    def watch(name: str, begins: bool) -> None:
+        nonlocal spent, began, depth, teller
+        if begins:
+            began = began if depth else time.process_time()
+            depth += 1
+            if teller is None:
+                tell(0.0, sentence)
+                teller = threading.Thread(target=go_on_telling, daemon=True)
+                teller.start()
+        elif depth:
+            depth -= 1
+            spent += 0.0 if depth else time.process_time() - began
+
+    try:
+        with compilations(watch):
+            yield
+    finally:
+        over.set()
+        if teller is not None:
+            teller.join()
+            _remember(prepared, spent)
+
+
+def expected_seconds(prepared: Prepared) -> float:
+    """Return how long the kernels of a scene take to compile on this computer [s], as far as is known."""
+    return float(_known().get(_name(prepared), _USUAL))
+
+
+def compile_kernels(prepared: Prepared) -> float:
+    """Compile what a scene needs, unless it is kept already; return the processor time that it took [s].
+
+    The box is built as for a run, since what is compiled depends on it, and advanced by next to nothing.
+    """
+    spent, began = 0.0, 0.0
+
+    def watch(name: str, begins: bool) -> None:
+        nonlocal spent, began
+        now = time.process_time()
+        spent, began = (spent, now) if begins else (spent + now - began, now)
+
+    with compilations(watch):
+        setup = build(prepared)
+        setup.parcel.advance(0.0)
+        step = getattr(setup.parcel, "time_step", 0.0)
+        setup.parcel.advance(max(2.0 * step, 1e-4 * setup.frame))
+    if spent:
+        _remember(prepared, spent)
+    return spent
+
+
+def cache_home() -> Path | None:
+    """Return the folder in which machine code is kept, None if there is none."""
+    folder = cache_folder()
+    return None if folder is None else folder.parent
+
+
+def compiled_here() -> int:
+    """Return how many bytes of machine code are kept for the engine as it is."""
+    folder = cache_folder()
+    return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
+
+
+def _name(prepared: Prepared) -> str:
+    return f"{prepared.scene} {prepared.engine.name}"
+
+
+def _known() -> dict[str, float]:
+    """Return the seconds that compilations took, by scene and engine."""
+    home = cache_home()
+    try:
+        known = json.loads((home / "seconds.json").read_text(encoding="utf-8")) if home else {}
+    except (OSError, ValueError):
+        return {}
+    return {k: float(v) for k, v in known.items() if isinstance(v, int | float)} if isinstance(known, dict) else {}
+
+
+def _remember(prepared: Prepared, seconds: float) -> None:
+    """Write down how long a compilation took; nothing depends on it, so a folder that is full is no error."""
+    home = cache_home()
+    if home is None or not seconds > 1.0:
+        return
+    new = home / f"seconds.{os.getpid()}"
+    with contextlib.suppress(OSError):
+        new.write_text(json.dumps(_known() | {_name(prepared): round(seconds, 1)}), encoding="utf-8")
+        new.replace(home / "seconds.json")
