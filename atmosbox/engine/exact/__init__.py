@@ -5,6 +5,7 @@
 `prediction`   what lies ahead of a molecule
 `encounter`    what a contact or a wall hit does
 `crossing`     from cell to cell
+`turning`      the piston of a lift turns between events
 `exact`        the loop over events
 `stall`        when time can go no further
 `parcelset`    the box, advanced exactly
