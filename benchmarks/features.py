@@ -58,7 +58,9 @@ GASES = {
     "two masses": "mixed",
     "unequal sizes": "spanning",
     "periodic": "periodic",
+    "periodic, 3 diameters high": "images",
     "piston": "piston",
+    "lift": "ascends",
     "50 layers": "",
 }
 """The gases that are timed, each with the mode of the engine whose price it shows; walls and layers are data."""
@@ -117,6 +119,7 @@ def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
     """Return a gas between smooth walls, plain, with one feature, or of points."""
     rng = np.random.default_rng(seed)
     side = (n * math.pi / 6.0 / PHI) ** (1.0 / 3.0)
+    length = (side,) * 3
     walls: list[Any] = [module.Specular()] * 6
     options: dict[str, Any] = {}
     periodic = (False, False, False)
@@ -133,6 +136,13 @@ def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
         sizes = np.where(np.arange(n) % 2, 0.9, 1.09)
     elif feature == "periodic":
         walls, periodic = [module.Periodic()] * 6, (True, True, True)
+    elif feature == "periodic, 3 diameters high":
+        walls, periodic = [module.Periodic()] * 6, (True, True, True)
+        length = (side * math.sqrt(side / 3.0),) * 2 + (3.0,)
+    elif feature == "lift":
+        pressure = 6.0 * PHI / math.pi
+        walls[5] = module.Piston(0.0)
+        options["driver"] = module.FollowPressure([0.0], [pressure], mean_free_time=FREE_TIME)
     elif feature == "piston":
         walls[5] = module.Piston(0.0)
         options["driver"] = Swing(side)
@@ -140,9 +150,9 @@ def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
         options["layers"] = 50
     elif feature == "points":
         sizes = np.zeros(n)
-    x = module.random_positions((side,) * 3, sizes, rng, periodic=periodic)
+    x = module.random_positions(length, sizes, rng, periodic=periodic)
     v = module.maxwell_velocities(1.0, np.ones(n), rng, exact=True)
-    return module.ParcelSet(x, v, length=(side,) * 3, walls=tuple(walls), diameter=sizes, **options)
+    return module.ParcelSet(x, v, length=length, walls=tuple(walls), diameter=sizes, **options)
 
 
 class Bench:

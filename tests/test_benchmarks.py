@@ -34,6 +34,18 @@ def test_the_pace_of_the_engine_is_measured(tmp_path):
     assert 0.0 < result["bytes_per_molecule"] < 2000.0
 
 
+def test_whole_runs_are_timed_in_turns_with_another_checkout(tmp_path):
+    file = tmp_path / "scenes.json"
+    asked = ("elastic-collisions", "--set", "duration=2s", "--repeats", 1, "--against", ROOT, "--json", file)
+    printed = run("scenes.py", *asked)
+    (result,) = json.loads(file.read_text())
+    assert "| elastic-collisions | " in printed
+    assert 0.2 < result["ratio"] < 5.0
+    parts = [result[part] for part in ("start", "compile", "build", "kernel", "files")]
+    assert min(parts) >= 0.0
+    assert sum(parts) <= result["cpu"]
+
+
 @pytest.fixture(scope="module")
 def features():
     specification = importlib.util.spec_from_file_location("features", ROOT / "benchmarks" / "features.py")
