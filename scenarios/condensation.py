@@ -244,7 +244,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             "hPa",
             parts=PARTS,
             headline="mean_water_vapor_partial_pressure",
-            theory="saturation",
+            theory="saturation, put in",
         ),
         history(
             "In equilibrium both rates are equal",

@@ -273,7 +273,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         history(
             "Vapour pressure reaches saturation",
-            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation"},
+            {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, put in"},
             "vapour pressure",
             "hPa",
             parts=PARTS,

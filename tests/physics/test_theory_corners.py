@@ -1,0 +1,167 @@
+"""The theory of every scene at the corners of what a user may set: finite, within physical bounds, and right.
+
+Each setting is at its lowest, its default or its highest value, in combinations that hypothesis chooses; the run is
+as short as the scene allows, since only its theory is asked for. A combination that the scene refuses, in a sentence,
+is as good as one that runs.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from atmosbox import scenarios, theory
+from atmosbox.errors import AtmosboxError
+from atmosbox.simulation import runner
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+SHORT = ("duration", "ascent", "travel")
+FEW = 300
+ENERGIES = {"cape_theory", "cin_theory"}
+"""Theory that may be below zero: energies of a parcel."""
+
+
+def values(parameter):
+    """Return the values to try: few molecules, a short run, and of all else the ends and the default."""
+    if parameter.name in ("seed", "sounding"):
+        return [parameter.default]
+    if parameter.name in SHORT:
+        return [parameter.low]
+    if parameter.name == "molecules":
+        return [max(60, parameter.low)]
+    if parameter.kind == "bool":
+        return [False, True]
+    if parameter.kind == "str":
+        return list(parameter.choices)
+    high = min(parameter.high, FEW) if parameter.kind == "int" else parameter.high
+    return sorted({parameter.low, min(parameter.default, high), high})
+
+
+def corner(scene):
+    """Return a strategy for the settings of a scene."""
+    parameters = scenarios.load(scene).Settings.describe()
+    return st.fixed_dictionaries({each.name: st.sampled_from(values(each)) for each in parameters})
+
+
+def atmosphere(data, stated, prepared):
+    """Layers hold all the molecules, and these are as high as points would be, or higher for their size."""
+    si = prepared.settings.si
+    thick = np.diff(data.height_bnds.values, axis=1)[:, 0]
+    held = float(data.air_density_theory.values @ thick) * si.gravity
+    assert held == pytest.approx(stated["weight_of_the_air"].theory, rel=1e-6) if stated else held > 0.0
+    warm = float(data.layer_temperature_theory.values[0])
+    scale_height = BOLTZMANN * warm / (DRY_AIR.molecule_mass * si.gravity)
+    law = np.exp(-data.height.values / scale_height)
+    found = data.layer_pressure_barometric.values
+    assert np.allclose(found / found[0], law / law[0], rtol=1e-9, atol=1e-300)
+    column = prepared.module.Column(prepared.settings)
+    kT = warm / column.scale.temperature
+    reach = column.top - column.bottom
+    a = reach / kT
+    points = column.bottom + reach * (1.0 / a - 1.0 / math.expm1(min(a, 700.0)) if a > 1e-3 else 0.5 - a / 12.0)
+    if stated:
+        assert stated["mean_height"].theory / column.scale.length == pytest.approx(column.mean_height(kT), rel=1e-9)
+    assert points * (1.0 - 1e-9) <= column.mean_height(kT) < column.top
+    column.room = 0.0
+    assert column.mean_height(kT) == pytest.approx(points, rel=1e-6)
+
+
+def temperature(data, stated, prepared):
+    """The walls have the say, and the pressure of points at that temperature is that of the gas or a little less."""
+    si = prepared.settings.si
+    assert stated["mean_temperature"].theory == pytest.approx(si.temperature, rel=0.02)
+    assert stated["mean_pressure"].theory == pytest.approx(si.pressure, rel=0.02)
+
+
+def saturated(data, stated, prepared):
+    """There is no more vapour than saturates air at the temperature of the walls, by another formula for it."""
+    si, walls = prepared.settings.si, data.wall_temperature.values[:, 0]
+    assert np.allclose(data.air_temperature_theory, walls, rtol=1e-12)
+    if si.temperature >= 240.0 and not si.drops:
+        most = theory.saturation_vapor_pressure_iapws(walls)
+        assert (data.water_vapor_partial_pressure_theory.values <= 1.002 * most).all()
+    assert (data.relative_humidity_theory.values <= (1.0 + 1e-9 if not si.drops else 50.0)).all()
+
+
+def evaporated(data, stated, prepared):
+    """Dry air cools, air with too much vapour becomes warmer; and the vapour is part of the gas."""
+    si, end = prepared.settings.si, float(data.gas_temperature_theory.values[-1])
+    if si.humidity < 0.5:
+        assert end <= si.temperature + 0.5
+    if si.humidity > 5.0:
+        assert end >= si.temperature - 0.5
+    assert data.water_vapor_partial_pressure_theory.values.max() <= si.pressure
+    assert data.condensation_rate_theory.values.min() >= 0.0
+
+
+def lifted(data, stated, prepared):
+    """A parcel that rises is nowhere warmer than at its start, and no colder than along the dry adiabat of argon."""
+    pressure = data.parcel_pressure.values
+    warm = data.adiabat_temperature.values
+    share = pressure / pressure.max()
+    start = warm[np.argmax(pressure)]
+    assert (warm <= start * 1.001).all()
+    assert (warm >= 0.985 * start * share**0.4).all()
+
+
+BOUNDS = {
+    "atmosphere": atmosphere,
+    "temperature": temperature,
+    "temperature-large": temperature,
+    "condensation": saturated,
+    "evaporation": evaporated,
+    "lifting-dry": lifted,
+    "lifting-moist": lifted,
+    "lifting-sounding": lifted,
+    "mountains": lifted,
+}
+
+
+def examined(scene, given_settings):
+    """Run a scene as shortly as it goes; assert what holds for all, then what holds for this one."""
+    try:
+        prepared = runner.prepare(scene, given_settings)
+        outcome = runner.execute(prepared)
+    except AtmosboxError:  # a sentence, as the tests of refusals hold
+        return False
+    data = outcome.dataset
+    for name, found in data.variables.items():
+        if name.endswith(("_theory", "_barometric")) and not name.startswith("leaving_energy"):
+            assert np.isfinite(found.values).all(), name
+            assert name in ENERGIES or (found.values >= 0.0).all(), name
+    stated = {each.name: each for each in outcome.headlines}
+    for each in stated.values():
+        assert each.theory is None or math.isfinite(each.theory), each.name
+        assert each.theory is None or each.unit not in ("K", "m", "s-1") or each.theory >= 0.0, each.name
+    if scene in BOUNDS:
+        BOUNDS[scene](data, stated, prepared)
+    return True
+
+
+@pytest.mark.parametrize("scene", scenarios.names())
+def test_the_theory_of_a_scene_holds_at_the_corners_of_its_settings(scene):
+    ran = []
+
+    @settings(max_examples=12, suppress_health_check=list(HealthCheck), database=None)
+    @given(corner(scene))
+    def at(given_settings):
+        ran.append(examined(scene, given_settings))
+
+    at()
+    assert any(ran)
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("scene", scenarios.names())
+def test_the_theory_of_a_scene_holds_at_many_more_corners(scene):
+    ran = []
+
+    @settings(max_examples=150, suppress_health_check=list(HealthCheck), database=None)
+    @given(corner(scene))
+    def at(given_settings):
+        ran.append(examined(scene, given_settings))
+
+    at()
+    assert sum(ran) > 10
