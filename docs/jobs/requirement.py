@@ -172,7 +172,7 @@ def column(found: Findings) -> None:
             ["true size of molecules", f"mean free path {rounded(settings.knudsen)} H, in air "
              f"{rounded(real_path / h)} H", "in equilibrium the profile of points does not depend on how often they "
              "meet: 0"],
-            ["the room of the wide ones", f"$Z - 1$ = {rounded(crowd)} at the floor",
+            ["the excluded volume of wide molecules", f"$Z - 1$ = {rounded(crowd)} at the floor",
              f"the mean height is {rounded(100.0 * higher)} % too large, which the theory beside it counts"],
             ["weight of a molecule", f"{rounded(air.scale.weight)}",
              "pressure, density and energy are multiplied by it, speeds and temperatures are not; what does not "
@@ -284,7 +284,7 @@ def rising_parcel(found: Findings) -> None:
              f"the attraction moves the adiabat of air by {rounded(attracted)} K"],
             ["true size of molecules", f"{sigma * 1e9:g} nm, and not {DRY_AIR.diameter * 1e9:.2g} nm: "
              f"{rounded((sigma / DRY_AIR.diameter) ** 2)} times as many contacts",
-             f"their room moves the adiabat by {rounded(room[sigma])} K (with the true size by "
+             f"their excluded volume moves the adiabat by {rounded(room[sigma])} K (with the true size by "
              f"{rounded(room[DRY_AIR.diameter])} K), since a constant $B$ drops out in first order"],
             ["an hour for the ascent", f"{rounded(seconds * 1e9)} ns, {settings.ascent:.0f} mean free times; in an "
              f"hour {rounded(3600.0 / free[DRY_AIR.diameter][1])}",
@@ -292,7 +292,7 @@ def rising_parcel(found: Findings) -> None:
             ["a piston without sound", f"{rounded(piston)} m/s for {climbed / 1000.0:.1f} km, "
              f"{rounded(piston / sound)} of the speed of sound", "pressure and temperature are alike in the whole box"],
             ["rotation exchanges slowly", f"after {rounded(slow)} collisions in air, at each contact here",
-             f"in the hurry of the scene the parcel would end another {rounded(delayed)} K warmer, in an hour none"],
+             f"in so fast an ascent the parcel would end another {rounded(delayed)} K warmer, in an hour none"],
             ["walls close by", f"Knudsen number {rounded(free[sigma][0] / low)}",
              "smooth walls take no heat and no momentum along them, so that it does not matter"],
             ["quantum mechanics", f"wavelength {nm(wave(end))} at the top; $n\\Lambda^3$ = "
