@@ -25,7 +25,7 @@ from atmosbox.cli.option import (
 from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, tell, width
-from atmosbox.errors import AtmosboxError, PhysicsError
+from atmosbox.errors import AtmosboxError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
         "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
         "atmosbox run --config lift.toml --dry-run",
         "atmosbox run temperature --accuracy sketch",
+        "atmosbox run --resume lifting-dry.part.nc",
     )
 )
 @guarded
@@ -58,6 +59,16 @@ def run(
     save_molecules: Annotated[
         bool, typer.Option("--save-molecules", help="Save where every molecule is, in every frame.")
     ] = False,
+    resume: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Go on with a run that was stopped or killed, from its NAME.part.nc."),
+    ] = None,
+    extend: Annotated[
+        int, typer.Option(metavar="N", min=1, help="With --resume: let the run last N times as long as its scene says.")
+    ] = 1,
+    keep_state: Annotated[
+        bool, typer.Option("--keep-state", help="Keep the last state in the file, so that --extend can go on from it.")
+    ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show what would run, compute nothing and write nothing.")
     ] = False,
@@ -68,26 +79,51 @@ def run(
     """Run a scene, and compare what comes out with theory.
 
     If a setting is given more than once, --seed counts before --set, --set before --config, and --config
-    before --from. Ctrl-C stops a run and keeps what is complete in NAME.part.nc.
+    before --from. Ctrl-C stops a run and keeps what is complete in NAME.part.nc, from which --resume goes on, bit for
+    bit as if the run had never been stopped; so it does after a crash.
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.simulation import runner
 
-    asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
-    with prints_to_stderr():
-        prepared = runner.prepare(**asked._asdict())
-    path = netcdf_name(out, for_scene(prepared.scene))
+    restart = None
+    if resume is None:
+        if extend > 1:
+            raise SettingError("extend", extend, "needs a run that is there", "give --resume FILE with it")
+        asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
+        with prints_to_stderr():
+            prepared = runner.prepare(**asked._asdict())
+        path = netcdf_name(out, for_scene(prepared.scene))
+    else:
+        given = {"set": values, "config": config, "from": source, "seed": seed, "engine": engine, "accuracy": accuracy}
+        for name, value in (given | {"save-molecules": save_molecules or None}).items():
+            if value is not None and value != []:
+                raise SettingError(f"--{name}", None, "cannot change a run that goes on", "leave it out")
+        from atmosbox.file.output_path import whole_path
+        from atmosbox.simulation.restart import read_state
+
+        restart = read_state(resume)
+        with prints_to_stderr():
+            prepared = runner.prepared_again(restart, scene)
+        path = netcdf_name(out, whole_path(resume))
     checkpoint = Checkpoint(path, force=force)
     if dry_run or verbose:
         _describe(prepared, path, quiet=quiet, as_json=as_json, dry_run=dry_run)
     if dry_run:
         return
-    if checkpoint.stale and not quiet:
+    if checkpoint.stale and not quiet and (resume is None or Path(resume).resolve() != checkpoint.part.resolve()):
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
     try:
         with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show:
-            outcome = runner.execute(prepared, checkpoint=checkpoint, progress=show, command=typed(ctx))
+            outcome = runner.execute(
+                prepared,
+                checkpoint=checkpoint,
+                progress=show,
+                command=typed(ctx),
+                restart=restart,
+                longer=extend,
+                keep_state=keep_state,
+            )
     except runner.Interrupted as stop:
         _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
         raise typer.Exit(stop.exit_code) from stop
@@ -168,6 +204,7 @@ def _say_interrupted(
     part = checkpoint.part
     frames = int(stop.outcome.dataset.sizes.get("elapsed_time", 0))
     tell(f"stopped: {frames} complete frames are kept in {part}; to see them: {next_command('plot', part)}")
+    tell(f"to go on: {next_command('run --resume', part)}")
     if as_json:
         made = outcome_json(stop.outcome, scene=prepared.scene, path=part, limit=LEDGER_LIMIT)
         say_json({**made, "settings": prepared.settings.as_dict()})

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Checkpoint"]
 
-SHARE = 0.05  # of a run's time, which its checkpoints may take
+SHARE = 0.02  # of a run's time, which its checkpoints may take
 
 
 class Checkpoint:
     """The file of a run that is not finished: call it after every frame, it writes now and then.
 
     It writes the whole dataset so far to `part`, at most every so many seconds and so seldom that writing
-    takes less than a twentieth of the run's time. The part of an earlier run that was killed is replaced.
+    takes less than a fiftieth of the run's time. The part of an earlier run that was killed is replaced.
 
     Parameters
     ----------

@@ -18,7 +18,10 @@ from atmosbox.version import __version__
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["image", "read", "write"]
+__all__ = ["STATE", "image", "read", "write"]
+
+STATE = "atmosbox_state"
+"""The variable that holds the state of a run which can go on; no reader of its numbers needs it."""
 
 
 def image(dataset: xr.Dataset) -> memoryview:
@@ -137,7 +140,7 @@ def read(path: AnyPath) -> xr.Dataset:
                     "type pip install --upgrade atmosbox."
                 )
             check_valid(file, source)
-        return xr.load_dataset(source, engine="netcdf4", decode_times=False)
+        return xr.load_dataset(source, engine="netcdf4", decode_times=False, drop_variables=[STATE])
     except FileError:
         raise
     except (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError) as error:

@@ -19,7 +19,17 @@ from atmosbox.errors import DiskFullError, FileError, SettingError, shown
 from atmosbox.file.output_lock import alive, host
 from atmosbox.file.provenance import moment
 
-__all__ = ["AnyPath", "check_writable", "clear", "named", "part_path", "whole_file", "write_failure", "write_whole"]
+__all__ = [
+    "AnyPath",
+    "check_writable",
+    "clear",
+    "named",
+    "part_path",
+    "whole_file",
+    "whole_path",
+    "write_failure",
+    "write_whole",
+]
 
 AnyPath: TypeAlias = str | os.PathLike[str]
 
@@ -151,6 +161,18 @@ def part_path(path: AnyPath) -> Path:
     """
     whole = Path(path)
     return whole.with_name(f"{whole.stem}.part{whole.suffix}")
+
+
+def whole_path(part: AnyPath) -> Path:
+    """Return the file of the finished run, of which a part is there.
+
+    Examples
+    --------
+    >>> str(whole_path("run.part.nc")), str(whole_path("run.nc"))
+    ('run.nc', 'run.nc')
+    """
+    path = Path(part)
+    return path.with_name(f"{path.stem.removesuffix('.part')}{path.suffix}")
 
 
 def clear(path: Path, *, everything: bool = False) -> None:

@@ -38,11 +38,14 @@ class Prepared:
     save_molecules: bool = False
     engine: EngineChoice = EXACT
     expectation: Expectation | None = None
+    stated: Mapping[str, Any] | None = None
+    """The errors that were expected when it began, of a run that goes on."""
 
     @property
     def parameters(self) -> dict[str, Any]:
         """Everything that makes the run, and the errors that are expected of it, as JSON can hold it."""
-        known = {} if self.expectation is None else {"accuracy": self.expectation.as_dict()}
+        expected = self.stated if self.expectation is None else self.expectation.as_dict()
+        known = {} if expected is None else {"accuracy": expected}
         return {
             "scene": self.scene,
             "settings": self.settings.as_dict(),

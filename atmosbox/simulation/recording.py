@@ -71,6 +71,7 @@ class Recording:
     times: list[float] = field(default_factory=lambda: [0.0])
     busy: float = 0.0
     first: int = 0
+    sampled: int = 0
     instruments: tuple[Instrument, ...] = ()
 
     def __post_init__(self) -> None:
@@ -87,9 +88,11 @@ class Recording:
         return len(self.times) - 1 - bool(self.first)
 
     def sample(self, snapshot: Snapshot) -> None:
-        """Let the instruments sample the molecules as they are now."""
-        for instrument in self.instruments:
-            instrument.sample(self.setup.parcel, snapshot)
+        """Let all instruments sample the molecules as they are now, or none."""
+        with uninterrupted():
+            for instrument in self.instruments:
+                instrument.sample(self.setup.parcel, snapshot)
+            self.sampled += 1
 
     def end_frame(self, snapshot: Snapshot) -> None:
         """Let all instruments finish a frame, or none: frames that only some have could not be saved."""
@@ -97,18 +100,20 @@ class Recording:
             for instrument in self.instruments:
                 instrument.end_frame(self.setup.parcel, snapshot)
             self.times.append(self.setup.parcel.time)
+            self.sampled = 0
 
     def advance(self, watch: Callable[[float], None]) -> None:
-        """Advance by one frame and measure."""
+        """Advance to the end of the frame and measure; what was interrupted goes on with the next sample."""
         parcel = self.setup.parcel
         frame = self.first + self.frames
-        for sample in range(1, self.setup.samples + 1):
+        snapshot: Snapshot | None = None
+        for sample in range(self.sampled + 1, self.setup.samples + 1):
             busy = time.process_time()
             parcel.advance(max(self.setup.moment(frame, sample), parcel.time), watch)
             self.busy += time.process_time() - busy
             snapshot = parcel.snapshot()
             self.sample(snapshot)
-        self.end_frame(snapshot)
+        self.end_frame(parcel.snapshot() if snapshot is None else snapshot)
 
     def dataset(
         self, status: str, *, settle: int | None = None, judged: bool = True
@@ -143,8 +148,13 @@ class Recording:
         measured = dataset(readings, coords, attributes, time_unit=setup.time_unit)
         if self.frames < 2:
             return measured.isel(seen) if unseen else measured, ()
-        full = extended(measured, module.theory(measured, settings))
-        if not judged or unseen:
-            return full.isel(seen) if unseen else full, ()
-        headlines = with_bias(module.headlines(full, settings), self.prepared.parameters)
-        return extended(full, {}, headlines), headlines
+        try:
+            full = extended(measured, module.theory(measured, settings))
+            if not judged or unseen:
+                return full.isel(seen) if unseen else full, ()
+            headlines = with_bias(module.headlines(full, settings), self.prepared.parameters)
+            return extended(full, {}, headlines), headlines
+        except (ArithmeticError, LookupError, ValueError):
+            if status == "complete":
+                raise
+            return measured.isel(seen) if unseen else measured, ()  # too short for its theory, but not to be lost

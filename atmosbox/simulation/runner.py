@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import StalledError
-from atmosbox.errors import EngineError
+from atmosbox.errors import EngineError, FileError, SettingError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
+from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, put_back, read_state, with_state
 from atmosbox.simulation.verification import LEDGER_LIMIT, Check, headlines_of, verify
 
 if TYPE_CHECKING:
@@ -33,6 +37,8 @@ __all__ = [
     "execute",
     "headlines_of",
     "prepare",
+    "prepared_again",
+    "resume",
     "run",
     "verify",
 ]
@@ -73,6 +79,9 @@ def execute(
     checkpoint: Checkpoint | None = None,
     progress: Progress | None = None,
     command: str = "",
+    restart: Restart | None = None,
+    longer: int = 1,
+    keep_state: bool = False,
 ) -> Outcome:
     """Run a prepared scenario.
 
@@ -86,6 +95,12 @@ def execute(
         Called with the share that is done and a word on what is being done.
     command
         What the user typed, for the file's history.
+    restart
+        The state from which it goes on, from `atmosbox.simulation.restart.read_state`; from the start if None.
+    longer
+        How many times as long as the scene says the run lasts, in frames of the same length.
+    keep_state
+        Whether the finished file holds its last state, so that the run can go on for longer.
 
     Returns
     -------
@@ -98,6 +113,8 @@ def execute(
         After Ctrl-C, with the frames that are complete.
     EngineError
         If the engine cannot go on.
+    FileError
+        If the file is being written by another run, or the state is not one of this run.
 
     Examples
     --------
@@ -105,35 +122,45 @@ def execute(
     >>> outcome.ledger < LEDGER_LIMIT
     True
     """
+    if restart is not None:
+        check_alike(restart, prepared)
+        longer = max(longer, restart.longer)
     if checkpoint is None:
-        return _execute(prepared, None, progress, command)
+        return _execute(prepared, None, progress, command, restart, longer, keep_state)
     checkpoint.begin()
     try:
-        return _execute(prepared, checkpoint, progress, command)
+        return _execute(prepared, checkpoint, progress, command, restart, longer, keep_state)
     finally:
         checkpoint.release()
 
 
-def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progress | None, command: str) -> Outcome:
+def _execute(
+    prepared: Prepared,
+    checkpoint: Checkpoint | None,
+    progress: Progress | None,
+    command: str,
+    restart: Restart | None,
+    longer: int,
+    keep_state: bool,
+) -> Outcome:
     """Run a prepared scenario, whose file nobody else writes."""
-    from atmosbox.file.provenance import global_attributes
-
     tell = progress or (lambda share, word: None)
     with told(prepared, tell):
         setup = build(prepared)
         setup.parcel.advance(0.0)
-    panels = prepared.module.panels
-    attributes = global_attributes(
-        prepared.parameters,
-        title=getattr(prepared.module, "title", prepared.scene),
-        command=command or f"atmosbox run {prepared.scene}",
-        comment=" ".join((prepared.module.__doc__ or "").split()),
-        references=prepared.engine.engine.reference,
-        panels=to_json(panels(prepared.settings) if callable(panels) else panels),
-        status="partial",
-    )
-    recording = Recording(prepared, setup, attributes)
+    if longer > 1:
+        if setup.ends:
+            raise SettingError("extend", longer, f"is not for {prepared.scene}, whose run has an end", "leave it out")
+        setup = replace(setup, duration=longer * setup.duration, frames=longer * setup.frames)
+    recording = Recording(prepared, setup, _attributes(prepared, command, restart, longer))
     last = spent = 0.0
+    if restart is not None:
+        spent = put_back(restart, recording)
+        if recording.frames >= setup.frames:
+            raise FileError(
+                f"{restart.source} is finished: give --extend {longer + 1} to let the run go on for longer."
+            )
+    warned = False
 
     def watch(now: float) -> None:
         nonlocal last
@@ -149,6 +176,16 @@ def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progre
             dataset, headlines, spent, parcel.contacts, parcel.ledger(), recording.busy, made, parcel.escaped()
         )  # fmt: skip
 
+    def resumable(dataset: xr.Dataset) -> xr.Dataset:
+        nonlocal warned
+        try:
+            return with_state(dataset, recording, spent, longer)
+        except UnkeptError as error:
+            if not warned:
+                warned = True
+                warnings.warn(f"this run cannot be resumed, for {error} is nothing that a file can hold", stacklevel=2)
+            return dataset
+
     try:
         while recording.frames < setup.frames:
             began = time.perf_counter()
@@ -156,7 +193,7 @@ def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progre
             spent += time.perf_counter() - began
             watch(setup.parcel.time)
             if checkpoint is not None and recording.frames < setup.frames:
-                checkpoint(lambda: recording.dataset("partial")[0])
+                checkpoint(lambda: resumable(recording.dataset("partial")[0]))
         tell(1.0, "done")
         done = outcome("complete")
     except StalledError as error:
@@ -165,12 +202,34 @@ def _execute(prepared: Prepared, checkpoint: Checkpoint | None, progress: Progre
         partial = outcome("interrupted") if recording.frames else None
         if partial is not None and checkpoint is not None:
             with uninterrupted():
-                checkpoint.save(partial.dataset)
+                checkpoint.save(resumable(partial.dataset))
         raise Interrupted(partial, getattr(stop, "exit_code", 130)) from None
     if checkpoint is not None:
         with uninterrupted():
-            checkpoint.finish(done.dataset)
+            checkpoint.finish(resumable(done.dataset) if keep_state else done.dataset)
     return done
+
+
+def _attributes(prepared: Prepared, command: str, restart: Restart | None, longer: int) -> dict[str, Any]:
+    """Return what the file says of the run as a whole; one that goes on says what it said when it began."""
+    from atmosbox.file.provenance import global_attributes, history_line
+
+    if restart is not None:
+        kept = {name: value for name, value in restart.attributes.items() if name != "atmosbox_headlines"}
+        if longer > 1:
+            kept["history"] = f"{kept['history']}\n{history_line(command)}"
+            kept["atmosbox_parameters"] = json.dumps(prepared.parameters | {"longer": longer}, allow_nan=False)
+        return kept
+    panels = prepared.module.panels
+    return global_attributes(
+        prepared.parameters,
+        title=getattr(prepared.module, "title", prepared.scene),
+        command=command or f"atmosbox run {prepared.scene}",
+        comment=" ".join((prepared.module.__doc__ or "").split()),
+        references=prepared.engine.engine.reference,
+        panels=to_json(panels(prepared.settings) if callable(panels) else panels),
+        status="partial",
+    )
 
 
 def run(
@@ -231,3 +290,85 @@ def run(
     given = {name: text for name, text in (("engine", engine), ("accuracy", accuracy)) if text is not None} | settings
     words = ", ".join([repr(str(scene)), *(f"{name}={value!r}" for name, value in given.items())])
     return execute(prepared, checkpoint=checkpoint, progress=progress, command=f"atmosbox.run({words})").dataset
+
+
+def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None) -> Prepared:
+    """Return the scenario of a run that is to go on, as it was prepared when it began.
+
+    Parameters
+    ----------
+    restart
+        From `atmosbox.simulation.restart.read_state`.
+    scene
+        The path of the scene, if it is one of your own: no file makes atmosbox run a program.
+
+    Raises
+    ------
+    FileError
+        If the file is for another scene, or one of your own whose path is not given.
+    """
+    made = restart.about["settings"]
+    named = str(made["scene"])
+    own = named.endswith(".py") or os.sep in named
+    if scene is None and own:
+        raise FileError(
+            f"{restart.source} is for the scene in the file {named}, which must be typed: "
+            f"atmosbox run {named} --resume {restart.source}."
+        )
+    if scene is not None and os.fspath(scene).replace("_", "-") != named.replace("_", "-"):
+        raise FileError(f"{restart.source} is for the scene {named}, not for {scene}: leave one of them out.")
+    prepared = prepare(
+        named if scene is None else scene,
+        made["settings"],
+        engine=str(made["engine"]),
+        save_molecules=made["save_molecules"] is True,
+    )
+    return replace(prepared, expectation=None, stated=made.get("accuracy"))
+
+
+def resume(
+    path: str | os.PathLike[str],
+    *,
+    scene: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    extend: int = 1,
+    force: bool = False,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Go on with a run that was stopped or killed, bit for bit as if it never had been.
+
+    Parameters
+    ----------
+    path
+        What it left: ``NAME.part.nc``. Or the file of a finished run, made with ``--keep-state``, to be extended.
+    scene
+        The path of the scene, if it is one of your own.
+    out
+        Where to write the finished run; by default the file that it would have had.
+    extend
+        How many times as long as its scene says the run shall last, in frames of the same length.
+    force
+        Whether a file may be replaced.
+    progress
+        Called with the share that is done and a word on what is being done.
+
+    Returns
+    -------
+    xarray.Dataset
+        Everything measured since the run began.
+
+    Raises
+    ------
+    FileError
+        If the file holds no state, or version, sources of the engine, scene or processor are others than then.
+    """
+    from atmosbox.file.checkpoint import Checkpoint
+    from atmosbox.file.output_path import whole_path
+
+    restart = read_state(os.fspath(path))
+    prepared = prepared_again(restart, scene)
+    checkpoint = Checkpoint(whole_path(path) if out is None else out, force=force)
+    command = f"atmosbox.resume({os.fspath(path)!r}, extend={extend})"
+    return execute(
+        prepared, checkpoint=checkpoint, progress=progress, command=command, restart=restart, longer=extend
+    ).dataset

@@ -1,0 +1,336 @@
+"""The state of a run inside its file, from which the run goes on bit for bit.
+
+The engine gives the state of its box, see `atmosbox.engine.core.saved_state`. Beside it stands what the instruments
+have kept so far: a tree of plain numbers, and the bytes of all arrays. Neither can run code: nothing is made but
+numbers, texts and lists, and an object that the scene does not build itself is never made at all.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from collections.abc import Callable
+from enum import Enum
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import RefusedError
+from atmosbox.engine.core.jit import source_digest
+from atmosbox.engine.core.saved_state import SavedState
+from atmosbox.errors import FileError
+from atmosbox.simulation.preparation import Prepared
+from atmosbox.version import __version__
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.simulation.recording import Recording
+
+__all__ = ["Restart", "UnkeptError", "check_alike", "described", "put_back", "read_state", "with_state"]
+
+FORMAT = 1
+"""The version of what is written here."""
+
+_KEPT = {"kept": 0}
+
+Bytes = NDArray[np.uint8]
+
+
+class Restart(NamedTuple):
+    """What a file says of a run that is to go on.
+
+    Attributes
+    ----------
+    source
+        The file.
+    about
+        What made the run: see `described`.
+    tree
+        The state of box and instruments, and where its arrays lie.
+    content
+        The bytes of the arrays.
+    attributes
+        The global attributes of the file.
+    longer
+        How many times as long as its scene says the run lasts.
+    """
+
+    source: Path
+    about: dict[str, Any]
+    tree: dict[str, Any]
+    content: Bytes
+    attributes: dict[str, Any]
+    longer: int = 1
+
+
+class UnkeptError(Exception):
+    """An instrument of a user's own keeps something that no file can hold; the text names it."""
+
+
+def described(prepared: Prepared) -> dict[str, Any]:
+    """Return all that must be the same for a run to go on bit for bit, by what a sentence calls it.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> sorted(described(prepare("temperature", {})))
+    ['content of the scene', 'format of the state', 'processor', 'settings', 'sources of the engine', 'version']
+    """
+    package = Path(__file__).parents[1]
+    own = getattr(prepared.module, "__file__", None)
+    files = [*sorted((package / "scene").rglob("*.py")), Path(__file__).with_name("recording.py")]
+    scene = hashlib.sha256(b"".join(file.read_bytes() for file in [*files, *([Path(own)] if own else [])]))
+    return {
+        "format of the state": FORMAT,
+        "version": __version__,
+        "sources of the engine": source_digest(),
+        "content of the scene": scene.hexdigest()[:16],
+        "processor": platform.machine(),
+        "settings": {name: value for name, value in prepared.parameters.items() if name != "version"},
+    }
+
+
+def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer: int = 1) -> xr.Dataset:
+    """Return what a run has measured so far, with the state from which it goes on.
+
+    Parameters
+    ----------
+    dataset
+        What `recording` has measured.
+    recording
+        The run, between two samples.
+    seconds
+        The time that it has taken so far [s].
+    longer
+        How many times as long as its scene says the run lasts.
+
+    Raises
+    ------
+    UnkeptError
+        If an instrument of a user's own keeps something that no file can hold.
+    """
+    import xarray as xr
+
+    from atmosbox.file.netcdf import STATE
+
+    arrays = _Arrays()
+    try:
+        state = recording.setup.parcel.state()
+    except RefusedError as error:
+        raise UnkeptError(str(error)) from error
+    known = {id(recording.setup.parcel), id(recording.setup), *map(id, _drivers(recording))}
+    coder = _Coder(arrays, known, recording.prepared.module)
+    tree = {
+        "box": {"text": state.text, "memory": {name: arrays.keep(piece) for name, piece in state.memory.items()}},
+        "instruments": [coder.attributes(each, f"instrument {k + 1}") for k, each in enumerate(recording.instruments)],
+        "times": coder.code(list(recording.times), "times"),
+        "sampled": recording.sampled,
+        "busy": recording.busy,
+        "seconds": seconds,
+        "longer": longer,
+    }
+    head = json.dumps({"about": described(recording.prepared), "tree": tree, "arrays": arrays.table}).encode()
+    blob = np.frombuffer(len(head).to_bytes(8, "little") + head + b"".join(arrays.pieces), np.uint8)
+    words = {"long_name": "state of the run, from which atmosbox run --resume goes on"}
+    return dataset.assign({STATE: xr.Variable((f"{STATE}_byte",), blob, words, {"dtype": "u1"})})
+
+
+def read_state(path: str | Path) -> Restart:
+    """Return the state that a file holds.
+
+    Raises
+    ------
+    FileError
+        If it is no file of a run, or holds no state, or a damaged one.
+    """
+    import netCDF4
+
+    from atmosbox.file.netcdf import STATE, read
+
+    found = read(path)
+    with netCDF4.Dataset(path) as file:
+        if STATE not in file.variables:
+            status = found.attrs.get("atmosbox_status")
+            fix = (
+                "a run made with --keep-state can go on, so type atmosbox run --keep-state"
+                if status == "complete"
+                else "type atmosbox run --from with it to begin anew"
+            )
+            raise FileError(f"{path} holds no state of its run, so that it cannot go on: {fix}.")
+        content = np.asarray(file.variables[STATE][:], np.uint8)
+    try:
+        size = int.from_bytes(content[:8].tobytes(), "little")
+        head = json.loads(content[8 : 8 + size].tobytes())
+        tree = {"arrays": head["arrays"], **head["tree"]}
+        longer = int(tree["longer"])
+        return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], dict(found.attrs), longer)
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise FileError(f"The state in {path} is damaged: type atmosbox run --from with it to begin anew.") from error
+
+
+def check_alike(restart: Restart, prepared: Prepared) -> None:
+    """Refuse to go on where anything of what made a run has changed.
+
+    Raises
+    ------
+    FileError
+        If so; the sentence says what.
+    """
+    now = described(prepared)
+    for name, value in now.items():
+        before = restart.about.get(name)
+        if before != json.loads(json.dumps(value)):
+            said = f" ({before}, now {value})" if isinstance(before, str | int) else ""
+            raise FileError(
+                f"{restart.source} cannot go on bit for bit, because the {name}{said} changed since: "
+                f"type atmosbox run --from {restart.source} to begin anew."
+            )
+
+
+def put_back(restart: Restart, recording: Recording) -> float:
+    """Put a run that was just built into the state that a file holds, and return the time that it took [s].
+
+    Raises
+    ------
+    FileError
+        If the state is damaged, or that of another run.
+    """
+    tree = restart.tree
+    try:
+        arrays = [_array(restart.content, entry) for entry in tree["arrays"]]
+        memory = {str(name): arrays[place] for name, place in tree["box"]["memory"].items()}
+        recording.setup.parcel.restore(SavedState(tree["box"]["text"], memory))
+        for each, codes in zip(recording.instruments, tree["instruments"], strict=True):
+            _into(vars(each), codes, arrays)
+        recording.times = [float(time) for time in tree["times"]]
+        recording.sampled = int(tree["sampled"])
+        recording.busy = float(tree["busy"])
+        return float(tree["seconds"])
+    except (RefusedError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise FileError(
+            f"The state in {restart.source} is damaged or that of another run ({error}): "
+            "type atmosbox run --from with it to begin anew."
+        ) from error
+
+
+def _drivers(recording: Recording) -> list[object]:
+    """Return what the state of the box holds already."""
+    driver = getattr(recording.setup.parcel, "_driver", None)
+    return [] if driver is None else [driver]
+
+
+class _Arrays:
+    """The bytes of arrays, one after the other, and where each lies."""
+
+    def __init__(self) -> None:
+        self.pieces: list[bytes] = []
+        self.table: list[list[Any]] = []
+        self._size = 0
+
+    def keep(self, array: NDArray[Any]) -> int:
+        order = "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
+        piece = array.tobytes("F" if order == "F" else "C")
+        self.table.append([self._size, array.dtype.str, list(array.shape), order])
+        self.pieces.append(piece)
+        self._size += len(piece)
+        return len(self.table) - 1
+
+
+def _array(content: Bytes, entry: list[Any]) -> NDArray[Any]:
+    """Return an array of its own from the bytes of a file."""
+    start, kind, shape, order = entry
+    dtype = np.dtype(kind)
+    if dtype.hasobject:
+        raise ValueError("an array of objects")
+    size = int(np.prod(shape, dtype=np.int64))
+    piece = content[start : start + size * dtype.itemsize].tobytes()
+    return np.frombuffer(piece, dtype, size).reshape(shape, order=order).copy(order=order)
+
+
+class _Coder:
+    """Plain numbers for what instruments keep."""
+
+    def __init__(self, arrays: _Arrays, known: set[int], module: ModuleType) -> None:
+        self._arrays = arrays
+        self._seen = set(known)
+        self._own = module.__name__
+
+    def attributes(self, thing: object, path: str) -> dict[str, Any]:
+        self._seen.add(id(thing))
+        return {name: self.code(value, f"{path}.{name}") for name, value in vars(thing).items()}
+
+    def code(self, value: Any, path: str, *, nested: bool = False) -> Any:
+        """Return the code of a value; nested in a list or dictionary, it must be made of plain numbers alone."""
+        if value is None or type(value) in (bool, int, float, str):
+            return value
+        if isinstance(value, np.generic):
+            return {"scalar": [value.dtype.str, value.tobytes().hex()]}
+        if isinstance(value, np.ndarray):
+            if value.dtype.hasobject:
+                raise UnkeptError(path)
+            return {"array": self._arrays.keep(value)}
+        if isinstance(value, list):
+            return [self.code(each, path, nested=True) for each in value]
+        if isinstance(value, tuple):
+            named = getattr(value, "_fields", None)
+            if nested and named:
+                raise UnkeptError(path)
+            return {"tuple": [self.code(each, path, nested=True) for each in value], "named": named}
+        if isinstance(value, dict):
+            if not all(isinstance(key, str) for key in value):
+                raise UnkeptError(path)
+            return {"dict": {key: self.code(each, path, nested=True) for key, each in value.items()}}
+        if nested:
+            raise UnkeptError(path)
+        if isinstance(value, np.random.Generator):
+            return {"generator": value.bit_generator.state}
+        constant = isinstance(value, slice | Enum | ModuleType | type) or callable(value)
+        if constant or id(value) in self._seen:
+            return _KEPT
+        module = type(value).__module__
+        if hasattr(value, "__dict__") and (module.startswith("atmosbox.") or module == self._own):
+            return {"object": self.attributes(value, path)}
+        if module == "builtins":
+            raise UnkeptError(path)
+        return _KEPT  # what a library makes is taken for a constant of the scene
+
+
+def _into(held: dict[str, Any], codes: dict[str, Any], arrays: list[NDArray[Any]]) -> None:
+    for name, code in codes.items():
+        held[name] = _value(code, held.get(name), arrays)
+
+
+def _value(code: Any, old: Any, arrays: list[NDArray[Any]]) -> Any:
+    """Return what a code stands for, where an object of the new run stood before."""
+    if isinstance(code, list):
+        return [_value(each, None, arrays) for each in code]
+    if not isinstance(code, dict):
+        return code
+    makers: dict[str, Callable[[Any], Any]] = {
+        "scalar": lambda inside: np.frombuffer(bytes.fromhex(inside[1]), np.dtype(inside[0]))[0],
+        "array": lambda inside: arrays[inside],
+        "dict": lambda inside: {key: _value(each, None, arrays) for key, each in inside.items()},
+    }
+    tag = next(iter(code))
+    inside = code[tag]
+    if tag in makers:
+        return makers[tag](inside)
+    if tag == "tuple":
+        parts = [_value(each, None, arrays) for each in inside]
+        if not code["named"]:
+            return tuple(parts)
+        if list(getattr(old, "_fields", ())) != code["named"]:
+            raise ValueError("a tuple with names")
+        return old._make(parts)
+    if old is None:
+        raise ValueError("an object that the scene does not build")
+    if tag == "generator":
+        old.bit_generator.state = inside
+    elif tag == "object":
+        _into(vars(old), inside, arrays)
+    return old

@@ -1,0 +1,266 @@
+"""A run that was stopped, killed or finished goes on: what comes out is what a run that was let alone measures."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from atmosbox.cli import app
+from atmosbox.errors import FileError, SettingError
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.netcdf import read
+from atmosbox.simulation import restart, runner
+
+RUNS = {
+    "discs": ("elastic-collisions", {"duration": "5 s"}, None),
+    "walls": ("temperature", {"molecules": 60, "duration": "0.4 ns"}, None),
+    "strips": ("elastic-collisions", {"duration": "5 s"}, "classic"),
+    "column": ("atmosphere", {"molecules": 200, "duration": 3}, None),
+    "column by dsmc": ("atmosphere", {"molecules": 200, "duration": 3}, "dsmc"),
+    "piston": ("lifting-dry", {"molecules": 60, "ascent": 50.0}, None),
+    "in steps": ("lifting-dry", {"molecules": 60, "ascent": 30.0}, "stepped:delta=0.005"),
+    "mist": ("lifting-moist", {"molecules": 200, "ascent": 60.0}, None),
+    "mist by dsmc": ("lifting-moist", {"molecules": 200, "ascent": 60.0}, "dsmc"),
+    "liquid": ("condensation", {"molecules": 200, "duration": "0.3 ns"}, None),
+    "drops": ("condensation", {"molecules": 200, "duration": "0.3 ns", "drops": 2}, None),
+    "rain": ("mountains", {"molecules": 200, "travel": 40}, None),
+}
+
+
+class Stop(KeyboardInterrupt):
+    """Stand for Ctrl-C at a moment that a test chooses."""
+
+
+def content(path):
+    """Return every variable with its bytes and attributes, and every attribute of a file, in any order."""
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        held = {name: str(file.getncattr(name)) for name in file.ncattrs()}
+        for name, each in file.variables.items():
+            said = {key: str(each.getncattr(key)) for key in each.ncattrs()}
+            values = np.asarray(each[...])
+            held[name] = values.tolist() if values.dtype == object else values.tobytes(), each.dimensions, said
+    return held
+
+
+@pytest.fixture(autouse=True)
+def same_date(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+
+
+def stopping(shares):
+    """Return a progress that stops a run at some shares of it."""
+    left = sorted(shares)
+
+    def progress(share, word):
+        if left and word == "running" and share >= left[0]:
+            left.pop(0)
+            raise Stop
+
+    return progress
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_run_that_was_stopped_goes_on_bit_for_bit(name, tmp_path, monkeypatch):
+    scene, settings, engine = RUNS[name]
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    prepared = runner.prepare(scene, settings, engine=engine, save_molecules=name in ("walls", "drops"))
+    runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "whole.nc"), command="a test")
+    checkpoint = Checkpoint(tmp_path / "stopped.nc", every_seconds=0.0)
+    halts = stopping([0.2, 0.45, 0.8])
+    with pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=checkpoint, command="a test", progress=halts)
+    stops = 1
+    while not checkpoint.path.exists():
+        found = restart.read_state(checkpoint.part)
+        again = runner.prepared_again(found)
+        try:
+            runner.execute(again, checkpoint=checkpoint, restart=found, progress=halts)
+        except runner.Interrupted:
+            stops += 1
+    assert stops == 3
+    assert content(tmp_path / "stopped.nc") == content(tmp_path / "whole.nc")
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["stopped.nc", "whole.nc"]
+
+
+def test_the_command_killed_at_random_moments_goes_on_bit_for_bit(tmp_path):
+    """kill -9, as a computer that is switched off: what was saved last is where it goes on."""
+    words = ["run", "temperature", "--set", "molecules=100", "--quiet", "--out", "x.nc"]
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+
+    def start(words, folder):
+        folder.mkdir(exist_ok=True)
+        return subprocess.Popen(
+            [sys.executable, "-m", "atmosbox", *words], cwd=folder, env=environment, stderr=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+        )  # fmt: skip
+
+    with start(words, whole) as process:
+        process.communicate()
+    draw, kills = random.Random(17), 0
+    now = words
+    while not (killed / "x.nc").exists():
+        with start(now, killed) as process:
+            part, before = killed / "x.part.nc", time.monotonic()
+            old = part.stat().st_mtime_ns if part.exists() else 0
+            while process.poll() is None and kills < 3 and time.monotonic() - before < 60.0:
+                if part.exists() and part.stat().st_mtime_ns != old:
+                    time.sleep(draw.uniform(0.0, 0.3))
+                    process.send_signal(signal.SIGKILL)
+                    kills += 1
+                    break
+                time.sleep(0.01)
+            _, said = process.communicate()
+        assert process.returncode in (0, -signal.SIGKILL), said
+        now = ["run", "--resume", "x.part.nc", "--quiet"]
+    assert kills
+    assert content(killed / "x.nc") == content(whole / "x.nc")
+    assert [each.name for each in killed.iterdir()] == ["x.nc"]
+
+
+@pytest.fixture
+def part(tmp_path, monkeypatch):
+    """The part of a run of discs that was stopped half-way."""
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
+    checkpoint = Checkpoint(tmp_path / "x.nc")
+    with pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
+    return checkpoint.part
+
+
+def refused(*words):
+    result = CliRunner().invoke(app, [*map(str, words)])
+    assert result.exit_code == 2, result.output
+    assert result.stderr.startswith("error: ")
+    assert result.stderr.count("\n") == 1
+    return result.stderr
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"version": "0.0.9"}, "version (0.0.9, now"),
+        ({"format of the state": 99}, "format of the state (99, now 1)"),
+        ({"sources of the engine": "other"}, "sources of the engine (other, now"),
+        ({"content of the scene": "other"}, "content of the scene (other, now"),
+        ({"processor": "vax"}, "processor (vax, now"),
+    ],
+)
+def test_a_run_does_not_go_on_where_what_made_it_has_changed(part, changed, said):
+    found = restart.read_state(part)
+    prepared = runner.prepared_again(found)
+    restart.check_alike(found, prepared)
+    with pytest.raises(FileError) as refusal:
+        runner.execute(prepared, restart=found._replace(about=found.about | changed))
+    assert said in str(refusal.value)
+
+
+def test_a_run_that_goes_on_keeps_its_settings(part):
+    for words in (["--seed", "3"], ["--set", "duration=3"], ["--engine", "dsmc"], ["--save-molecules"]):
+        assert "cannot change a run that goes on" in refused("run", "--resume", part, *words)
+    assert "not for temperature" in refused("run", "temperature", "--resume", part)
+    assert "needs a run that is there" in refused("run", "temperature", "--extend", "2")
+    assert read(part).attrs["atmosbox_status"] == "interrupted"
+
+
+def test_what_holds_no_state_or_a_damaged_one_is_refused(part, tmp_path):
+    runner.run("elastic-collisions", duration="2 s", out=tmp_path / "done.nc")
+    assert "--keep-state" in refused("run", "--resume", tmp_path / "done.nc")
+    with netCDF4.Dataset(part) as file:
+        whole = np.asarray(file.variables["atmosbox_state"][:])
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+    damages = {
+        "empty": whole[:0],
+        "cut": whole[: len(whole) // 2],
+        "head": np.concatenate([whole[:30], whole[31:]]),
+        "nested": np.frombuffer((3000).to_bytes(8, "little") + b"[" * 3000, np.uint8),
+        "objects": np.frombuffer(bytes(whole).replace(b'"<f8"', b'"|O" ', 1), np.uint8),
+    }
+    for name, bytes_ in damages.items():
+        odd = tmp_path / f"{name}.part.nc"
+        with netCDF4.Dataset(odd, "w") as file:
+            file.setncatts(attributes)
+            file.createDimension("byte", len(bytes_))
+            file.createVariable("atmosbox_state", "u1", ("byte",))[:] = bytes_
+        assert "damaged" in refused("run", "--resume", odd), name
+
+
+def test_the_state_of_a_scene_of_ones_own_needs_its_path_typed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    source = Path(sys.modules["scenarios.elastic_collisions" if "scenarios.elastic_collisions" in sys.modules
+                              else "atmosbox.scenarios.elastic_collisions"].__file__)  # fmt: skip
+    Path("mine.py").write_text(source.read_text(encoding="utf-8"), encoding="utf-8")
+    prepared = runner.prepare("./mine.py", {"duration": "5 s"})
+    with pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=Checkpoint("x.nc"), progress=stopping([0.5]))
+    assert "atmosbox run ./mine.py --resume x.part.nc" in refused("run", "--resume", "x.part.nc")
+    assert CliRunner().invoke(app, ["run", "./mine.py", "--resume", "x.part.nc"]).exit_code == 0
+    Path("x.nc").unlink()
+
+
+def test_a_run_whose_instruments_keep_what_no_file_can_hold_says_so_and_saves_its_frames(tmp_path, monkeypatch):
+    prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
+    true = runner.build
+
+    def odd(prepared):
+        setup = true(prepared)
+        setup.instruments[0].seen = {1, 2}
+        return setup
+
+    monkeypatch.setattr(runner, "build", odd)
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    checkpoint = Checkpoint(tmp_path / "x.nc")
+    with pytest.warns(UserWarning, match=r"instrument 1\.seen"), pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
+    assert read(checkpoint.part).sizes["elapsed_time"] > 0
+    assert "holds no state" in refused("run", "--resume", checkpoint.part)
+
+
+def test_a_run_too_short_for_its_headlines_is_kept_nevertheless(tmp_path, monkeypatch):
+    prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
+
+    def singular(dataset, settings):
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(prepared.module, "headlines", singular)
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    checkpoint = Checkpoint(tmp_path / "x.nc", every_seconds=0.0)
+    with pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=checkpoint, progress=stopping([0.5]))
+    assert read(checkpoint.part).sizes["elapsed_time"] > 2
+    with pytest.raises(np.linalg.LinAlgError):
+        runner.execute(prepared)
+
+
+def test_a_finished_run_goes_on_for_longer(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["--set", "molecules=60", "--set", "duration=0.2ns"]
+    assert CliRunner().invoke(app, ["run", "temperature", *words, "--keep-state", "--out", "x.nc"]).exit_code == 0
+    assert "give --extend 2" in refused("run", "--resume", "x.nc", "--force")
+    assert CliRunner().invoke(app, ["run", "--resume", "x.nc", "--extend", "3", "--out", "long.nc"]).exit_code in (0, 3)
+    short, long = read("x.nc"), read("long.nc")
+    frames = short.sizes["elapsed_time"]
+    assert long.sizes["elapsed_time"] == 3 * frames
+    for name in ("elapsed_time", "air_temperature", "collision_count"):
+        assert long[name].values[:frames].tobytes() == short[name].values.tobytes()
+    assert (np.diff(long.collision_count) >= 0).all()
+    assert long.attrs["history"].count("\n") == 1
+    assert json.loads(long.attrs["atmosbox_parameters"])["longer"] == 3
+
+
+def test_an_ascent_that_has_an_end_is_not_extended(tmp_path):
+    prepared = runner.prepare("lifting-dry", {"molecules": 50, "ascent": 50.0})
+    with pytest.raises(SettingError, match="has an end"):
+        runner.execute(prepared, longer=2)
