@@ -12,6 +12,7 @@ and the answer of theory is laid beside it::
     ab.compare(run, ab.run("lifting-dry", temperature=30))   # two runs side by side
     ab.sweep("condensation", {"temperature": [0, 10, 20]})   # how a number depends on a setting
     ab.open("run.nc")                               # what was saved
+    ab.resume("run.part.nc")                        # a run that was stopped or killed goes on
 
 Importing `atmosbox` is quick: the engine and the libraries of the data are imported when a call needs them.
 
@@ -26,7 +27,7 @@ from typing import Any
 
 from atmosbox.version import __version__
 
-__all__ = ["__version__", "compare", "open", "plot", "run", "scenes", "show", "sweep"]
+__all__ = ["__version__", "compare", "open", "plot", "resume", "run", "scenes", "show", "sweep"]
 
 
 def __getattr__(name: str) -> Any:

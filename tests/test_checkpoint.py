@@ -74,7 +74,7 @@ def test_a_checkpoint_refuses_a_bad_place_before_the_run(tmp_path):
     assert Checkpoint(tmp_path / "run.nc", force=True).finish(run_so_far(5)) == tmp_path / "run.nc"
 
 
-def test_a_checkpoint_waits_and_takes_less_than_a_twentieth_of_the_time(tmp_path, monkeypatch):
+def test_a_checkpoint_waits_and_takes_less_than_a_fiftieth_of_the_time(tmp_path, monkeypatch):
     clock = SimpleNamespace(now=100.0, writing=0.0, written=[])
     checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=2.0, clock=lambda: clock.now)
 
@@ -92,7 +92,7 @@ def test_a_checkpoint_waits_and_takes_less_than_a_twentieth_of_the_time(tmp_path
     gaps = np.diff(clock.written)
     assert clock.written[0] == pytest.approx(2.0, abs=0.02)
     assert gaps.min() >= 2.0
-    assert 0.02 * 1000.0 < clock.writing < 0.05 * 1000.0
+    assert 0.008 * 1000.0 < clock.writing < 0.02 * 1000.0
     assert 1000.0 - clock.written[-1] < 100.0
 
 

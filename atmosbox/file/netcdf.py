@@ -9,6 +9,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from atmosbox.errors import FileError, shown
 from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_whole
 from atmosbox.file.provenance import FORMAT
@@ -18,7 +21,7 @@ from atmosbox.version import __version__
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["STATE", "image", "read", "write"]
+__all__ = ["STATE", "image", "read", "read_state", "write"]
 
 STATE = "atmosbox_state"
 """The variable that holds the state of a run which can go on; no reader of its numbers needs it."""
@@ -145,3 +148,23 @@ def read(path: AnyPath) -> xr.Dataset:
         raise
     except (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError) as error:
         raise FileError(f"{source} is no netCDF file, or a damaged one: {fix}.") from error
+
+
+def read_state(path: AnyPath) -> NDArray[np.uint8] | None:
+    """Return the bytes of the state that a file which `read` has read holds; None if it holds none.
+
+    Examples
+    --------
+    >>> import tempfile, xarray
+    >>> from atmosbox.file.provenance import global_attributes
+    >>> attributes = global_attributes({"scene": "temperature"}, title="A box", command="a test")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     print(read_state(write(xarray.Dataset(attrs=attributes), f"{folder}/run.nc")))
+    None
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        if STATE not in file.variables:
+            return None
+        return np.array(file.variables[STATE][:], np.uint8)

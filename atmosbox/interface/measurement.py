@@ -11,7 +11,7 @@ from atmosbox.interface.wording import in_python
 if TYPE_CHECKING:
     from atmosbox.interface.run_dataset import RunDataset
 
-__all__ = ["open", "run"]
+__all__ = ["open", "resume", "run"]
 
 
 def run(
@@ -102,6 +102,56 @@ def run(
                 **settings,
             )
         )
+
+
+def resume(
+    path: str | os.PathLike[str],
+    *,
+    scene: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    extend: int = 1,
+    force: bool = False,
+    progress: Show | bool | None = None,
+) -> RunDataset:
+    """Go on with a run that was stopped or killed, bit for bit as if it never had been.
+
+    Parameters
+    ----------
+    path
+        What it left: ``NAME.part.nc``. Or the file of a finished run, made with ``atmosbox run --keep-state``.
+    scene
+        The path of the scene, if it is one of your own: no file makes atmosbox run a program.
+    out
+        File of the finished run; by default the one that it would have had.
+    extend
+        How many times as long as its scene says the run shall last, in frames of the same length.
+    force
+        Whether a file of that name may be replaced.
+    progress
+        As in `run`.
+
+    Returns
+    -------
+    xarray.Dataset
+        All that was measured since the run began.
+
+    Raises
+    ------
+    FileError
+        If the file holds no state, or version, sources of the engine, scene or processor are others than then.
+
+    Examples
+    --------
+    >>> import atmosbox as ab
+    >>> ab.resume("no such file.part.nc")
+    Traceback (most recent call last):
+    atmosbox.errors.FileError: no such file.part.nc does not exist: check the name and the folder.
+    """
+    from atmosbox.interface.run_dataset import as_run
+    from atmosbox.simulation.runner import resume as go_on
+
+    with in_python(), progress_bar(os.fspath(path), progress) as show:
+        return as_run(go_on(path, scene=scene, out=out, extend=extend, force=force, progress=show))
 
 
 def open(path: str | os.PathLike[str]) -> RunDataset:

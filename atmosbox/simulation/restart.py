@@ -148,21 +148,15 @@ def read_state(path: str | Path) -> Restart:
     FileError
         If it is no file of a run, or holds no state, or a damaged one.
     """
-    import netCDF4
+    from atmosbox.file import netcdf
 
-    from atmosbox.file.netcdf import STATE, read
-
-    found = read(path)
-    with netCDF4.Dataset(path) as file:
-        if STATE not in file.variables:
-            status = found.attrs.get("atmosbox_status")
-            fix = (
-                "a run made with --keep-state can go on, so type atmosbox run --keep-state"
-                if status == "complete"
-                else "type atmosbox run --from with it to begin anew"
-            )
-            raise FileError(f"{path} holds no state of its run, so that it cannot go on: {fix}.")
-        content = np.asarray(file.variables[STATE][:], np.uint8)
+    found = netcdf.read(path)
+    content = netcdf.read_state(path)
+    if content is None:
+        fix = "type atmosbox run --from with it to begin anew"
+        if found.attrs.get("atmosbox_status") == "complete":
+            fix = "a run made with --keep-state can go on, so type atmosbox run --keep-state"
+        raise FileError(f"{path} holds no state of its run, so that it cannot go on: {fix}.")
     try:
         size = int.from_bytes(content[:8].tobytes(), "little")
         head = json.loads(content[8 : 8 + size].tobytes())

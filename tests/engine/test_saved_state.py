@@ -165,3 +165,21 @@ def test_a_driver_that_cannot_be_saved_is_named():
 def test_a_state_is_not_taken_for_that_of_another_box():
     with pytest.raises(RefusedError):
         BOXES["spheres"]().restore(BOXES["lift"]().state())
+
+
+def test_numbers_of_numpy_stay_apart():
+    class Odd:
+        interval = 1.0
+
+        def __init__(self, *numbers):
+            self.one, self.two, self.three = numbers
+
+        def velocity(self, parcel):
+            return 0.0
+
+    def box(*numbers):
+        return ParcelSet(*gas(), length=(12.0,) * 3, walls=(*SMOOTH[:5], Piston()), driver=Odd(*numbers))
+
+    twin = box(0.0, 0.0, 0)
+    twin.restore(box(np.float64(1.5), np.float64(2.5), np.int64(7)).state())
+    assert (twin._driver.one, twin._driver.two, twin._driver.three) == (1.5, 2.5, 7)

@@ -61,6 +61,7 @@ class _Memory:
     def __init__(self) -> None:
         self.pieces: Pieces = {}
         self._names: dict[tuple[int, int], str] = {}
+        self._owners: list[NDArray[Any]] = []  # as long as they are there, no other array has their place
 
     def view(self, array: NDArray[Any], path: str) -> _View:
         """Return where an array lies, and copy its piece of memory if that is new."""
@@ -71,6 +72,7 @@ class _Memory:
         if (low, high) not in self._names:
             self._names[low, high] = path
             self.pieces[path] = _bytes(owner)
+            self._owners.append(owner)
         return _View(
             piece=self._names[low, high],
             line=low % _LINE,
