@@ -8,7 +8,12 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # a docstring needs no compiler
 
+import numba  # noqa: E402, F401
+
 import atmosbox  # noqa: E402
+
+del os.environ["NUMBA_DISABLE_JIT"]  # but notebooks do, which run in a process of their own
+os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE.parent), os.environ.get("PYTHONPATH", "")])
 
 project = "atmosbox"
 author = "The atmosbox developers"
@@ -18,7 +23,7 @@ language = "en"
 smartquotes = False  # the pages have the signs that they mean, and `--set` is no dash
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.linkcode",
     "numpydoc",
@@ -30,6 +35,14 @@ extensions = [
 ]
 exclude_patterns = ["figures", "examples", "extension", "jobs"]
 nitpicky = True
+
+# A notebook is kept without its output: the site runs it, and a cell that fails is a failure of the site.
+nb_execution_mode = "force"
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_execution_show_tb = True
+nb_merge_streams = True
+nb_number_source_lines = False
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3

@@ -120,7 +120,7 @@ class Comparison:
         """Return table and figure."""
         picture = base64.b64encode(self.figure._repr_png_()).decode()  # type: ignore[attr-defined]
         return (
-            f'<pre style="line-height:1.35;overflow-x:auto">{html.escape(self.table)}</pre>'
+            f'<pre style="line-height:1.35;font-size:80%;overflow-x:auto">{html.escape(self.table)}</pre>'
             f'<img alt="The graphs of the runs, laid over each other." src="data:image/png;base64,{picture}">'
         )
 

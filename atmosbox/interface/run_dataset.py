@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import html
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from atmosbox.scene.headline import Headline
 
 __all__ = ["RunDataset", "as_run"]
 
-_WIDTH = 100
+_WIDTH = 110
 
 
 class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
@@ -33,20 +33,37 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
 
     def __repr__(self) -> str:
         """Return the headline table, then what xarray says of the dataset."""
-        said = _said(self)
+        from atmosbox.text.report import headline_lines
+
         dataset = xr.Dataset.__repr__(self).replace("<xarray.RunDataset>", "<xarray.Dataset>", 1)
-        return "\n".join([*said, "", dataset]) if said else dataset
+        said = _said(self)
+        if said is None:
+            return dataset
+        return "\n".join([said.head, "", *headline_lines(said.headlines, _WIDTH), "", *said.notes, "", dataset])
 
     def _repr_html_(self) -> str:
         """Return the same for a notebook."""
+        from atmosbox.text.report import headline_cells
+
+        dataset = str(xr.Dataset._repr_html_(self)).replace("xarray.RunDataset", "xarray.Dataset")
         said = _said(self)
-        dataset = xr.Dataset._repr_html_(self).replace("xarray.RunDataset", "xarray.Dataset")
-        if not said:
+        if said is None:
             return dataset
-        head, *lines = said
-        text = html.escape("\n".join(lines).strip("\n"))
-        pre = f'<pre style="line-height:1.35;overflow-x:auto">{text}</pre>'
-        return f"<div><strong>{html.escape(head)}</strong>{pre}</div>{dataset}"
+        header, rows, notes = headline_cells(said.headlines)
+        lines = [_row("th", header), *(_row("td", row) for row in rows)] if rows else []
+        below = "<br>".join(map(html.escape, [*notes, *said.notes]))
+        return (
+            f'<div><strong>{html.escape(said.head)}</strong><table style="text-align:left;font-size:90%">'
+            f"{''.join(lines)}</table><small>{below}</small></div>{dataset}"
+        )
+
+
+class _Said(NamedTuple):
+    """What a run says of itself."""
+
+    head: str
+    headlines: tuple[Headline, ...]
+    notes: list[str]
 
 
 def as_run(dataset: xr.Dataset) -> RunDataset:
@@ -56,19 +73,28 @@ def as_run(dataset: xr.Dataset) -> RunDataset:
     return made  # type: ignore[return-value]
 
 
-def _said(dataset: xr.Dataset) -> Sequence[str]:
-    """Return what a run says of itself, one line each; nothing for what is not a single run."""
+def _row(tag: str, cells: list[str]) -> str:
+    """Return a row of a table as HTML; only its first column is broken into lines."""
+    made = []
+    for number, cell in enumerate(cells):
+        style = "text-align:left" + (";white-space:nowrap" if number else "")
+        made.append(f'<{tag} style="{style}">{html.escape(cell)}</{tag}>')
+    return f"<tr>{''.join(made)}</tr>"
+
+
+def _said(dataset: xr.Dataset) -> _Said | None:
+    """Return what a run says of itself; None for what is not a single run."""
     from atmosbox.errors import AtmosboxError
     from atmosbox.file.provenance import parameters
     from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of
-    from atmosbox.text.report import headline_lines, ledger_line
+    from atmosbox.text.report import ledger_line
 
     if "atmosbox_headlines" not in dataset.attrs or {"member", "rung"} & set(dataset.dims):
-        return ()
+        return None
     try:
         made, headlines = parameters(dataset), headlines_of(dataset)
     except AtmosboxError:  # a part of a run, such as a single variable of it, has no headlines
-        return ()
+        return None
     settings = made.get("settings", {})
     facts = [f"{settings['molecules']:,} molecules"] if isinstance(settings.get("molecules"), int) else []
     facts += [f"seed {settings['seed']}"] if "seed" in settings else []
@@ -78,4 +104,4 @@ def _said(dataset: xr.Dataset) -> Sequence[str]:
     notes = [] if status == "complete" else [f"the run is {status}"]
     if dataset.sizes.get("elapsed_time", 0) and "ledger_residual" in dataset:
         notes.append(ledger_line(float(np.max(dataset["ledger_residual"].values)), LEDGER_LIMIT))
-    return [head, "", *headline_lines(headlines, _WIDTH), "", *notes]
+    return _Said(head, tuple(headlines), notes)

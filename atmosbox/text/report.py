@@ -78,6 +78,19 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
     temperature [degC]  17.9 ± 2.0  14.9    +3.0 (1.5σ)  4σ+0.5   yes
     allowed: 4 standard errors σ, by chance, + the known error of the model
     """
+    header, rows, notes = headline_cells(headlines)
+    lines = table(header, rows, width) if rows else []
+    return [*lines, *(line for note in notes for line in wrapped(note, width))]
+
+
+def headline_cells(headlines: Sequence[Headline]) -> tuple[list[str], list[list[str]], list[str]]:
+    """Return the same as cells: the names of the columns, one row for each headline, and the sentences below them.
+
+    Examples
+    --------
+    >>> headline_cells([])[2]
+    ['No frame is late enough for an average.']
+    """
     rows: list[list[str]] = []
     notes: dict[str, list[str]] = {}
     for headline in headlines:
@@ -100,14 +113,15 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
         unit = "" if headline.display_unit in ("", "1") else f" [{headline.display_unit}]"
         found = measurement(value, error) if error > 0.0 else number(value, decimals, power)
         rows.append([headline.label + unit, found, theory, misfit, allowed, headline.verdict or "-"])
+    header = ["quantity", "measured", "theory", "misfit", "allowed", "within error?"]
     if not rows:
-        return ["No frame is late enough for an average."]
-    lines = table(["quantity", "measured", "theory", "misfit", "allowed", "within error?"], rows, width)
+        return header, rows, ["No frame is late enough for an average."]
+    said = []
     if any("σ" in row[4] for row in rows):
         known = ", + the known error of the model" if any("+" in row[4] for row in rows) else ""
-        lines += wrapped(f"allowed: {CHANCE_LIMIT:g} standard errors σ, by chance{known}", width)
-    told = [f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}for {reason}." for reason, which in notes.items()]
-    return [*lines, *(line for note in told for line in wrapped(note, width))]
+        said.append(f"allowed: {CHANCE_LIMIT:g} standard errors σ, by chance{known}")
+    said += [f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}for {reason}." for reason, which in notes.items()]
+    return header, rows, said
 
 
 def ledger_line(ledger: float, limit: float) -> str:

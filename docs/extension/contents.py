@@ -10,11 +10,11 @@ from pathlib import PurePosixPath
 from extension.source import PAGES
 from sphinx.application import Sphinx
 
-LISTS = ("index", "api/index")
+LISTS = ("index", "api/index", "notebooks/index")
 """Pages whose links are a table of contents."""
 
 HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
-PAGE = re.compile(r"\]\(([\w./-]+\.(?:md|rst))\)")
+PAGE = re.compile(r"\]\(([\w./-]+\.(?:md|rst|ipynb))\)")
 
 
 def sections(text: str) -> dict[str, list[str]]:
