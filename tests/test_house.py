@@ -92,7 +92,7 @@ def test_every_library_the_package_imports_is_a_dependency():
     carried = {"llvmlite", "rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
     extras = {
         re.match(r"[\w-]+", line).group().lower()
-        for extra in ("movie", "cluster")
+        for extra in ("movie", "cluster", "export")
         for line in project["optional-dependencies"][extra]
     }
     assert used - carried == declared | extras

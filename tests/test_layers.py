@@ -28,7 +28,7 @@ LAYERS = {
     "engine": Layer("", "numpy numba llvmlite"),
     "errors": Layer(),
     "theory": Layer("", "numpy scipy", lazily="metpy"),
-    "file": Layer("version errors", "numpy xarray netCDF4"),
+    "file": Layer("version errors", "numpy xarray netCDF4", lazily="gsd"),
     "scenarios": Layer("errors"),
     "scene": Layer("engine errors theory", "numpy scipy pydantic", lazily="metpy pint xarray"),
     "a scenario": Layer("engine errors theory scene", "numpy", lazily="xarray"),

@@ -6,10 +6,10 @@ Each command is one file: its options on top, below what it does. They share
 `option`       the options that several commands have
 `request`      where the settings of a run come from: the command line, a `config` file, an earlier run
 `output_name`  the file that is written where no name is given
-`report`       what comes out, as text and as JSON; `expectation` the errors that were to be expected
-`table`        columns and numbers
-`progress`     the bar
-`terminal`     streams, and how an error ends a command
+`expectation`  the errors that were to be expected
+`terminal`     how an error ends a command
+
+What comes out, as text and as JSON, its tables, streams and the bar stand in `atmosbox.text`, which Python uses too.
 
 The result goes to stdout and everything else to stderr. The exit status is 0 if all went well, 1 if something
 failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-C and 143 after a request to
@@ -24,14 +24,15 @@ import warnings
 from atmosbox.cli.application import app
 
 # In the order in which ``--help`` lists them.
-from atmosbox.cli import list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare, sheet, check  # isort: skip
-from atmosbox.cli import prepare  # isort: skip
+from atmosbox.cli import list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare  # isort: skip
+from atmosbox.cli import export, sheet, check, prepare  # isort: skip
 
 __all__ = [
     "animate",
     "app",
     "check",
     "compare",
+    "export",
     "info",
     "list_scenes",
     "live",

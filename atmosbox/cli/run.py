@@ -57,7 +57,8 @@ def run(
     out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder]")] = None,
     force: Force = False,
     save_molecules: Annotated[
-        bool, typer.Option("--save-molecules", help="Save where every molecule is, in every frame.")
+        bool,
+        typer.Option("--save-molecules", help="Save place and velocity of every molecule, in every frame."),
     ] = False,
     resume: Annotated[
         str | None,

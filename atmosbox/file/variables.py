@@ -194,7 +194,7 @@ VARIABLES: dict[str, Variable] = {
     **_declared(_MOLECULE, ("disc_diameter", "m", "diameter of the disc"), ledger=True),
     # Molecules, on request; one that condensed has no position
     **_declared(_PATH, ("molecule_position", "m", "position of the molecule"),
-                cell_methods=_POINT, dtype="f4"),
+                ("molecule_velocity", "m s-1", "velocity of the molecule"), cell_methods=_POINT, dtype="f4"),
     **_declared(_PATH[:2], ("molecule_speed", "m s-1", "speed of the molecule"),
                 cell_methods=_POINT, dtype="f4"),
     **_declared(_MOLECULE, ("species", "", "species of the molecule"),

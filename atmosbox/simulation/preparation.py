@@ -88,7 +88,7 @@ def prepare(
         A wish that picks the engine and the settings that trade accuracy for time, as
         `atmosbox.simulation.accuracy.parse` reads it; what is in `settings` stays as it is.
     save_molecules
-        Whether position and speed of all molecules are saved in every frame.
+        Whether position and velocity of all molecules are saved in every frame.
 
     Returns
     -------
@@ -178,7 +178,7 @@ def build(prepared: Prepared) -> Setup:
         raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
     if prepared.save_molecules:
         molecules = setup.parcel.present.size
-        needed = 16.0 * molecules * setup.frames
+        needed = 28.0 * molecules * setup.frames  # place, velocity and speed in single precision
         if needed > _MEMORY:
             raise SettingError(
                 "molecules", molecules, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",

@@ -46,15 +46,15 @@ def wall_laws(parcel: Any) -> tuple[str, ...]:
 
 
 class Molecules:
-    """Places and speeds of all molecules and the box they are in, for ``--save-molecules``.
+    """Places and velocities of all molecules and the box they are in, for ``--save-molecules``.
 
-    A molecule that is in the liquid has neither place nor speed, and reads NaN. Where there is water, the readings say
-    which molecules are water, and where drops are that can be seen.
+    A molecule that is in the liquid has neither place nor velocity, and reads NaN. Where there is water, the readings
+    say which molecules are water, and where drops are that can be seen.
     """
 
     def __init__(self) -> None:
         self._position: list[Single] = []
-        self._speed: list[Single] = []
+        self._velocity: list[Single] = []
         self._sides: list[Array] = []
         self._drops: list[tuple[Array, Array]] = []
         self._mass = np.zeros(0)
@@ -69,11 +69,11 @@ class Molecules:
         """Keep all molecules, in single precision, the drops and how large the box is."""
         present = parcel.present
         position = np.full((present.size, 3), np.nan, np.float32)
-        speed = np.full(present.size, np.nan, np.float32)
+        velocity = np.full((present.size, 3), np.nan, np.float32)
         position[present] = snapshot.position
-        speed[present] = np.sqrt(np.sum(snapshot.velocity**2, axis=1))
+        velocity[present] = snapshot.velocity
         self._position.append(position)
-        self._speed.append(speed)
+        self._velocity.append(velocity)
         self._sides.append(np.array(parcel.length))
         if hasattr(parcel, "drops"):
             self._drops.append(parcel.drops()[:2])
@@ -84,7 +84,7 @@ class Molecules:
             self._mass[present], self._diameter[present] = parcel.mass, parcel.diameter
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return places and speeds, what each molecule is, and the box."""
+        """Return places, velocities and speeds, what each molecule is, and the box."""
         if not self._position:
             return Readings()
         mass, diameter = self._mass * scale.mass, self._diameter * scale.length
@@ -93,9 +93,11 @@ class Molecules:
         if hidden.any():
             mass[hidden] = WATER.molecule_mass
             diameter[hidden] = np.nanmean(diameter[water] if not hidden[water].all() else diameter)
+        velocity = np.array(self._velocity) * np.float32(scale.velocity)
         found = Readings(
             molecule_position=np.array(self._position) * np.float32(scale.length),
-            molecule_speed=np.array(self._speed) * np.float32(scale.velocity),
+            molecule_velocity=velocity,
+            molecule_speed=np.sqrt(np.sum(velocity**2, axis=2)),
             molecule_mass=mass,
             molecule_diameter=diameter,
             box_side=np.array(self._sides) * scale.length,

@@ -1,0 +1,75 @@
+"""The command ``export``: a run for other programs."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import Force, RunFile, Verbose, out_option
+from atmosbox.cli.output_name import beside
+from atmosbox.cli.terminal import guarded, say
+from atmosbox.text.progress import progress
+
+
+class Exported(StrEnum):
+    """The formats of other programs."""
+
+    extxyz = "extxyz"
+    gsd = "gsd"
+    csv = "csv"
+
+
+@app.command(
+    epilog=examples(
+        "atmosbox export temperature.nc --format extxyz",
+        "atmosbox export temperature.nc -o box.gsd",
+        "atmosbox export lifting-dry.nc --format csv",
+    )
+)
+@guarded
+def export(
+    file: RunFile,
+    out: Annotated[str | None, out_option("The file.  [default: beside FILE, by its name]")] = None,
+    format: Annotated[
+        Exported | None,
+        typer.Option(
+            help="extxyz and gsd hold the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."
+        ),
+    ] = None,
+    force: Force = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write a run for OVITO, VMD or a spreadsheet.
+
+    Molecules are there if the run kept them: atmosbox run SCENE --save-molecules. CSV is written as one file for each
+    thing that the numbers run along: NAME-elapsed_time.csv, NAME-height.csv, and NAME-headlines.csv.
+    """
+    from atmosbox.file.netcdf import read
+    from atmosbox.file.output_path import check_writable, named, write_whole
+
+    dataset = read(file)
+    wanted = None if format is None else format.value
+    path = beside([file], wanted or "extxyz") if out is None else Path(out)
+    kinds = tuple(each.value for each in Exported)
+    if wanted == "csv" or (wanted is None and path.suffix.lower() == ".csv"):
+        from atmosbox.file.spreadsheet import tables
+
+        stem = path.with_suffix("") if path.suffix.lower() == ".csv" else path
+        made = tables(dataset)
+        paths = [check_writable(stem.with_name(f"{stem.name}-{name}.csv"), force) for name in made]
+        for place, content in zip(paths, made.values(), strict=True):
+            write_whole(place, content)
+        say("\n".join(map(str, paths)))
+        return
+    place, kind = named(path, wanted, kinds, force=force, what="box")
+    with progress("export", quiet=False) as show:
+        show(0.0, "writing the molecules")
+        from atmosbox.file.trajectory import extended_xyz, gsd_file
+
+        content = extended_xyz(dataset) if kind == "extxyz" else gsd_file(dataset)
+    write_whole(place, content)
+    say(str(place))

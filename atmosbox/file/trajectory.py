@@ -1,0 +1,166 @@
+"""The molecules of a saved run for programs that show trajectories: OVITO and VMD.
+
+Extended XYZ is text that both read, and ASE. GSD is a packed file of the HOOMD family. Both are written in the units of
+small things where the box is small, in SI where it is a column of kilometres.
+"""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.errors import FileError
+from atmosbox.file.molecules import Molecules, molecules
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["extended_xyz", "gsd_file"]
+
+_SMALL = 1e-6  # m; a box that is larger is written in metres
+_DALTON = 1.66053906892e-27  # kg, CODATA 2022
+_NAMES = ("N", "O")  # for a molecule of air and one of water: readers allow only names of elements
+
+
+class _Units(NamedTuple):
+    """What the numbers of a trajectory are multiplied by, and what its units are then called."""
+
+    length: float
+    velocity: float
+    mass: float
+    names: str
+
+
+def _units(held: Molecules) -> _Units:
+    """Return the units for a box: angstrom, angstrom per picosecond and dalton, or SI."""
+    if float(held.side.max()) < _SMALL:
+        return _Units(1e10, 1e-2, 1.0 / _DALTON, "angstrom angstrom/ps dalton")
+    return _Units(1.0, 1.0, 1.0, "m m/s kg")
+
+
+def _velocity(dataset: xr.Dataset, held: Molecules) -> NDArray[Any]:
+    """Return the velocities, or refuse a run that was saved with speeds alone."""
+    name = "disc_velocity" if held.discs else "molecule_velocity"
+    if name not in dataset:
+        source = dataset.encoding.get("source") or "The run"
+        raise FileError(f"{source} holds speeds and no velocities, as atmosbox once saved them: run the scene again.")
+    found: NDArray[Any] = dataset[name].transpose("elapsed_time", "molecule", "axis").values
+    return found
+
+
+def _time(dataset: xr.Dataset) -> NDArray[Any]:
+    """Return the times of the frames in picoseconds."""
+    scale = {"s": 1e12, "ns": 1e3, "ps": 1.0}[str(dataset["elapsed_time"].attrs["units"])]
+    return np.asarray(dataset["elapsed_time"].values) * scale
+
+
+def extended_xyz(dataset: xr.Dataset) -> bytes:
+    """Return the molecules of a run as extended XYZ, one frame after the other.
+
+    A molecule of air is called N and one of water O, since readers allow only names of elements. One that is in the
+    liquid at a time is left out of that frame; its ``id`` stays its own. The second line of each frame has the box as
+    ``Lattice``, the ``Time`` in picoseconds, which sides are periodic, and the units.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A run with its molecules.
+
+    Returns
+    -------
+    bytes
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the run holds no molecules, or no velocities.
+
+    References
+    ----------
+    https://github.com/libAtoms/extxyz
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.runner import run
+    >>> lines = extended_xyz(run("elastic-collisions", duration="2 s", molecules=2)).decode().splitlines()
+    >>> lines[0], lines[1].partition(" Properties=")[2].split()[0]
+    ('2', 'species:S:1:pos:R:3:velo:R:3:mass:R:1:radius:R:1:id:I:1')
+    """
+    held = molecules(dataset)
+    velocity, unit = _velocity(dataset, held), _units(held)
+    names = np.array([_NAMES[int(wet)] for wet in (np.zeros(len(held.mass)) if held.water is None else held.water)])
+    periodic = " ".join("T" if held.walls[axis] == "periodic" else "F" for axis in (0, 2, 4))
+    mass, radius = held.mass * unit.mass, 0.5 * held.diameter * unit.length
+    text = io.StringIO()
+    for frame, time in enumerate(_time(dataset)):
+        there = np.flatnonzero(np.isfinite(held.position[frame, :, 0]))
+        x, y, z = (f"{side:.9g}" for side in held.side[frame] * unit.length)
+        text.write(
+            f'{len(there)}\nLattice="{x} 0 0 0 {y} 0 0 0 {z}" '
+            f"Properties=species:S:1:pos:R:3:velo:R:3:mass:R:1:radius:R:1:id:I:1 "
+            f'Time={time:.9g} pbc="{periodic}" units="{unit.names}"\n'
+        )
+        place, motion = held.position[frame] * unit.length, velocity[frame] * unit.velocity
+        for k in there:
+            numbers = " ".join(f"{number:.7g}" for number in (*place[k], *motion[k], mass[k], radius[k]))
+            text.write(f"{names[k]} {numbers} {k + 1}\n")
+    return text.getvalue().encode()
+
+
+def gsd_file(dataset: xr.Dataset) -> bytes:
+    """Return the molecules of a run as a GSD file of the schema ``hoomd``.
+
+    Its box has its middle at the origin, as that schema wants it. A molecule that is in the liquid is left out of the
+    frame.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A run with its molecules.
+
+    Returns
+    -------
+    bytes
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the run holds no molecules or no velocities, or the library ``gsd`` is not installed.
+
+    References
+    ----------
+    https://gsd.readthedocs.io/en/stable/schema-hoomd.html
+    """
+    held = molecules(dataset)
+    velocity, unit = _velocity(dataset, held), _units(held)
+    try:
+        import gsd.hoomd
+    except ImportError as error:
+        fix = "type pip install 'atmosbox[export]', or give --format extxyz"
+        raise FileError(f"A GSD file needs the library gsd: {fix}.") from error
+    water = np.zeros(len(held.mass), bool) if held.water is None else held.water
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.gsd"
+        with gsd.hoomd.open(name=str(path), mode="w") as file:
+            for frame in range(len(held.time)):
+                there = np.isfinite(held.position[frame, :, 0])
+                side = held.side[frame] * unit.length
+                made = gsd.hoomd.Frame()
+                made.configuration.step = frame
+                made.configuration.box = [*side, 0.0, 0.0, 0.0]
+                made.particles.N = int(there.sum())
+                made.particles.types = list(_NAMES)
+                made.particles.typeid = water[there].astype(np.uint32)
+                made.particles.position = held.position[frame][there] * unit.length - 0.5 * side
+                made.particles.velocity = velocity[frame][there] * unit.velocity
+                made.particles.mass = held.mass[there] * unit.mass
+                made.particles.diameter = held.diameter[there] * unit.length
+                file.append(made)
+        return path.read_bytes()

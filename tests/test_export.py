@@ -1,0 +1,149 @@
+"""Runs for other programs: molecules as extended XYZ and GSD, numbers as CSV, each read by a program of others."""
+
+import csv
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import atmosbox as ab
+from atmosbox.errors import FileError
+from atmosbox.file.spreadsheet import tables
+from atmosbox.file.trajectory import extended_xyz, gsd_file
+
+DALTON = 1.66053906892e-27
+
+
+@pytest.fixture(scope="module")
+def box():
+    return ab.run("temperature", molecules=50, duration="2 ns", save_molecules=True)
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    return ab.run("condensation", molecules=200, duration="2 ns", save_molecules=True)
+
+
+@pytest.fixture(scope="module")
+def column():
+    return ab.run("atmosphere", molecules=60, duration=5, save_molecules=True)
+
+
+def with_ase(content):
+    import ase.io
+
+    return ase.io.read(io.StringIO(content.decode()), index=":", format="extxyz")
+
+
+def with_gsd(content, tmp_path):
+    import gsd.hoomd
+
+    path = tmp_path / "run.gsd"
+    path.write_bytes(content)
+    return gsd.hoomd.open(str(path))
+
+
+def test_velocities_are_saved_and_carry_the_kinetic_energy(box):
+    motion = box.molecule_velocity.astype(float)
+    energy = 0.5 * (box.molecule_mass * (motion**2).sum("axis")).sum("molecule")
+    np.testing.assert_allclose(energy, box.kinetic_energy, rtol=1e-5)
+    np.testing.assert_allclose(box.molecule_speed, np.sqrt((motion**2).sum("axis")), rtol=1e-6)
+    assert abs(float(motion.mean())) < 0.1 * float(box.molecule_speed.mean())
+
+
+def test_a_box_of_nanometres_is_read_by_ase_in_angstroms(box):
+    frames = with_ase(extended_xyz(box))
+    assert len(frames) == box.sizes["elapsed_time"]
+    for k in (0, -1):
+        np.testing.assert_allclose(frames[k].positions, 1e10 * box.molecule_position[k], rtol=1e-6)
+        np.testing.assert_allclose(frames[k].arrays["velo"], 1e-2 * box.molecule_velocity[k], rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(np.diag(frames[k].cell[:]), 1e10 * box.box_side[k], rtol=1e-8)
+    np.testing.assert_allclose(frames[0].arrays["mass"], box.molecule_mass / DALTON, rtol=1e-6)
+    assert frames[-1].info["Time"] == pytest.approx(2000.0)  # ps
+    assert not frames[0].pbc.any()
+
+
+def test_a_molecule_in_the_liquid_is_left_out_and_keeps_its_number(cloud):
+    present = np.isfinite(cloud.molecule_position.values[:, :, 0])
+    assert not present.all()
+    frames = with_ase(extended_xyz(cloud))
+    assert [len(frame) for frame in frames] == present.sum(axis=1).tolist()
+    for frame, there in zip(frames, present, strict=True):
+        assert frame.arrays["id"].tolist() == (np.flatnonzero(there) + 1).tolist()
+        assert [symbol == "O" for symbol in frame.symbols] == (cloud.species.values[there] == 1).tolist()
+
+
+def test_a_column_of_kilometres_is_in_si_and_says_so(column):
+    frame = with_ase(extended_xyz(column))[-1]
+    np.testing.assert_allclose(frame.positions, column.molecule_position[-1], rtol=1e-6)
+    assert frame.info["units"] == "m m/s kg"
+    assert frame.pbc.tolist() == [law == 1 for law in column.wall_law.values[::2]]
+
+
+@pytest.mark.parametrize("made", ["box", "cloud"])
+def test_gsd_holds_the_same_with_its_middle_at_the_origin(made, request, tmp_path):
+    run = request.getfixturevalue(made)
+    with with_gsd(gsd_file(run), tmp_path) as frames:
+        assert len(frames) == run.sizes["elapsed_time"]
+        last = frames[-1]
+        there = np.isfinite(run.molecule_position.values[-1, :, 0])
+        assert there.sum() == last.particles.N
+        side = 1e10 * run.box_side.values[-1]
+        np.testing.assert_allclose(last.configuration.box[:3], side, rtol=1e-6)
+        place = 1e10 * run.molecule_position.values[-1][there] - 0.5 * side
+        np.testing.assert_allclose(last.particles.position, place, atol=1e-3)
+        assert (np.abs(last.particles.position) <= 0.5 * side + 1e-3).all()
+        np.testing.assert_allclose(last.particles.velocity, 1e-2 * run.molecule_velocity.values[-1][there], rtol=1e-5)
+
+
+def test_a_spreadsheet_has_the_same_numbers_under_their_units(box):
+    made = {name: list(csv.reader(io.StringIO(text.decode()))) for name, text in tables(box).items()}
+    assert list(made) == ["headlines", "elapsed_time", "speed"] or set(made) == {"headlines", "elapsed_time", "speed"}
+    head, *body = made["elapsed_time"]
+    assert head[0] == "elapsed_time [ns]"
+    for title, values in (
+        ("air_temperature [K]", box.air_temperature),
+        ("wall_pressure z_low [Pa]", box.wall_pressure.sel(wall="z_low")),
+    ):
+        column = [float(row[head.index(title)]) for row in body]
+        np.testing.assert_array_equal(column, values.values)
+    assert not any("molecule_position" in title for title in head)
+    (row,) = [row for row in made["headlines"] if row[0] == "mean_temperature"]
+    assert float(row[2]) == float(box.mean_temperature)
+
+
+def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path):
+    ab.run("temperature", molecules=50, duration="1 ns", save_molecules=True, out=tmp_path / "box.nc")
+
+    def export(*words):
+        command = [sys.executable, "-m", "atmosbox", "export", "box.nc", *words]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+
+    assert export().stdout == "box.extxyz\n"
+    assert export("-o", "moving.gsd").stdout == "moving.gsd\n"
+    assert export("--format", "csv").stdout.split() == [
+        f"box-{name}.csv" for name in tables(ab.open(tmp_path / "box.nc"))
+    ]
+    again = export()
+    assert (again.returncode, again.stdout) == (2, "")
+    assert "add --force" in again.stderr
+    assert export("-o", "box.pdb").returncode == 2
+
+
+def test_a_run_without_molecules_or_velocities_says_what_to_do(box):
+    bare = ab.run("temperature", molecules=50, duration="1 ns")
+    with pytest.raises(FileError, match="--save-molecules"):
+        extended_xyz(bare)
+    with pytest.raises(FileError, match="speeds and no velocities"):
+        gsd_file(box.drop_vars("molecule_velocity"))
+
+
+def test_cf_xarray_finds_one_variable_for_a_standard_name(tmp_path):
+    import cf_xarray  # noqa: F401
+
+    for scene in ("lifting-dry", "atmosphere"):
+        run = ab.run(scene, molecules=60, **({"duration": 5} if scene == "atmosphere" else {}))
+        assert run.cf["air_temperature"].name == "air_temperature"
+        assert run.cf["air_pressure"].name == "air_pressure"

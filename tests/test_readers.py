@@ -1,0 +1,34 @@
+"""The page on other programs: what it shows in R and in MATLAB's language runs, where R and Octave can be had."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import atmosbox as ab
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "readers.md"
+
+
+def block(language):
+    (found,) = re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(found.splitlines()) <= 10
+    return found
+
+
+@pytest.mark.parametrize(
+    ("language", "program", "before", "suffix"),
+    [("r", "Rscript", "", ".R"), ("matlab", "octave-cli", "pkg load netcdf\ngraphics_toolkit gnuplot\n", ".m")],
+)
+def test_the_ten_lines_of_a_language_read_the_number_of_the_run(tmp_path, language, program, before, suffix):
+    text = block(language)
+    if shutil.which(program) is None:
+        pytest.skip(f"no {program}")
+    run = ab.run("lifting-dry", molecules=60, out=tmp_path / "lifting-dry.nc")
+    script = tmp_path / f"script{suffix}"
+    script.write_text(before + text, encoding="utf-8")
+    done = subprocess.run([program, str(script)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert f"{1000 * float(run.lapse_rate_of_the_first_kilometre):.2f} K/km" in done.stdout
