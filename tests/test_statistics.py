@@ -84,3 +84,12 @@ def test_too_few_values_have_no_error_bar(values, blocks, sentence):
 def test_kolmogorov_and_smirnovs_critical_values(level, critical):
     assert kolmogorov_smirnov_critical(1, level) == pytest.approx(critical, abs=5e-4)
     assert kolmogorov_smirnov_critical(400, level) == pytest.approx(critical / 20.0, abs=5e-5)
+
+
+@pytest.mark.parametrize("memory", [1e6, 1e12, 1e18])
+def test_a_run_much_shorter_than_its_memory_states_an_error_that_grows_as_the_root_of_it(memory):
+    """Of n blocks of a length L much less than the memory tau, the error of blocks times sqrt(3 tau / L)."""
+    series = np.random.default_rng(1).normal(size=400)
+    plain = float(block_average(series).standard_error)
+    found = float(block_average(series, memory=memory).standard_error)
+    assert found == pytest.approx(plain * np.sqrt(3.0 * memory / 20.0), rel=1e-3)

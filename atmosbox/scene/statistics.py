@@ -70,7 +70,9 @@ def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> B
         # the blocks scatter about the mean of this run, not about the true one
         lengths = length / memory * np.array([1.0, blocks])
         one, all_of_them = 1.0 + np.expm1(-lengths) / lengths
-        error = error / np.sqrt((blocks * one / all_of_them - 1.0) / (blocks - 1.0))
+        # of a run much shorter than its memory the digits of this would cancel
+        shown = (blocks * one / all_of_them - 1.0) / (blocks - 1.0) if lengths[1] > 1e-4 else lengths[0] / 3.0
+        error = error / np.sqrt(shown)
     return BlockAverage(means.mean(axis=0), error)
 
 

@@ -119,7 +119,7 @@ def warm_box(found: Findings) -> None:
             ["air is a mixture", f"mean speed of its gases over that of their mean mass: {1.0 + mixed:.4f}",
              f"the mean speed is {rounded(100.0 * mixed)} % too low"],
             ["quantum mechanics", f"wavelength {nm(wave(t))}; diameter {nm(sigma)}, distance {nm(n ** (-1 / 3))}",
-             f"$n\\Lambda^3$ = {rounded(n * wave(t) ** 3)}: no two molecules know of it but while they touch"],
+             f"$n\\Lambda^3$ = {rounded(n * wave(t) ** 3)}: it matters for two molecules only while they touch"],
             ["walls of molecules", f"Knudsen number {both(rounded(path / side) for side in boxes)}",
              "a molecule meets more walls than molecules, and what a wall sends back decides; a heat bath sends what "
              "a gas of its temperature would, which is exact in equilibrium"],
