@@ -75,9 +75,8 @@ def command(*words):
 # What is wished
 
 
-@pytest.mark.parametrize(
-    ("text", "wish"),
-    [
+def test_a_wish_is_a_target_or_the_largest_error():
+    cases = [
         ("sketch", TARGETS["sketch"]),
         (" Lecture ", TARGETS["lecture"]),
         ("0.5K", Wish("0.5K", kelvin=0.5)),
@@ -87,15 +86,13 @@ def command(*words):
         ("2%", Wish("2%", share=0.02, absolute=True)),
         ("2 %", Wish("2%", share=0.02, absolute=True)),
         ("100%", Wish("100%", share=1.0, absolute=True)),
-    ],
-)
-def test_a_wish_is_a_target_or_the_largest_error(text, wish):
-    assert parse(text) == wish
+    ]
+    for text, wish in cases:
+        assert parse(text) == wish
 
 
-@pytest.mark.parametrize(
-    ("text", "problem", "fix"),
-    [
+def test_what_is_no_wish_is_refused_with_what_to_type():
+    cases = [
         ("3 apples", "accuracy = 3 apples has an unknown unit", "give --accuracy 3K or --accuracy 3%."),
         ("3", "accuracy = 3 has no unit", "give --accuracy 3K or --accuracy 3%."),
         ("lectur", "is neither one of sketch, lecture, reference nor an error", "give --accuracy lecture."),
@@ -109,13 +106,12 @@ def test_a_wish_is_a_target_or_the_largest_error(text, wish):
         ("25degC", "is a temperature and not the error of one", "give --accuracy 25K."),
         ("0,5K", "is written with a comma", "give --accuracy 0.5K."),
         (0.5, "accuracy = 0.5 is not a text", "give --accuracy lecture"),
-    ],
-)
-def test_what_is_no_wish_is_refused_with_what_to_type(text, problem, fix):
-    with pytest.raises(SettingError) as caught:
-        parse(text)
-    assert problem in str(caught.value)
-    assert str(caught.value).endswith(fix) or fix in str(caught.value)
+    ]
+    for text, problem, fix in cases:
+        with pytest.raises(SettingError) as caught:
+            parse(text)
+        assert problem in str(caught.value)
+        assert str(caught.value).endswith(fix) or fix in str(caught.value)
 
 
 @given(st.text(max_size=30) | st.builds("{}{}".format, st.floats() | st.integers(), st.sampled_from(UNITS)))
@@ -150,9 +146,8 @@ def test_the_error_of_a_run_is_that_of_bias_noise_and_what_is_not_known_of_the_b
     assert ExpectedError("K", -2.0, 1.0, 2.0, 300.0).total == 3.0
 
 
-@pytest.mark.parametrize(
-    ("wish", "engine", "settings"),
-    [
+def test_the_cheapest_way_within_the_wish_is_picked():
+    cases = [
         ("3K", "classic:delta=0.8", {"duration": 1.0}),
         ("2.5K", "exact", {"duration": 1.0}),  # the bias counts: sqrt(2.5² + 0.5²) K is more
         ("1.9K", "exact", {"duration": 10.0}),
@@ -162,11 +157,10 @@ def test_the_error_of_a_run_is_that_of_bias_noise_and_what_is_not_known_of_the_b
         ("sketch", "classic:delta=0.8", {"duration": 1.0}),
         ("lecture", "exact", {"duration": 10.0}),
         ("reference", "exact", {}),
-    ],
-)
-def test_the_cheapest_way_within_the_wish_is_picked(wish, engine, settings):
-    picked = choose("temperature", wish, tables=TABLES)
-    assert (picked.way.engine, picked.way.settings, picked.met) == (engine, settings, True)
+    ]
+    for wish, engine, settings in cases:
+        picked = choose("temperature", wish, tables=TABLES)
+        assert (picked.way.engine, picked.way.settings, picked.met) == (engine, settings, True)
 
 
 def test_a_share_holds_for_temperatures_too():
@@ -207,13 +201,13 @@ def test_a_number_that_nothing_reaches_is_refused_with_the_best_and_its_cost():
         choose("temperature", "0.01%", tables=TABLES)
 
 
-@pytest.mark.parametrize("kelvin", [0.0951, 0.123456, 1.0, 9.99])
-def test_what_a_refusal_tells_to_type_is_granted(kelvin):
-    table = {"temperature": Table((), LABELS, (way(kelvin=kelvin),))}
-    with pytest.raises(SettingError) as caught:
-        choose("temperature", "0.01K", tables=table)
-    asked = caught.value.fix.removeprefix("give --accuracy ").partition(",")[0]
-    assert choose("temperature", asked, tables=table).met
+def test_what_a_refusal_tells_to_type_is_granted():
+    for kelvin in [0.0951, 0.123456, 1.0, 9.99]:
+        table = {"temperature": Table((), LABELS, (way(kelvin=kelvin),))}
+        with pytest.raises(SettingError) as caught:
+            choose("temperature", "0.01K", tables=table)
+        asked = caught.value.fix.removeprefix("give --accuracy ").partition(",")[0]
+        assert choose("temperature", asked, tables=table).met
 
 
 def test_a_target_that_nothing_reaches_is_answered_with_the_best():
@@ -336,13 +330,13 @@ def test_an_approximate_engine_without_a_measurement_says_so_and_the_exact_one_n
     assert expectation_lines(None, (), "exact", 80) == []
 
 
-@pytest.mark.parametrize("width", [20, 40, 80, 200])
-def test_the_expected_errors_are_shown_whole_at_every_width(width):
-    picked = choose("temperature", "sketch", tables=TABLES)
-    warm = Headline("mean_temperature", 202.25, 0.3, 200.0, 0.0, "", "K", "degC", "temperature")
-    words = " ".join(" ".join(expectation_lines(picked, (warm,), "classic:delta=0.8", width)).split())
-    for value in ("classic:delta=0.8, duration=1", "2.5 K", "+2.5 K ± 0 K", "0.5 K", "+2.2 K", "0.1 %"):
-        assert value in words
+def test_the_expected_errors_are_shown_whole_at_every_width():
+    for width in [20, 40, 80, 200]:
+        picked = choose("temperature", "sketch", tables=TABLES)
+        warm = Headline("mean_temperature", 202.25, 0.3, 200.0, 0.0, "", "K", "degC", "temperature")
+        words = " ".join(" ".join(expectation_lines(picked, (warm,), "classic:delta=0.8", width)).split())
+        for value in ("classic:delta=0.8, duration=1", "2.5 K", "+2.5 K ± 0 K", "0.5 K", "+2.2 K", "0.1 %"):
+            assert value in words
 
 
 # A bias that is known
@@ -352,9 +346,8 @@ def headline(value, **known):
     return Headline("t", value, 0.1, 300.0, 0.2, "the box is small", "K", "K", "temperature", **known)
 
 
-@pytest.mark.parametrize(
-    ("value", "known", "agrees"),
-    [
+def test_a_known_bias_excuses_a_misfit_to_its_side_alone():
+    cases = [
         (300.59, {}, True),
         (300.7, {}, False),
         (302.5, {"bias": 2.0}, True),
@@ -364,10 +357,9 @@ def headline(value, **known):
         (299.3, {"bias": -2.0}, True),
         (300.0, {"bias": 2.0}, True),
         (math.nan, {"bias": 2.0}, False),
-    ],
-)
-def test_a_known_bias_excuses_a_misfit_to_its_side_alone(value, known, agrees):
-    assert headline(value, **known).agrees is agrees
+    ]
+    for value, known, agrees in cases:
+        assert headline(value, **known).agrees is agrees
 
 
 def test_a_misfit_that_only_a_known_bias_excuses_is_told():

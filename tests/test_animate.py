@@ -81,10 +81,10 @@ def test_what_moves_smoothly_is_shown_at_twice_the_rate():
     assert pace(1000, smooth=True).fps == 2.0 * pace(1000).fps
 
 
-@pytest.mark.parametrize("wish", [{"fps": 0.0}, {"fps": float("nan")}, {"seconds": -1.0}, {"seconds": 1e9}])
-def test_a_pace_that_is_none_is_refused(wish):
-    with pytest.raises(SettingError, match="is not between"):
-        pace(100, **wish)
+def test_a_pace_that_is_none_is_refused():
+    for wish in [{"fps": 0.0}, {"fps": float("nan")}, {"seconds": -1.0}, {"seconds": 1e9}]:
+        with pytest.raises(SettingError, match="is not between"):
+            pace(100, **wish)
 
 
 def test_a_film_of_too_many_pictures_is_refused():
@@ -95,15 +95,15 @@ def test_a_film_of_too_many_pictures_is_refused():
 # The pictures
 
 
-@pytest.mark.parametrize("scene", ["temperature", "lifting-dry", "atmosphere", "elastic-collisions"])
-def test_pictures_have_their_size_and_change_with_the_clock(runs, scene):
-    with style(LOOK):
-        sheet = Sheet(runs[scene][0], LOOK, molecules(runs[scene][0]))
-        first, last = sheet.picture(0), sheet.picture(runs[scene][0].sizes["elapsed_time"] - 1)
-        again = sheet.picture(0)
-    assert first.shape == (450, 800, 3)
-    assert (first != last).any(axis=2).mean() > 0.005
-    assert (first == again).all()
+def test_pictures_have_their_size_and_change_with_the_clock(runs):
+    for scene in ["temperature", "lifting-dry", "atmosphere", "elastic-collisions"]:
+        with style(LOOK):
+            sheet = Sheet(runs[scene][0], LOOK, molecules(runs[scene][0]))
+            first, last = sheet.picture(0), sheet.picture(runs[scene][0].sizes["elapsed_time"] - 1)
+            again = sheet.picture(0)
+        assert first.shape == (450, 800, 3)
+        assert (first != last).any(axis=2).mean() > 0.005
+        assert (first == again).all()
 
 
 def test_molecules_are_where_the_file_says_and_their_colour_is_their_speed(runs):

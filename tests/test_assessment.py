@@ -166,9 +166,8 @@ PAIR = Extreme("pair", "two that pass", "…", pair)
 RIGHT = Verdict("right", "force", 0.0556, 0.0556, 0.002)
 
 
-@pytest.mark.parametrize(
-    ("parcel", "why"),
-    [
+def test_a_broken_engine_is_wrong():
+    cases = [
         (Loses, "of 2 molecules 1 are left"),
         (Leaves, "outside"),
         (Breeds, "velocity is not finite"),
@@ -179,13 +178,12 @@ RIGHT = Verdict("right", "force", 0.0556, 0.0556, 0.002)
         (Trips, "IndexError: 7 is out of bounds"),
         (Refuses, "refused, but the stored outcome is right: not today"),
         (Turns, "hangs"),
-    ],
-)
-def test_a_broken_engine_is_wrong(parcel, why):
-    assert examine(PAIR, Broken(Sound), RIGHT).verdict.outcome == "right"
-    verdict = examine(PAIR, Broken(parcel), RIGHT, limit=1.0).verdict
-    assert verdict.outcome == "wrong"
-    assert why in verdict.sentence
+    ]
+    for parcel, why in cases:
+        assert examine(PAIR, Broken(Sound), RIGHT).verdict.outcome == "right"
+        verdict = examine(PAIR, Broken(parcel), RIGHT, limit=1.0).verdict
+        assert verdict.outcome == "wrong"
+        assert why in verdict.sentence
 
 
 def test_an_engine_that_loses_water_is_wrong():
@@ -331,18 +329,16 @@ def test_check_says_by_how_much_an_engine_degrades():
     assert "degrades by -92 %" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
+def test_a_check_that_makes_no_sense_is_refused_with_a_sentence():
+    cases = [
         ([], "does not know what to verify: give the file of a run, or --extremes"),
         (["a.nc", "--extremes"], "--extremes is about the engines and not about a file"),
         (["a.nc", "--engine", "exact"], "--engine belongs to --extremes"),
         (["a.nc", "--all"], "--all belongs to --extremes"),
         (["--extremes", "--engine", "exakt"], "engine = exakt is not one of"),
         (["--extremes", "--only", "cradel"], "--only = cradel is no extreme: give --only cradle."),
-    ],
-)
-def test_a_check_that_makes_no_sense_is_refused_with_a_sentence(words, sentence):
-    result = check(*words)
-    assert result.exit_code == 2
-    assert sentence in result.stderr
+    ]
+    for words, sentence in cases:
+        result = check(*words)
+        assert result.exit_code == 2
+        assert sentence in result.stderr

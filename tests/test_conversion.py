@@ -42,6 +42,12 @@ TABLE = {
     "K km-1": ("K/km", "K/m"),
     "K/km": ("K/km", "K/m"),
     "J": ("joule", "joule"),
+    "zJ": ("zeptojoule", "joule"),
+    "J-1": ("1/joule", "1/joule"),
+    "zJ-1": ("1/zeptojoule", "1/joule"),
+    "s-1": ("1/second", "1/second"),
+    "ns-1": ("1/nanosecond", "1/second"),
+    "g m-3": ("g/m**3", "kg/m**3"),
     "kg": ("kilogram", "kilogram"),
     "g": ("gram", "kilogram"),
     "kg mol-1": ("kg/mol", "kg/mol"),
@@ -55,11 +61,11 @@ def registry():
     return pint.UnitRegistry()
 
 
-@pytest.mark.parametrize(("unit", "words"), TABLE.items())
-def test_the_units_of_the_table_are_those_of_pint(unit, words, registry):
-    for value in (0.0, 1.0, -40.0):
-        expected = registry.Quantity(value, words[0]).to(words[1]).magnitude
-        assert to_si(value, unit) == pytest.approx(expected, rel=1e-14, abs=1e-14)
+def test_the_units_of_the_table_are_those_of_pint(registry):
+    for unit, words in TABLE.items():
+        for value in (0.0, 1.0, -40.0):
+            expected = registry.Quantity(value, words[0]).to(words[1]).magnitude
+            assert to_si(value, unit) == pytest.approx(expected, rel=1e-14, abs=1e-14)
 
 
 @given(value=st.floats(-1e6, 1e6), unit=st.sampled_from([*TABLE, *LOOKED_UP]), difference=st.booleans())
@@ -74,9 +80,9 @@ def test_error_bars_in_degrees_have_no_offset():
     assert to_si(9.0, "degF", difference=True) == pytest.approx(5.0)
 
 
-@pytest.mark.parametrize("unit", ["blorp", "", "deg", "K K K 5", "delta_degC"])
-def test_a_unit_that_does_not_exist_is_refused(unit):
-    with pytest.raises(UnitError, match="is not known: give one such as"):
-        to_si(1.0, unit)
-    with pytest.raises(UnitError, match="is not known: give one such as"):
-        from_si(1.0, unit)
+def test_a_unit_that_does_not_exist_is_refused():
+    for unit in ["blorp", "", "deg", "K K K 5", "delta_degC"]:
+        with pytest.raises(UnitError, match="is not known: give one such as"):
+            to_si(1.0, unit)
+        with pytest.raises(UnitError, match="is not known: give one such as"):
+            from_si(1.0, unit)

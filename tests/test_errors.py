@@ -1,8 +1,6 @@
 import copy
 import pickle
 
-import pytest
-
 from atmosbox import errors
 from atmosbox.errors import (
     AtmosboxError,
@@ -48,11 +46,11 @@ def made(error):
     return error("The disk is full.")
 
 
-@pytest.mark.parametrize(("error", "builtin", "status"), TREE)
-def test_every_error_is_an_atmosbox_error_and_a_builtin_with_a_status(error, builtin, status):
-    assert issubclass(error, AtmosboxError)
-    assert issubclass(error, builtin)
-    assert error.exit_code == status
+def test_every_error_is_an_atmosbox_error_and_a_builtin_with_a_status():
+    for error, builtin, status in TREE:
+        assert issubclass(error, AtmosboxError)
+        assert issubclass(error, builtin)
+        assert error.exit_code == status
 
 
 def test_the_tree_here_and_in_the_docstring_is_complete():
@@ -62,21 +60,21 @@ def test_the_tree_here_and_in_the_docstring_is_complete():
     assert defined <= drawn
 
 
-@pytest.mark.parametrize("error", [error for error, _, _ in TREE])
-def test_the_text_of_an_error_is_its_sentence(error):
-    expected = "The disk is full."
-    if issubclass(error, SettingError):
-        expected = "temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=25degC."
-    assert str(made(error)) == expected
+def test_the_text_of_an_error_is_its_sentence():
+    for error in [error for error, _, _ in TREE]:
+        expected = "The disk is full."
+        if issubclass(error, SettingError):
+            expected = "temperature = -5 K is below the lowest allowed, 1 K to 2000 K: give --set temperature=25degC."
+        assert str(made(error)) == expected
 
 
-@pytest.mark.parametrize("error", [error for error, _, _ in TREE])
-def test_errors_survive_the_way_back_from_another_process(error):
-    original = made(error)
-    for twin in (pickle.loads(pickle.dumps(original)), copy.copy(original)):
-        assert type(twin) is error
-        assert str(twin) == str(original)
-        assert vars(twin) == vars(original)
+def test_errors_survive_the_way_back_from_another_process():
+    for error in [error for error, _, _ in TREE]:
+        original = made(error)
+        for twin in (pickle.loads(pickle.dumps(original)), copy.copy(original)):
+            assert type(twin) is error
+            assert str(twin) == str(original)
+            assert vars(twin) == vars(original)
 
 
 def test_a_setting_error_keeps_its_parts():
@@ -95,9 +93,8 @@ class Stranger:
         raise RuntimeError
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
+def test_any_value_is_shown_on_one_short_printable_line():
+    cases = [
         ("25 degC", "25 degC"),
         ("25°C", "25°C"),
         ("", '""'),
@@ -114,10 +111,9 @@ class Stranger:
         (float("nan"), "nan"),
         ([1, 2], "[1, 2]"),
         (Stranger(), "a Stranger"),
-    ],
-)
-def test_any_value_is_shown_on_one_short_printable_line(value, text):
-    assert shown(value) == text
+    ]
+    for value, text in cases:
+        assert shown(value) == text
 
 
 def test_a_number_too_long_to_be_written_out_is_shown():

@@ -15,9 +15,8 @@ def headline(value=10.0, standard_error=1.0, theory=12.0, tolerance=0.0):
     return Headline("z", value, standard_error, theory, tolerance, "why", "K", "degC", "temperature")
 
 
-@pytest.mark.parametrize(
-    ("numbers", "misfit", "verdict"),
-    [
+def test_chance_alone_explains_four_standard_errors_and_the_known_error_the_rest():
+    cases = [
         ({}, -2.0, "yes"),
         ({"theory": 14.0}, -4.0, "yes"),
         ({"theory": 14.5}, -4.5, "no"),
@@ -31,13 +30,12 @@ def headline(value=10.0, standard_error=1.0, theory=12.0, tolerance=0.0):
         ({"theory": 10.0, "standard_error": math.nan}, 0.0, "no"),
         ({"theory": 10.0, "standard_error": math.inf}, 0.0, "no"),
         ({"value": math.inf}, math.inf, "no"),
-    ],
-)
-def test_chance_alone_explains_four_standard_errors_and_the_known_error_the_rest(numbers, misfit, verdict):
-    found = headline(**numbers)
-    assert found.misfit == misfit
-    assert found.verdict == verdict
-    assert found.agrees is {"yes": True, "as stated": True, "no": False, None: None}[verdict]
+    ]
+    for numbers, misfit, verdict in cases:
+        found = headline(**numbers)
+        assert found.misfit == misfit
+        assert found.verdict == verdict
+        assert found.agrees is {"yes": True, "as stated": True, "no": False, None: None}[verdict]
 
 
 def test_what_is_allowed_is_split_into_chance_and_the_known_error():

@@ -117,21 +117,19 @@ def test_settings_cannot_be_changed():
         Settings().temperature = 20.0
 
 
-@pytest.mark.parametrize(
-    "make",
-    [
+def test_there_is_no_way_round_the_checks():
+    cases = [
         lambda values: Settings(**values),
         Settings.from_user,
         Settings.model_validate,
         lambda values: Settings.model_validate_json(json.dumps(values)),
         lambda values: Settings().model_copy(update=values),
         lambda values: Settings.with_defaults(**values)(),
-    ],
-)
-def test_there_is_no_way_round_the_checks(make):
-    assert make({"temperature": "77 degF"}).si.temperature == 298.15
-    with pytest.raises((ValueError, TypeError), match="temperature = 5 m is a length"):
-        make({"temperature": "5 m"})
+    ]
+    for make in cases:
+        assert make({"temperature": "77 degF"}).si.temperature == 298.15
+        with pytest.raises((ValueError, TypeError), match="temperature = 5 m is a length"):
+            make({"temperature": "5 m"})
 
 
 def test_a_copy_with_another_value_is_that_value_in_si_units_too():
@@ -179,6 +177,12 @@ def test_an_unknown_setting_is_refused_with_the_nearest():
     )
     with pytest.raises(UnknownSettingError, match="give --set temperature="):
         Settings.with_defaults(temprature=20.0)
+
+
+def test_the_nearest_is_one_that_the_value_can_be_given_to():
+    assert "rotation=" not in refusal(UnknownSettingError, rotatoin="2 ns")
+    assert "give --set rotation=off" in refusal(UnknownSettingError, rotatoin="off")
+    assert "give --set duration=" in refusal(UnknownSettingError, duratoin="9000 ns")
 
 
 def test_settings_that_do_not_fit_together_are_refused_by_the_scene():
@@ -242,14 +246,12 @@ def test_a_setting_of_another_type_is_the_authors_mistake():
             temperatures: list[float] = setting(15.0, "degC", "temperatures")
 
 
-@pytest.mark.parametrize(
-    ("default", "unit"), [(15.0, ""), (15.0, "blorp"), (15.0, "m/s+"), (600.0, "degC"), ("x", "K")]
-)
-def test_a_default_that_is_not_allowed_is_the_authors_mistake(default, unit):
-    with pytest.raises(TypeError, match=r"The setting temperature of .*Wrong "):
+def test_a_default_that_is_not_allowed_is_the_authors_mistake():
+    for default, unit in [(15.0, ""), (15.0, "blorp"), (15.0, "m/s+"), (600.0, "degC"), ("x", "K")]:
+        with pytest.raises(TypeError, match=r"The setting temperature of .*Wrong "):
 
-        class Wrong(SceneSettings):
-            temperature: float = setting(default, unit, "temperature", high=500.0)
+            class Wrong(SceneSettings):
+                temperature: float = setting(default, unit, "temperature", high=500.0)
 
 
 def test_a_unit_on_a_switch_is_the_authors_mistake():

@@ -8,9 +8,8 @@ from atmosbox.errors import SettingError
 from atmosbox.scene.spelling import assignments, nearest
 
 
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
+def test_the_nearest_name_is_the_one_that_was_meant():
+    cases = [
         ("temprature", "temperature"),
         ("Temperature", "temperature"),
         ("pressure-top", "pressure_top"),
@@ -20,10 +19,9 @@ from atmosbox.scene.spelling import assignments, nearest
         ("x", None),
         ("", None),
         ("\0" * 10**5, None),
-    ],
-)
-def test_the_nearest_name_is_the_one_that_was_meant(name, meant):
-    assert nearest(name, ["molecules", "temperature", "pressure_top", "seed"]) == meant
+    ]
+    for name, meant in cases:
+        assert nearest(name, ["molecules", "temperature", "pressure_top", "seed"]) == meant
 
 
 def test_an_assignment_is_a_name_and_a_value():
@@ -35,20 +33,18 @@ def test_an_assignment_is_a_name_and_a_value():
     }
 
 
-@pytest.mark.parametrize(
-    ("items", "sentence"),
-    [
+def test_what_is_no_assignment_is_refused_with_its_text():
+    cases = [
         (["temperature"], '--set temperature has no "=" between name and value: give --set temperature=value.'),
         (["=5"], "--set =5 has no name: give --set name=value."),
         (["a="], "--set a= has no value: give --set a=value."),
         (["a=''"], "--set a='' has no value: give --set a=value."),
         (["a-b=1", "a_b=2"], "a_b = 2 is given twice: give --set a_b once."),
-    ],
-)
-def test_what_is_no_assignment_is_refused_with_its_text(items, sentence):
-    with pytest.raises(SettingError) as caught:
-        assignments(items)
-    assert str(caught.value) == sentence
+    ]
+    for items, sentence in cases:
+        with pytest.raises(SettingError) as caught:
+            assignments(items)
+        assert str(caught.value) == sentence
 
 
 @given(st.lists(st.text(max_size=20) | st.builds("{}={}".format, st.text(max_size=8), st.text(max_size=8)), max_size=3))

@@ -108,9 +108,8 @@ def stop_after(runs, total):
 PARAMETERS = {p.name: p for p in scenarios.load("temperature").Settings.describe()}
 
 
-@pytest.mark.parametrize(
-    ("text", "values"),
-    [
+def test_what_varies_is_typed_as_a_row_or_as_a_list():
+    cases = [
         ("temperature=-10degC:40degC:6", (-10.0, 0.0, 10.0, 20.0, 30.0, 40.0)),
         ("temperature=40degC:-10degC:3", (-10.0, 15.0, 40.0)),
         ("temperature=273.15K:10:2", (0.0, 10.0)),
@@ -120,12 +119,11 @@ PARAMETERS = {p.name: p for p in scenarios.load("temperature").Settings.describe
         ("molecules=7", (7,)),
         ("pressure=0.1bar:10bar:3log", (100.0, 1000.0, 10000.0)),
         ("start=maxwell", ("maxwell",)),
-    ],
-)
-def test_what_varies_is_typed_as_a_row_or_as_a_list(text, values):
-    (axis,) = parse_vary([text], PARAMETERS)
-    assert axis.values == values
-    assert [type(value) for value in axis.values] == [type(value) for value in values]
+    ]
+    for text, values in cases:
+        (axis,) = parse_vary([text], PARAMETERS)
+        assert axis.values == values
+        assert [type(value) for value in axis.values] == [type(value) for value in values]
 
 
 def test_a_row_of_even_ratios_has_even_ratios_in_absolute_units():
@@ -133,9 +131,8 @@ def test_a_row_of_even_ratios_has_even_ratios_in_absolute_units():
     assert axis.si == pytest.approx((100.0, 200.0, 400.0), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("text", "error", "sentence"),
-    [
+def test_what_cannot_vary_is_refused_with_what_to_type():
+    cases = [
         ("temperature", SettingError, 'has no "="'),
         ("=1:2:3", SettingError, "has no name"),
         ("temperature=", SettingError, "has no values"),
@@ -153,14 +150,13 @@ def test_a_row_of_even_ratios_has_even_ratios_in_absolute_units():
         ("molecules=1.5,2", UnitError, "not whole"),
         ("start=fast", SettingError, "is not one of"),
         ("seed=1:5:5", SettingError, "--members"),
-    ],
-)
-def test_what_cannot_vary_is_refused_with_what_to_type(text, error, sentence):
-    with pytest.raises(error, match=sentence) as refused:
-        parse_vary([text], PARAMETERS)
-    assert type(refused.value) is error
-    assert "give --" in str(refused.value)
-    assert "--set" not in str(refused.value)
+    ]
+    for text, error, sentence in cases:
+        with pytest.raises(error, match=sentence) as refused:
+            parse_vary([text], PARAMETERS)
+        assert type(refused.value) is error
+        assert "give --" in str(refused.value)
+        assert "--set" not in str(refused.value)
 
 
 @pytest.mark.parametrize("scene", scenarios.names())
@@ -202,9 +198,8 @@ def test_a_row_has_its_ends_its_number_and_an_order(first, last, n, spacing):
         assert list(axis.values) == sorted(axis.values)
 
 
-@pytest.mark.parametrize(
-    ("words", "error", "sentence"),
-    [
+def test_a_sweep_is_refused_before_anything_runs():
+    cases = [
         ({"vary": []}, SettingError, "is not given"),
         ({"vary": ["temprature=1:2:3"]}, UnknownSettingError, "--vary temperature="),
         ({"settings": {"molecule": 3}}, UnknownSettingError, "--set molecules="),
@@ -215,11 +210,10 @@ def test_a_row_has_its_ends_its_number_and_an_order(first, last, n, spacing):
         ({"engine": "magic"}, SettingError, "magic"),
         ({"accuracy": "perfect"}, SettingError, "perfect"),
         ({"settings": {"pressure": "5 m"}}, UnitError, "is a length"),
-    ],
-)
-def test_a_sweep_is_refused_before_anything_runs(words, error, sentence):
-    with pytest.raises(error, match=sentence):
-        plan("temperature", words.pop("vary", ["molecules=10,20"]), **words)
+    ]
+    for words, error, sentence in cases:
+        with pytest.raises(error, match=sentence):
+            plan("temperature", words.pop("vary", ["molecules=10,20"]), **words)
 
 
 def test_an_accuracy_picks_an_engine_at_each_point():

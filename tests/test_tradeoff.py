@@ -199,10 +199,10 @@ def test_those_with_the_fewest_runs_come_first():
     assert sum(n * t for n, t in zip(watched.counts, (2.0, 1.0, 4.0), strict=True)) > 50.0
 
 
-@pytest.mark.parametrize("budget", [0.0, -1.0, math.nan, math.inf, 1e9])
-def test_an_impossible_budget_is_refused(budget):
-    with pytest.raises(SettingError, match="--budget 60s"):
-        measure("lifting-dry", budget=budget)
+def test_an_impossible_budget_is_refused():
+    for budget in [0.0, -1.0, math.nan, math.inf, 1e9]:
+        with pytest.raises(SettingError, match="--budget 60s"):
+            measure("lifting-dry", budget=budget)
 
 
 def test_ctrl_c_keeps_what_was_measured():

@@ -23,27 +23,25 @@ def test_attributes_that_are_not_set_are_left_out():
     }
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_a_companion_has_the_name_of_its_parent_with_the_suffix_and_its_dimensions(suffix):
-    companion = derived(HEIGHT, suffix)
-    assert companion.name == f"height{suffix}"
-    assert companion.dims == HEIGHT.dims
-    assert companion.positive == ("up" if suffix == "_theory" else None)
+def test_a_companion_has_the_name_of_its_parent_with_the_suffix_and_its_dimensions():
+    for suffix in SUFFIXES:
+        companion = derived(HEIGHT, suffix)
+        assert companion.name == f"height{suffix}"
+        assert companion.dims == HEIGHT.dims
+        assert companion.positive == ("up" if suffix == "_theory" else None)
 
 
-@pytest.mark.parametrize(
-    ("name", "standard_name", "unit"),
-    [
+def test_a_companion_is_called_what_cf_calls_it():
+    cases = [
         ("air_pressure_se", "air_pressure standard_error", "Pa"),
         ("air_pressure_theory", None, "Pa"),
         ("air_pressure_tolerance", None, "Pa"),
         ("air_pressure_count", "number_of_observations", "1"),
         ("number_density_se", None, "m-3"),
-    ],
-)
-def test_a_companion_is_called_what_cf_calls_it(name, standard_name, unit):
-    assert variable(name).standard_name == standard_name
-    assert variable(name).units == unit
+    ]
+    for name, standard_name, unit in cases:
+        assert variable(name).standard_name == standard_name
+        assert variable(name).units == unit
 
 
 def test_no_companion_must_be_finite_or_is_an_average():
@@ -52,9 +50,8 @@ def test_no_companion_must_be_finite_or_is_an_average():
         assert variable(name).cell_methods is None
 
 
-@pytest.mark.parametrize(
-    ("name", "metadata"),
-    [
+def test_every_temperature_says_whether_it_is_a_difference():
+    cases = [
         ("air_temperature", "temperature: on_scale"),
         ("air_temperature_theory", "temperature: on_scale"),
         ("air_temperature_se", "temperature: difference"),
@@ -62,10 +59,9 @@ def test_no_companion_must_be_finite_or_is_an_average():
         ("air_temperature_count", None),
         ("air_pressure", None),
         ("disc_mass", None),
-    ],
-)
-def test_every_temperature_says_whether_it_is_a_difference(name, metadata):
-    assert variable(name).units_metadata == metadata
+    ]
+    for name, metadata in cases:
+        assert variable(name).units_metadata == metadata
 
 
 def test_an_error_bar_of_nothing_is_refused():
@@ -73,19 +69,21 @@ def test_an_error_bar_of_nothing_is_refused():
         variable("nothing_se")
 
 
-@pytest.mark.parametrize(
-    ("frames", "molecules", "chunks"),
-    [(1000, 800, (100, 800, 3)), (7, 800, (7, 800, 3)), (1000, 100_000, (100, 3333, 3)), (0, 0, (1, 1, 3))],
-)
-def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_megabytes(frames, molecules, chunks):
-    assert PATH.encoding((frames, molecules, 3)) == {
-        "dtype": "f4",
-        "_FillValue": pytest.approx(np.nan, nan_ok=True),
-        "zlib": True,
-        "complevel": 4,
-        "shuffle": True,
-        "chunksizes": chunks,
-    }
+def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_megabytes():
+    for frames, molecules, chunks in [
+        (1000, 800, (100, 800, 3)),
+        (7, 800, (7, 800, 3)),
+        (1000, 100_000, (100, 3333, 3)),
+        (0, 0, (1, 1, 3)),
+    ]:
+        assert PATH.encoding((frames, molecules, 3)) == {
+            "dtype": "f4",
+            "_FillValue": pytest.approx(np.nan, nan_ok=True),
+            "zlib": True,
+            "complevel": 4,
+            "shuffle": True,
+            "chunksizes": chunks,
+        }
 
 
 def test_a_standard_name_stands_at_one_variable_so_that_it_is_found_without_a_doubt():

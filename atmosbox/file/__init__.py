@@ -8,5 +8,6 @@
 `output_path`  the one way to write a file: its path is checked, and it is there whole or not at all
 `validity`     what is asked of a file before its numbers are loaded
 `netcdf`       datasets to netCDF files, and back
+`molecules`    the molecules of a saved run, frame by frame
 `checkpoint`   the file of a run that is not finished
 """

@@ -4,10 +4,10 @@ A run becomes one HTML file that opens from disk without a network (`save`); a b
 same page, fed through a socket (`live_page`). Both use the same data: a *stage* that says once what there is to see,
 and *frames* that say where everything is.
 
-Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (its graphs), `page_liquid` and `frame`
-(one moment as bytes), `thinning` (what a large run leaves out), `saved_run` (from a dataset to all of these),
-`document` (the HTML) and `page_file`. The folder ``web`` holds the page's own scripts, ``vendor`` the two libraries
-that it draws with.
+Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (its graphs), `page_liquid` and
+`frame` (one moment as bytes), `thinning` (what a large run leaves out), `saved_run` (from a dataset to all of
+these), `word` (the sentences), `document` (the HTML) and `page_file`. The folder ``web`` holds the page's own
+scripts, ``vendor`` the two libraries that it draws with.
 """
 
 from atmosbox.page.document import live_page, view_page

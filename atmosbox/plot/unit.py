@@ -6,26 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.errors import FileError
+from atmosbox.scene.conversion import known_unit
 
-# Display unit -> (unit of the file, factor, offset): value in the file = value shown * factor + offset.
-_SHOWN: dict[str, tuple[str, float, float]] = {
-    "degC": ("K", 1.0, 273.15),
-    "hPa": ("Pa", 1e2, 0.0),
-    "km": ("m", 1e3, 0.0),
-    "um": ("m", 1e-6, 0.0),
-    "nm": ("m", 1e-9, 0.0),
-    "us": ("s", 1e-6, 0.0),
-    "ns": ("s", 1e-9, 0.0),
-    "ps": ("s", 1e-12, 0.0),
-    "g m-3": ("kg m-3", 1e-3, 0.0),
-    "g kg-1": ("kg kg-1", 1e-3, 0.0),
-    "K km-1": ("K m-1", 1e-3, 0.0),
-    "%": ("1", 1e-2, 0.0),
-    "percent": ("1", 1e-2, 0.0),
-    "ns-1": ("s-1", 1e9, 0.0),
-    "zJ": ("J", 1e-21, 0.0),
-    "zJ-1": ("J-1", 1e21, 0.0),
-}
 _SIGNS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _SPELLINGS = {"degC": "°C", "um": "µm", "us": "µs", "percent": "%"}
 
@@ -69,16 +51,14 @@ def convert(
     shown = shown or unit
     if shown == unit:
         return numbers
-    base, factor, offset = _SHOWN.get(unit, (unit, 1.0, 0.0))
-    base_shown, factor_shown, offset_shown = _SHOWN.get(shown, (shown, 1.0, 0.0))
-    if base != base_shown:
+    there, here = known_unit(unit), known_unit(shown)
+    if there is None or here is None or there.si != here.si:
         raise FileError(
             f"The file holds {name} in {unit!r}, which cannot be drawn in {shown!r}: "
             "run the scene again with this version of atmosbox."
         )
-    if difference:
-        offset = offset_shown = 0.0
-    return (numbers * factor + (offset - offset_shown)) / factor_shown
+    offset = 0.0 if difference else there.offset - here.offset
+    return (numbers * (there.up / there.down) + offset) * (here.down / here.up)
 
 
 def of_difference(unit: str) -> str:

@@ -36,7 +36,9 @@ _UNITS = {
     "s": Unit("s"), "min": Unit("s", 60), "h": Unit("s", 3600), "ms": Unit("s", 1, 1e3),
     "us": Unit("s", 1, 1e6), "ns": Unit("s", 1, 1e9), "ps": Unit("s", 1, 1e12), "fs": Unit("s", 1, 1e15),
     "m s-1": Unit("m s-1"), "km h-1": Unit("m s-1", 1, 3.6), "m s-2": Unit("m s-2"),
-    "K m-1": Unit("K m-1"), "K km-1": Unit("K m-1", 1, 1e3), "J": Unit("J"),
+    "K m-1": Unit("K m-1"), "K km-1": Unit("K m-1", 1, 1e3),
+    "J": Unit("J"), "zJ": Unit("J", 1, 1e21), "J-1": Unit("J-1"), "zJ-1": Unit("J-1", 1e21),
+    "s-1": Unit("s-1"), "ns-1": Unit("s-1", 1e9), "kg m-3": Unit("kg m-3"), "g m-3": Unit("kg m-3", 1, 1e3),
     "kg": Unit("kg"), "g": Unit("kg", 1, 1e3),
     "kg mol-1": Unit("kg mol-1"), "g mol-1": Unit("kg mol-1", 1, 1e3),
 }  # fmt: skip

@@ -11,7 +11,7 @@ from typing import Literal, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from atmosbox.errors import SettingError, UnitError, UnknownSettingError, shown
-from atmosbox.scene.conversion import MEASURES, declared_unit, slashed
+from atmosbox.scene.conversion import MEASURES, declared_unit, known_unit, slashed
 from atmosbox.scene.quantity import converted, number_and_unit, phrase, typed
 from atmosbox.scene.spelling import field_name, nearest, plain
 
@@ -113,19 +113,23 @@ class Parameter:
         return self._word(value) if self.kind == "str" else self._number(value)
 
     def takes(self, value: object) -> bool:
-        """Whether a value is of the kind that is set here, be it out of range.
+        """Whether a value can be of the kind that is set here, be it out of range or several of them.
 
         Examples
         --------
         >>> height = Parameter("height", "km", 2.0, 0.0, 12.0)
-        >>> height.takes("50 km"), height.takes("2 ns")
-        (True, False)
+        >>> height.takes("50 km"), height.takes("1:2:3"), height.takes("2 ns")
+        (True, True, False)
         """
         try:
-            self.parse(value)
-        except SettingError as error:
-            return self.kind in ("int", "float") and not isinstance(error, UnitError)
-        return True
+            unit = number_and_unit(value)[1]
+        except ValueError:
+            return True  # words
+        known = known_unit(unit or "1")
+        if known is None:
+            return True  # a row of numbers, or a unit that is misspelled
+        number = self.kind in ("int", "float")
+        return number and (not unit or known.si == declared_unit(self.unit).si)
 
     def _switch(self, value: object) -> bool:
         try:

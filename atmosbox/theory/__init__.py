@@ -7,7 +7,7 @@ SI; where it is called ``temperature`` or ``pressure`` of the air, the units are
 =================== =====================================================================================
 file                what it answers
 =================== =====================================================================================
-equation_of_state   how much harder spheres press than points
+equation_of_state   by how much the pressure of hard spheres exceeds that of points
 entropy             what their excluded volume does to the free energy and to the adiabat
 disc                the same in two dimensions, and how often discs meet
 collision           how often molecules meet, and how far they fly between

@@ -123,7 +123,7 @@ def root(
 def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
     """Return the entropy per molecule of air, in k, of air, its vapour and its liquid.
 
-    `heat` is the heat capacity of a molecule of air with all that is as warm and holds no water.
+    `heat` is the heat capacity per molecule of air, of the air and of condensation nuclei.
     """
     vapor = np.minimum(saturated_vapor(pressure, temperature), water)
     wet = vapor < water
@@ -196,7 +196,7 @@ def rained_temperature(
 
     What condenses leaves with its entropy. Runge-Kutta of order 8 for ln T over ln p.
     """
-    from scipy import integrate  # takes its time to load, and few need it
+    from scipy import integrate  # loads slowly
 
     water, warm = np.asarray(liquid), np.asarray(heat)
 

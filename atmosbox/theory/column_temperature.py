@@ -1,4 +1,4 @@
-"""How warm a column comes to rest that no heat enters: where its energy goes, into motion and into height."""
+"""The temperature that an isolated column comes to: how its energy divides into motion and height."""
 
 from atmosbox.theory.hydrostatic import hydrostatic_mean_height
 
@@ -43,7 +43,7 @@ def column_temperature(
     Raises
     ------
     ValueError
-        If the column would freeze at its floor, or is so dense that even half of the temperature of points is too warm.
+        If the column would freeze at its floor, or is so dense that it would be less than half as warm as points.
 
     Examples
     --------

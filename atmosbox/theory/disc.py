@@ -97,7 +97,7 @@ def contact_value_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson
 
 
 def compressibility_factor_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
-    r"""Return how many times harder discs press than an ideal gas in two dimensions, :math:`Z = P / (n k T)`.
+    r"""Return the compressibility factor of discs, their pressure over that of points: :math:`Z = P / (n k T)`.
 
     Parameters
     ----------

@@ -32,8 +32,8 @@ def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> Fl
     r"""Return the free energy per molecule, in units of kT, that excluded volume adds to an ideal gas.
 
     :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`. Hard spheres have no potential energy, so this is
-    also minus the excess entropy per molecule in units of k: the room that each molecule takes from the
-    others.
+    also minus the excess entropy per molecule in units of k: the volume from which each
+    molecule excludes the others.
 
     Parameters
     ----------

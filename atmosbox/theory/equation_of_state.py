@@ -1,4 +1,4 @@
-r"""Spheres with excluded volume: by how much they press harder than an ideal gas, and what follows.
+r"""Spheres with excluded volume: how much higher their pressure is than that of an ideal gas, and what follows.
 
 The packing fraction :math:`\phi = \pi n \sigma^3 / 6` is the share of the space that the spheres fill.
 Everything here depends on it alone, never on the temperature: hard spheres have no energy but their motion.
@@ -82,7 +82,7 @@ def packing_fraction(number_density: ArrayLike, diameter: ArrayLike) -> FloatArr
 
 
 def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return how much denser it is next to a molecule: the pair distribution at contact, :math:`g(\sigma)`.
+    r"""Return the pair distribution at contact, :math:`g(\sigma)`: how much denser the gas is next to a molecule.
 
     It is 1 in a thin gas. Neighbours shield each other from being hit elsewhere, so pairs in contact are more
     frequent than chance, and by the virial theorem :math:`Z = 1 + 4 \phi g(\sigma)`.
@@ -122,7 +122,7 @@ def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatAr
 
 
 def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return how many times harder spheres press than an ideal gas, :math:`Z = P / (n k T)`.
+    r"""Return the compressibility factor of spheres, their pressure over that of an ideal gas: :math:`Z = P / (n k T)`.
 
     Parameters
     ----------

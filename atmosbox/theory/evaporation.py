@@ -1,6 +1,6 @@
 r"""Where evaporation and condensation end: the temperature and the vapour of air in equilibrium with water.
 
-Evaporation takes its heat from the air, the vapour and the liquid. What ends it is saturation, or the last drop.
+Evaporation takes its heat from the air, the vapour and the liquid. It ends at saturation, or when no liquid is left.
 Units are SI; heat capacities of single bodies are in k.
 """
 
@@ -64,7 +64,7 @@ def evaporation_equilibrium(
     liquid_temperature
         Temperature of the liquid at the start [K]; that of the air if none is given.
     nuclei_heat
-        Heat capacity C of what is as warm as the liquid, all of it together [k].
+        Heat capacity C of condensation nuclei at the temperature of the liquid, of all together [k].
 
     Returns
     -------

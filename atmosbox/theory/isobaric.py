@@ -1,7 +1,8 @@
 r"""How much vapour a small parcel of air over water holds, if it is left alone at constant pressure.
 
-The exact distribution at equilibrium, for any number of molecules, even for one: where a law of evaporation and
-condensation must lead under a piston. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
+The exact distribution at equilibrium, for any number of molecules, even for one: to which every law of
+evaporation and condensation must lead under a piston. The liquid is that of :mod:`atmosbox.theory.liquid_rate`.
+Units are SI.
 """
 
 import math
@@ -61,7 +62,7 @@ def isobaric_water(
     air, vapor, liquid
         Molecules of air :math:`N_a`, of vapour and of liquid at the start [1].
     nuclei_heat
-        Heat capacity of what is as warm as the liquid, C [k].
+        Heat capacity of condensation nuclei at the temperature of the liquid, C [k].
 
     Returns
     -------

@@ -27,7 +27,7 @@ from atmosbox.theory._water import (
 from atmosbox.theory.constants import BOLTZMANN, WATER
 
 LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
-"""Energy that a molecule carries across the surface, in kT: 2 of flight (fast ones cross oftener), 3/2 of rotation."""
+"""Energy that a molecule carries across the surface, in kT: 2 of flight (fast ones cross more often), 1.5 rotation."""
 
 
 def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:
@@ -91,7 +91,7 @@ def microcanonical_flux(
     molecules
         Molecules of the liquid n [1]; none leaves if there is none.
     nuclei_heat
-        Heat capacity of what is as warm as the liquid, :math:`C_n` [k].
+        Heat capacity of condensation nuclei at the temperature of the liquid, :math:`C_n` [k].
     accommodation
         Share of the molecules that stick when they meet the liquid [1].
 

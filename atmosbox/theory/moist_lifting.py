@@ -39,7 +39,7 @@ def moist_air_poisson_exponent(mixing_ratio: ArrayLike, nuclei_heat: ArrayLike =
     mixing_ratio
         Mass of vapour per mass of dry air [kg kg^-1].
     nuclei_heat
-        Heat capacity C of whatever is as warm as the air, per molecule of air [k].
+        Heat capacity C of condensation nuclei at the temperature of the air, per molecule of air [k].
 
     Returns
     -------
@@ -80,7 +80,7 @@ def lcl(
     dewpoint
         Dewpoint at the start [K], not above the temperature; 0 K in dry air.
     nuclei_heat
-        Heat capacity of whatever is as warm as the air, per molecule of air [k].
+        Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
 
     Returns
     -------
@@ -160,7 +160,7 @@ def parcel_path(
     most_liquid
         Most liquid that the cloud holds [kg kg^-1].
     nuclei_heat
-        Heat capacity of whatever is as warm as the air, per molecule of air [k].
+        Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
 
     Returns
     -------

@@ -1,7 +1,7 @@
 r"""How the number of molecules of vapour scatters in a small closed box that also holds liquid.
 
-The exact distributions at equilibrium, for any number: where a law of evaporation and condensation must lead. The
-liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
+The exact distributions at equilibrium, for any number, to which every law of evaporation and condensation must lead.
+The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 """
 
 from typing import NamedTuple
@@ -114,7 +114,7 @@ def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nu
     volume
         Volume of the gas [m^3].
     nuclei_heat
-        Heat capacity of what is as warm as the liquid, :math:`C_n` [k].
+        Heat capacity of condensation nuclei at the temperature of the liquid, :math:`C_n` [k].
 
     Returns
     -------

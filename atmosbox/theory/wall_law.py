@@ -1,6 +1,6 @@
 r"""What hits a wall and what leaves it.
 
-Fast molecules reach a wall more often than slow ones, so those that cross a plane are not a fair sample: they
+Fast molecules reach a wall more often than slow ones, so those that cross a plane are not a representative sample: they
 carry 2 kT of energy each, not 3/2 kT. A heat bath must send out the same mixture, or the gas beside it is too
 cold.
 

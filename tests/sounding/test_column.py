@@ -7,15 +7,14 @@ from atmosbox.scene.conversion import known_unit
 from atmosbox.scene.sounding.column import QUANTITIES, asked_units, number, stated_columns, unit_of
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
-def test_every_name_of_a_quantity_is_found_and_is_of_no_other(quantity):
-    for name in QUANTITIES[quantity].names:
-        assert stated_columns(["other", name], "here") == {quantity: (1, None)}
+def test_every_name_of_a_quantity_is_found_and_is_of_no_other():
+    for quantity in QUANTITIES:
+        for name in QUANTITIES[quantity].names:
+            assert stated_columns(["other", name], "here") == {quantity: (1, None)}
 
 
-@pytest.mark.parametrize(
-    ("header", "found"),
-    [
+def test_the_best_name_with_a_fitting_unit_is_chosen():
+    cases = [
         (["T_K"], {"temperature": (0, "K")}),
         (["t", "T"], {"temperature": (1, None)}),
         (["t [s]", "temp [K]"], {"temperature": (1, "K")}),
@@ -23,10 +22,9 @@ def test_every_name_of_a_quantity_is_found_and_is_of_no_other(quantity):
         (["level [1]", "lev [hPa]"], {"pressure": (1, "hPa")}),
         (["dew point (°C)"], {"dewpoint": (0, "°C")}),
         (["T_virtual", "p_sea"], {}),
-    ],
-)
-def test_the_best_name_with_a_fitting_unit_is_chosen(header, found):
-    assert stated_columns(header, "here") == found
+    ]
+    for header, found in cases:
+        assert stated_columns(header, "here") == found
 
 
 def test_the_same_name_twice_is_refused():
@@ -34,51 +32,46 @@ def test_the_same_name_twice_is_refused():
         stated_columns(["td", "Td"], "here")
 
 
-@pytest.mark.parametrize("text", ["hPa", "HPA", "mb", "millibars", " mbar "])
-def test_units_are_known_in_capitals_too(text):
-    assert unit_of("pressure", text, "here") == known_unit("hPa")
+def test_units_are_known_in_capitals_too():
+    for text in ["hPa", "HPA", "mb", "millibars", " mbar "]:
+        assert unit_of("pressure", text, "here") == known_unit("hPa")
 
 
-@pytest.mark.parametrize("text", ["m", "gpm", "m MSL", "Meters"])
-def test_units_of_height_are_metres_under_many_names(text):
-    assert unit_of("height", text, "here") == known_unit("m")
+def test_units_of_height_are_metres_under_many_names():
+    for text in ["m", "gpm", "m MSL", "Meters"]:
+        assert unit_of("height", text, "here") == known_unit("m")
 
 
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
+def test_a_wrong_unit_is_refused_with_the_usual_one():
+    cases = [
         (None, "has no unit"),
         ("", "has no unit"),
         ("K", "K is not a unit"),
         ("#!", "the unit #! of the pressure is not"),
-    ],
-)
-def test_a_wrong_unit_is_refused_with_the_usual_one(text, sentence):
-    with pytest.raises(SoundingError, match=rf"here: .*{sentence}.*: write it as .pressure \[hPa\]. or give units="):
-        unit_of("pressure", text, "here")
+    ]
+    for text, sentence in cases:
+        with pytest.raises(
+            SoundingError, match=rf"here: .*{sentence}.*: write it as .pressure \[hPa\]. or give units="
+        ):
+            unit_of("pressure", text, "here")
 
 
 def test_no_units_asked_for_are_none():
     assert asked_units(None) == {}
 
 
-@pytest.mark.parametrize(
-    ("token", "value"), [("1", 1.0), (" -1.5e2 ", -150.0), ("+.5", 0.5), ("7.", 7.0), ("−3", -3.0), ('"4"', 4.0)]
-)
-def test_a_number_is_read(token, value):
-    assert number(token, "pressure", "here") == value
+def test_a_number_is_read():
+    for token, value in [("1", 1.0), (" -1.5e2 ", -150.0), ("+.5", 0.5), ("7.", 7.0), ("−3", -3.0), ('"4"', 4.0)]:
+        assert number(token, "pressure", "here") == value
 
 
-@pytest.mark.parametrize(
-    "token", ["", " ", "nan", "NaN", "NA", "n/a", "None", "null", "M", "missing", "-", "///", "***"]
-)
-def test_a_mark_of_a_missing_value_is_nan(token):
-    assert math.isnan(number(token, "pressure", "here"))
+def test_a_mark_of_a_missing_value_is_nan():
+    for token in ["", " ", "nan", "NaN", "NA", "n/a", "None", "null", "M", "missing", "-", "///", "***"]:
+        assert math.isnan(number(token, "pressure", "here"))
 
 
-@pytest.mark.parametrize(
-    ("token", "sentence"),
-    [
+def test_anything_else_is_refused():
+    cases = [
         ("one", "one is not a number"),
         ("1,5", "1,5 is written with a comma"),
         ("-inf", "-inf is not finite"),
@@ -86,8 +79,7 @@ def test_a_mark_of_a_missing_value_is_nan(token):
         ("9" * 70, "is too large"),
         ("0x10", "0x10 is not a number"),
         ("٣", "٣ is not a number"),
-    ],
-)
-def test_anything_else_is_refused(token, sentence):
-    with pytest.raises(SoundingError, match=f"here: the pressure .*{sentence}"):
-        number(token, "pressure", "here")
+    ]
+    for token, sentence in cases:
+        with pytest.raises(SoundingError, match=f"here: the pressure .*{sentence}"):
+            number(token, "pressure", "here")

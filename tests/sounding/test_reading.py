@@ -14,20 +14,19 @@ def test_the_content_and_not_the_suffix_tells_the_format(written, wyoming_lines,
             assert kind in sounding.source
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16"])
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_any_usual_encoding_and_line_end_is_read(written, csv_lines, same_as, encoding, end):
-    text = end.join(["# Zürich", *csv_lines]).replace("degC", "°C")
-    same_as(read(written(text.encode(encoding))))
+def test_any_usual_encoding_and_line_end_is_read(written, csv_lines, same_as):
+    for encoding in ["utf-8", "utf-8-sig", "latin-1", "utf-16"]:
+        for end in ["\n", "\r\n", "\r"]:
+            text = end.join(["# Zürich", *csv_lines]).replace("degC", "°C")
+            same_as(read(written(text.encode(encoding))))
 
 
 def test_a_path_may_be_a_text(written, csv_lines, same_as):
     same_as(read(str(written(csv_lines))))
 
 
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
+def test_what_is_no_sounding_is_refused_in_a_sentence(written):
+    cases = [
         (b"", "is empty"),
         (b" \n\n ", "is empty"),
         (b"\x00\x01\x02\x03" * 9, "is not a text"),
@@ -38,15 +37,14 @@ def test_a_path_may_be_a_text(written, csv_lines, same_as):
         (b"\x1f\x8b....", "is packed: type gunzip first"),
         (b"\n\n  once upon a time", "line 3: once upon a time begins no sounding that is known"),
         (b"a,b,c\n1,2,3", "line 1: a,b,c begins no sounding that is known"),
-    ],
-)
-def test_what_is_no_sounding_is_refused_in_a_sentence(written, content, sentence):
-    path = written(content)
-    with pytest.raises(SoundingError, match=sentence) as caught:
-        read(path)
-    assert str(caught.value).startswith(str(path))
-    assert str(caught.value).endswith(".")
-    assert "\n" not in str(caught.value)
+    ]
+    for content, sentence in cases:
+        path = written(content)
+        with pytest.raises(SoundingError, match=sentence) as caught:
+            read(path)
+        assert str(caught.value).startswith(str(path))
+        assert str(caught.value).endswith(".")
+        assert "\n" not in str(caught.value)
 
 
 def test_files_that_cannot_be_read_are_refused(tmp_path):
@@ -92,18 +90,16 @@ def test_a_text_of_too_many_lines_is_refused(written, csv_lines, same_as):
         read(written([*csv_lines, *[""] * reading.MOST_LINES]))
 
 
-@pytest.mark.parametrize(
-    ("units", "sentence"),
-    [
+def test_units_that_cannot_be_are_refused(written, csv_lines):
+    cases = [
         ({"wind": "m/s"}, "units = wind is not a column of a sounding: name one of pressure, temperature, dewpoint"),
         ({"pressure": "degC"}, "units = degC is not a unit of pressure"),
         ({"pressure": "blorp"}, "units = blorp is not a unit of pressure"),
         ({"pressure": 100}, "units = 100 is not a unit of pressure"),
-    ],
-)
-def test_units_that_cannot_be_are_refused(written, csv_lines, units, sentence):
-    with pytest.raises(UnitError, match=sentence):
-        read(written(csv_lines), units=units)
+    ]
+    for units, sentence in cases:
+        with pytest.raises(UnitError, match=sentence):
+            read(written(csv_lines), units=units)
 
 
 def test_what_is_read_is_a_sounding_from_the_ground_up(written, csv_lines, same_as):

@@ -100,9 +100,8 @@ def test_four_levels_are_too_few(written, csv_lines):
         read(written(csv_lines[:2]))
 
 
-@pytest.mark.parametrize(
-    ("wrong", "sentence"),
-    [
+def test_a_wrong_unit_is_recognised(written, csv_lines):
+    cases = [
         ("T [K]", r"line 2: a temperature of 25\.\d K is not one of the atmosphere and looks like degC: write"),
         ("T [degF]", None),  # -55 degF and 77 degF are temperatures of the atmosphere, too
         ("Td [K]", r"line 2: a dewpoint of 23\.\d K is not one of the atmosphere and looks like degC: write"),
@@ -111,13 +110,12 @@ def test_four_levels_are_too_few(written, csv_lines):
             r"line 2: a pressure of 990 Pa at the ground is not one of the atmosphere and looks like hPa: write",
         ),
         ("p [kPa]", r"line 2: a pressure of 990 kPa is not one of the atmosphere and looks like hPa: write"),
-    ],
-)
-def test_a_wrong_unit_is_recognised(written, csv_lines, wrong, sentence):
-    name = wrong.split()[0] + " "
-    header = ",".join(wrong if cell.startswith(name) else cell for cell in csv_lines[0].split(","))
-    with pytest.raises(SoundingError, match=sentence or "above the temperature"):
-        read(written([header, *csv_lines[1:]]))
+    ]
+    for wrong, sentence in cases:
+        name = wrong.split()[0] + " "
+        header = ",".join(wrong if cell.startswith(name) else cell for cell in csv_lines[0].split(","))
+        with pytest.raises(SoundingError, match=sentence or "above the temperature"):
+            read(written([header, *csv_lines[1:]]))
 
 
 def test_kelvins_called_degrees_celsius_are_recognised(written, csv_lines):

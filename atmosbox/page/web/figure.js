@@ -62,7 +62,7 @@ export function tickTexts(values) {
   return { texts, power };
 }
 
-// A round number without idle digits.
+// A round number without trailing zeros.
 export const round = (value) => plain(String(Number(value.toPrecision(6))));
 
 export const powerText = (power) => (power ? `10${raised(String(power))}` : "");

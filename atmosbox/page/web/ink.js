@@ -46,7 +46,7 @@ export function drawCurve(context, curve, { spot, unit, across, colour, several,
   return undefined;
 }
 
-// A curve that crosses its own range again and again becomes thinner, lest its scatter be a blot.
+// A curve that crosses its own range again and again becomes thinner, so that its scatter stays readable.
 function slender({ x, y }, across) {
   const values = (across ? x : y).filter(Number.isFinite);
   let way = 0, low = Infinity, high = -Infinity;

@@ -45,7 +45,7 @@ class Live {
     this.stale = true;
   }
 
-  // A box that begins: all that was seen of another is put away.
+  // A new box begins: forget all that was shown of the one before.
   open({ stage: record, controls, state }) {
     this.stage?.leave();
     find("boxes").replaceChildren();

@@ -49,7 +49,7 @@ export class Pulse {
     else this.say({ type: "record", file: this.part("file").value.trim() || null });
   }
 
-  // A box that begins: its unit of time, and where its recordings go if no file is named.
+  // A new box begins: its unit of time, and where its recordings go if no file is named.
   begin({ time, scene }) {
     this.unit = time.unit;
     this.part("file").placeholder = `${scene.replace(/.*\//, "").replace(/\.py$/, "")}-live.nc`;

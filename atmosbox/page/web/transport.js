@@ -1,4 +1,4 @@
-// The bar that plays the film: play, step, the line of time, how fast.
+// The bar that plays a run: play, step, the time line, the speed.
 
 import { figure, withUnit } from "./figure.js";
 

@@ -1,21 +1,21 @@
 """Soundings: what is measured of the air above a place, what that says of a parcel, and one made by a formula.
 
-============= ===========================================================================
-file          what is in it
-============= ===========================================================================
-profile       the sounding itself: pressure, temperature, dewpoint from the ground up
-column        the names and units under which its columns go
-check         what no ascent can be
-table         from the columns of a file to a sounding: units, missing values, order
-reading       opens a file and recognises its format
-wyoming       the University of Wyoming's tables, as text or page of the web
-sharppy       SHARPpy's text
-delimited     CSV and its kin
-netcdf        profiles as xarray and MetPy leave them
-analytic      Weisman and Klemp's formula for the air before a thunderstorm
-hydrostatics  the heights of levels
-parcel        LCL, LFC, EL, CAPE, CIN and precipitable water, by MetPy
-============= ===========================================================================
+============== =========================================================================
+file           what is in it
+============== =========================================================================
+profile        the sounding itself: pressure, temperature, dewpoint from the ground up
+column         the names and units of its columns
+plausibility   what no sounding can be
+tabulated      from the columns of a file to a sounding: units, missing values, order
+reading        opens a file and recognises its format
+wyoming        the University of Wyoming's tables, as text or as a web page
+sharppy        SHARPpy's text
+delimited      CSV and the like
+profile_netcdf profiles as xarray and MetPy write them
+analytic       Weisman and Klemp's formula for the air before a thunderstorm
+hydrostatics   the heights of levels
+lifted_parcel  LCL, LFC, EL, CAPE, CIN and precipitable water, by MetPy
+============== =========================================================================
 """
 
 from atmosbox.scene.sounding.analytic import weisman_klemp

@@ -32,11 +32,11 @@ def weisman_klemp(
     tropopause_potential_temperature: float = 343.0,
     tropopause_temperature: float = 213.0,
 ) -> Sounding:
-    r"""Return the analytic sounding of Weisman and Klemp, in which countless model storms have grown [1]_.
+    r"""Return the analytic sounding of Weisman and Klemp, in which many simulated storms begin [1]_.
 
     Below the tropopause, with s = (z / z_tr)^(5/4), the potential temperature is theta_0 + (theta_tr - theta_0) s
     and the relative humidity 1 - 3 s / 4; above it they are theta_tr exp(g (z - z_tr) / (c_p T_tr)) and 1/4.
-    Near the ground the mixing ratio is constant, which is the one choice that most decides about CAPE.
+    Near the ground the mixing ratio is constant, and of all choices it changes CAPE most.
 
     Parameters
     ----------

@@ -124,7 +124,7 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
             el = mpcalc.el(p, t, td)
             cape, cin = mpcalc.surface_based_cape_cin(p, t, td)
             water = mpcalc.precipitable_water(p, td)
-    except Exception as error:  # MetPy fails in its own ways on an ascent that is none it was made for
+    except Exception as error:  # MetPy raises errors of many kinds on an unusual ascent
         raise SoundingError(
             f"{shown(sounding.name)}: MetPy finds no parcel's path ({shown(str(error))}): give an ascent that reaches "
             "above the cloud base."

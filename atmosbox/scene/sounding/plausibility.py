@@ -1,4 +1,4 @@
-"""What no ascent can be: values in the wrong unit, levels out of order, holes in the air.
+"""What no ascent can be: values in the wrong unit, levels out of order, gaps.
 
 Every refusal is one sentence that says where the value stands, what it is and what to do.
 """
@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 FEWEST_LEVELS = 5
-"""Levels without which a curve is not worth the name."""
+"""The fewest levels that make a curve."""
 LARGEST_GAP = 250e2
 """Pressure that may lie between two levels: the mandatory ones are up to 200 hPa apart [Pa]."""
 GAP_CEILING = 300e2
