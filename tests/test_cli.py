@@ -614,7 +614,7 @@ def test_ctrl_c_while_a_frame_ends_keeps_the_frames_of_all_instruments(folder, m
 
 
 def test_ctrl_c_while_the_finished_file_is_written_keeps_it(folder, monkeypatch):
-    press_ctrl_c_inside(monkeypatch, checkpoint, "write_whole", 1)
+    press_ctrl_c_inside(monkeypatch, checkpoint.Checkpoint, "finish", 1)
     assert atmosbox_in_process(*SHORT).exit_code == 130
     assert [path.name for path in folder.iterdir()] == [f"{SCENE}.nc"]
     assert output.read(f"{SCENE}.nc").attrs["atmosbox_status"] == "complete"
