@@ -85,8 +85,12 @@ def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np
 
 def _ascent(settings: Settings) -> law.Ascent:
     """Return the ascent, with the error of its finite rate."""
-    si = settings.si
-    return law.Ascent(si.pressure, si.top_pressure, settings.ascent, 5 if settings.rotation else 3, CLOSING)
+    freedom = 5 if settings.rotation else 3
+    _, density, sides, _ = _start(settings)
+    height = float(sides[2]) / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+    environment = _environment(settings, 1.0)
+    route = tuple(environment.pressure(share) for share in np.linspace(0.0, 1.0, 400))
+    return law.Ascent(route, settings.ascent, height, freedom, CLOSING)
 
 
 def _environment(settings: Settings, duration: float) -> Environment:

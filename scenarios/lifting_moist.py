@@ -14,8 +14,8 @@ environment of constant lapse rate. Reversible: the droplets stay in the parcel;
 per kilogram, and any more falls out, which is nearly pseudo-adiabatic. Left out: ice, the curvature of droplets
 and what is dissolved in them; gravity inside the parcel; mixing with the environment. Exaggerated: some kilometres
 are climbed within nanoseconds, in a few hundred collisions of each molecule; the molecules are drawn larger than they
-are; the droplets have far more area than so little water could. Few molecules are vapour, one in fifty, and so the
-cloud base is blurred: already below it some molecules are clustered, RH / (1 - RH) on average.
+are; the droplets have far more area than so little water could. Few molecules are vapour, one in fifty, and already
+below the cloud base some of them are clustered, RH / (1 - RH) on average.
 """
 
 import math
@@ -49,7 +49,7 @@ ladder = (
     Series("exact", "molecules", (3000, 10_000), {"ascent": 400}),
     Series("dsmc", "ascent", (400, 1000, 3000), {"molecules": 50_000}),
 )
-"""What is worth comparing: a fast ascent ends too warm, and few molecules blur the cloud base."""
+"""What is worth comparing: a fast ascent is off its adiabat, and few molecules scatter."""
 
 
 class Settings(SceneSettings):
@@ -64,7 +64,7 @@ class Settings(SceneSettings):
     rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(400.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(30.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:
@@ -120,7 +120,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the cloud base and the temperatures on the way."""
-    return lifted_headlines(dataset, _ascent(settings), ideal=used(dataset).ideal)
+    return lifted_headlines(dataset, _ascent(settings), FRAMES, SAMPLES, ideal=used(dataset).ideal)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:

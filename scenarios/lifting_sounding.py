@@ -5,11 +5,10 @@ environment, it must be pushed; above the level of free convection its cloud is 
 the equilibrium level. The area between the two curves is the energy that a storm can have.
 
 Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the air;
-the environment as it was measured, hydrostatic; buoyancy of virtual temperatures. Reversible: the droplets stay in the
-parcel, but their weight is not counted, as is usual for CAPE; with rain=on the cloud holds a gram per kilogram. Left
-out: ice, the curvature of droplets; mixing with the environment, which weakens every real cloud; the parcel's own
-motion: it is lifted at a steady rate, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within
-nanoseconds.
+the environment as it was measured, hydrostatic; buoyancy of density temperatures. Reversible: the droplets stay in
+the parcel, and their weight counts; with rain=on the cloud holds a gram per kilogram. Left out: ice, the curvature of
+droplets; mixing with the environment, which weakens every real cloud; the parcel's own motion: it is lifted at a
+steady rate, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within nanoseconds.
 """
 
 import functools
@@ -24,14 +23,13 @@ from atmosbox.scene import sounding as air
 from atmosbox.scene.ascent import (
     MoistAscent,
     atmosphere_panel,
-    finite_size,
+    convection_headlines,
     lifted_headlines,
     lifted_theory,
     refuse_descent,
     rise,
 )
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.statistics import running_mean, successive_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,8 +37,6 @@ if TYPE_CHECKING:
 title = "Lifting through a sounding"
 FRAMES = 80
 SAMPLES = 8
-SMOOTH = 9
-"""Over how many frames the misfit is averaged before curves are crossed."""
 BUILT_IN = "weisman-klemp"
 
 
@@ -53,7 +49,7 @@ class Settings(SceneSettings):
     rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(800.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(30.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:
@@ -136,12 +132,12 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     return Setup(**(vars(setup) | {"facts": facts | dict(setup.facts) | {"verdict": _verdict(settings)}}))
 
 
-def _convection(settings: Settings, misfit: np.ndarray | float = 0.0) -> law.Convection:
-    """Return what theory's parcel can do, its temperature changed by a misfit along the route [K]."""
+def _convection(settings: Settings, *, weight: bool = True) -> law.Convection:
+    """Return what theory's parcel can do, with the weight of its droplets or without it."""
     ascent = _ascent(settings)
     path = ascent.planned[1]
     route = np.array(ascent.route)
-    parcel = law.virtual_temperature(path.temperature + misfit, path.vapor)
+    parcel = law.density_temperature(path.temperature, path.vapor, path.liquid if weight else 0.0)
     return law.cape_cin(route, _around(settings, route)[2], parcel, ascent.base)
 
 
@@ -158,57 +154,27 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     pressure = dataset.parcel_pressure.values
     _, dewpoint, virtual = _around(settings, dataset.environment_pressure.values)
     at_parcel = _around(settings, pressure)[2]
-    parcel = law.virtual_temperature(dataset.parcel_temperature.values, dataset.humidity_mixing_ratio.values)
+    warmth, vapour = dataset.parcel_temperature.values, dataset.humidity_mixing_ratio.values
+    parcel = law.density_temperature(warmth, vapour, dataset.cloud_liquid_water_mixing_ratio.values)
     return lifted_theory(dataset, _ascent(settings), FRAMES) | {
         "environment_dew_point_temperature": dewpoint,
         "environment_virtual_temperature": virtual,
-        "parcel_virtual_temperature": np.asarray(parcel),
+        "parcel_virtual_temperature": np.asarray(law.virtual_temperature(warmth, vapour)),
+        "parcel_density_temperature": np.asarray(parcel),
         "parcel_buoyancy": np.asarray(law.parcel_buoyancy(parcel, at_parcel)),
     }
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     """Return the levels and the energies of the simulated parcel, and what MetPy says of the sounding."""
-    ascent = _ascent(settings)
-    ideal = used(dataset).ideal
-    pressure = dataset.parcel_pressure.values
-    found = list(lifted_headlines(dataset, ascent, ideal=ideal))
-    if len(pressure) < FRAMES:
-        return tuple(found)
-    misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
-    smooth = running_mean(misfit, SMOOTH)
-    route = np.array(ascent.route)
-    along = np.interp(-np.log(route), -np.log(pressure), smooth)
-    noise = np.interp(-np.log(route), -np.log(pressure), successive_error(misfit, block=SMOOTH, near=8))
-    noise = np.hypot(noise, finite_size.walk(ascent, route) * ascent.planned[1].temperature)
-    off = np.array([finite_size.tolerance(ascent, p, ideal=ideal) for p in route[::4]])
-    off = np.interp(-np.log(route), -np.log(route[::4]), off)
-    here, expected = _convection(settings, along), _convection(settings)
-    colder, warmer = _convection(settings, along - noise), _convection(settings, along + noise)
-    least, most = _convection(settings, -off), _convection(settings, off)
-    independent = max((len(pressure) * _depth(expected, route)) / SMOOTH, 1.0)
-    reason = "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid"
-    rows = (
-        ("cape", "J kg-1", "J kg-1", "CAPE of the parcel", math.sqrt(independent)),
-        ("cin", "J kg-1", "J kg-1", "CIN of the parcel", 1.0),
-        ("lfc", "Pa", "hPa", "level of free convection", 1.0),
-        ("el", "Pa", "hPa", "equilibrium level", 1.0),
+    ascent, ideal = _ascent(settings), used(dataset).ideal
+    found = lifted_headlines(dataset, ascent, FRAMES, SAMPLES, ideal=ideal)
+    if dataset.sizes["elapsed_time"] < FRAMES:
+        return found
+    energies = convection_headlines(
+        dataset, ascent, FRAMES, SAMPLES, lambda pressure: _around(settings, pressure)[2], ideal=ideal
     )
-    for name, unit, shown, label, fewer in rows:
-        value, answer = getattr(here, name), getattr(expected, name)
-        sides = [getattr(each, name) for each in (colder, warmer, least, most)]
-        if value is None or answer is None or None in sides:
-            continue
-        scatter, allowed = abs(sides[1] - sides[0]) / 2.0 / fewer, abs(sides[3] - sides[2]) / 2.0
-        found.append(Headline(name, value, scatter, answer, allowed, reason, unit, shown, label))
-    return (*found, *_metpy(settings))
-
-
-def _depth(convection: law.Convection, route: np.ndarray) -> float:
-    """Return which part of the way the parcel is free, in the logarithm of the pressure."""
-    if convection.lfc is None:
-        return 0.0
-    return math.log(convection.lfc / (convection.el or route[-1])) / math.log(route[0] / route[-1])
+    return (*found, *energies, *_metpy(settings))
 
 
 def _metpy(settings: Settings) -> tuple[Headline, ...]:
@@ -224,7 +190,15 @@ def _metpy(settings: Settings) -> tuple[Headline, ...]:
     reason = "MetPy leaves out the heat of the vapour, and its EL is one of temperatures, not of virtual ones"
     rows = [
         ("metpy_lcl", metpy.lcl.pressure, base, 200.0, "Pa", "hPa", "condensation level, MetPy"),
-        ("metpy_cape", metpy.cape, ours.cape, 0.05 * ours.cape, "J kg-1", "J kg-1", "CAPE of the sounding, MetPy"),
+        (
+            "metpy_cape",
+            metpy.cape,
+            ours.cape,
+            0.05 * ours.cape,
+            "J kg-1",
+            "J kg-1",
+            "CAPE of the pseudo-adiabat, MetPy",
+        ),
     ]
     if metpy.el is not None and ours.el is not None:
         rows.append(("metpy_el", metpy.el.pressure, ours.el, 1000.0, "Pa", "hPa", "equilibrium level, MetPy"))

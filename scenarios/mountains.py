@@ -21,15 +21,15 @@ from atmosbox.errors import SettingError
 from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Setup, setting
 from atmosbox.scene.ascent import (
     MoistAscent,
+    along_frames,
     atmosphere_panel,
     finite_size,
     lifted_theory,
     refuse_supersaturation,
     rise,
+    temperature_covariance,
 )
-from atmosbox.scene.engines import EXACT
-from atmosbox.scene.headline import CHANCE_ALONE
-from atmosbox.scene.statistics import successive_error
+from atmosbox.scene.engines import EXACT, used
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +54,7 @@ class Settings(SceneSettings):
     rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     travel: float = setting(500.0, "1", "length of the way in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(30.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:
@@ -130,37 +130,40 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if len(pressure) < FRAMES:
         return ()
     misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
-    path = ascent.planned[1]
-    arrival = float(path.temperature[-1])
+    path, ideal = ascent.planned[1], used(dataset).ideal
+    arrival, cold = float(path.temperature[-1]), float(path.temperature.min())
     late = slice(-BLOCK, None)
-    cold = float(path.temperature.min())
-    lost = finite_size.rain_scatter(ascent) if "rain_mixing_ratio" in dataset else 0.0
-    noise = successive_error(misfit, block=BLOCK)[-1], finite_size.walk(ascent, pressure)[-1] * arrival
-    scatter = math.hypot(*noise, finite_size.warmth_of(lost, cold))
-    humidity = float(law.vapor_pressure(ascent.pressure, path.vapor[-1]) / law.saturation_vapor_pressure(arrival))
-    warmth = ascent.temperature * finite_size.finite_rate(ascent).finite_speed(ascent.top_pressure)
+    outside = dataset.environment_pressure.values
+    chance = temperature_covariance(along_frames(ascent, outside, FRAMES, SAMPLES, ideal=ideal), SAMPLES)[late, late]
+    rains = "rain_mixing_ratio" in dataset
+    lost = finite_size.rain_scatter(ascent) if rains else 0.0
+    scatter = math.hypot(arrival * math.sqrt(chance.mean()), finite_size.warmth_of(lost, cold))
+    known = finite_size.drift(ascent, ideal=ideal)
+    more = finite_size.rained(ascent) if rains else path
+    warmer = float(known.warmer[-1]) + max(float(more.temperature[-1]) - arrival, 0.0)
     found = [
         Headline(
             "arrival_temperature",
             arrival + float(misfit[late].mean()),
             scatter,
             arrival if finite_size.comparable(ascent) else None,
-            warmth + finite_size.haze(ascent, humidity, 0.0, arrival),
-            "the way is not infinitely slow, and some molecules are clustered in clear air",
+            max(warmer, float(known.colder[-1])),
+            "the way is not infinitely slow, some molecules are clustered in clear air, and a cloud that scatters "
+            "rains more",
             "K",
             "degC",
             "temperature in the plain beyond",
         )
     ]
-    if "rain_mixing_ratio" in dataset:
+    if rains:
         found.append(
             Headline(
                 "rain",
                 float(dataset.rain_mixing_ratio[-1]),
                 lost,
                 float(path.rain[-1]) if finite_size.comparable(ascent) else None,
-                0.0,
-                CHANCE_ALONE,
+                abs(float(more.rain[-1]) - float(path.rain[-1])),
+                "the liquid of so few molecules scatters, and a surplus rains",
                 "kg kg-1",
                 "g kg-1",
                 "rain per dry air",

@@ -40,8 +40,8 @@ from atmosbox.theory.barometric import (
     column_floor_ratio,
     column_mean_height,
 )
-from atmosbox.theory.buoyancy import Convection, cape_cin, parcel_buoyancy
-from atmosbox.theory.cloud_base import CloudBase, fitted_cloud_base
+from atmosbox.theory.buoyancy import Convection, cape_cin, density_temperature, parcel_buoyancy
+from atmosbox.theory.cloud_base import CloudBase, measured_cloud_base
 from atmosbox.theory.collision import (
     collision_rate,
     collision_rate_between,
@@ -86,7 +86,7 @@ from atmosbox.theory.evaporation import (
     evaporation_equilibrium,
     wet_bulb_temperature,
 )
-from atmosbox.theory.finite_rate import DISSIPATION, FINITE_SPEED, Ascent
+from atmosbox.theory.finite_rate import DISSIPATION, Ascent
 from atmosbox.theory.humidity import (
     WATER_MASS_RATIO,
     mixing_ratio,
@@ -137,7 +137,6 @@ __all__ = [
     "BINDING_TEMPERATURE",
     "DISSIPATION",
     "DRY_AIR_GAS_CONSTANT",
-    "FINITE_SPEED",
     "FREEZING_PACKING_FRACTION",
     "FREEZING_PACKING_FRACTION_DISCS",
     "LEAVING_FREEDOM",
@@ -168,6 +167,7 @@ __all__ = [
     "contact_value",
     "contact_value_between",
     "contact_value_discs",
+    "density_temperature",
     "dewpoint",
     "dry_adiabat_temperature",
     "dry_lapse_rate",
@@ -180,7 +180,6 @@ __all__ = [
     "excess_chemical_potential_discs",
     "excess_free_energy",
     "excess_free_energy_discs",
-    "fitted_cloud_base",
     "free_molecular_slab",
     "gas_pressure",
     "gas_pressure_discs",
@@ -203,6 +202,7 @@ __all__ = [
     "mean_free_path",
     "mean_free_time",
     "mean_speed",
+    "measured_cloud_base",
     "microcanonical_flux",
     "mixing_ratio",
     "moist_air_poisson_exponent",

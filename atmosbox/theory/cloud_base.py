@@ -1,19 +1,16 @@
-"""Where the cloud base of a measured ascent is: at the kink of its temperature."""
+"""Where the cloud base of a measured ascent is: where its liquid begins, by what the parcel holds alone."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.theory.humidity import vapor_pressure
-from atmosbox.theory.moist_lifting import lcl, parcel_path
-from atmosbox.theory.saturation import dewpoint
+from atmosbox.theory._array import as_floats
 
-__all__ = ["CloudBase", "fitted_cloud_base"]
+__all__ = ["CloudBase", "measured_cloud_base"]
 
-_REACH = 0.7
+MOST = 0.75
+"""Up to which share of all water that has condensed the curve is used."""
 
 
 class CloudBase(NamedTuple):
@@ -23,74 +20,71 @@ class CloudBase(NamedTuple):
     standard_error: float
 
 
-def fitted_cloud_base(
+def measured_cloud_base(
     pressure: ArrayLike,
-    temperature: ArrayLike,
-    error: ArrayLike,
-    pressure0: float,
-    temperature0: float,
-    total_water: float,
-    most_liquid: float = np.inf,
-    nuclei_heat: float = 0.0,
+    vapor: ArrayLike,
+    condensed: ArrayLike,
+    covariance: ArrayLike,
+    least: float = 0.1,
 ) -> CloudBase | None:
-    """Return where the temperature of rising air has its kink, or None where it has none.
+    r"""Return where the water of rising air begins to stay liquid, or None where it does not.
 
-    A moist adiabat is laid through the temperatures, of which the total water and a constant are free: the base is
-    where that much water becomes saturated. The first crossing of a relative humidity of 100 % would be a worse
-    answer, for that scatters.
+    Of few molecules some are clustered in clear air already. So the growth of the cloud above is followed back to where
+    it began: the share of the water that has condensed is laid through with a parabola in ln p, whose zero is the base.
 
     Parameters
     ----------
-    pressure, temperature, error : (level,)
-        What was measured on the way up, and its standard error [Pa, K, K].
-    pressure0, temperature0
-        At the start [Pa, K].
-    total_water
-        Water per dry air by which the search begins [kg kg^-1].
-    most_liquid, nuclei_heat
-        See :func:`atmosbox.theory.parcel_path`.
+    pressure, vapor, condensed : (level,)
+        What was measured on the way up: pressure [Pa], and vapour and liquid, rain included, per dry air [kg kg^-1].
+    covariance : (level, level)
+        Covariance of the measured vapour at these pressures.
+    least
+        From which share of all water on the cloud is taken to be more than clusters [1].
 
     Returns
     -------
     CloudBase or None
-        None where too few levels lie on either side of the base.
+        None where no level is clear, or too few lie in the cloud.
 
     Examples
     --------
-    An ascent shows its lifting condensation level of 888.8 hPa, here without noise:
+    An ascent shows its lifting condensation level of 888.8 hPa, found 2 hPa too high up without noise:
 
-    >>> levels = np.linspace(1000e2, 600e2, 40)
+    >>> from atmosbox.theory.moist_lifting import parcel_path
+    >>> levels = np.geomspace(1000e2, 400e2, 60)
     >>> path = parcel_path(levels, 1000e2, 298.15, 0.0122722)
-    >>> found = fitted_cloud_base(levels, path.temperature, 0.1, 1000e2, 298.15, 0.0130)
-    >>> round(found.pressure / 100.0, 1)
-    888.8
+    >>> found = measured_cloud_base(levels, path.vapor, path.liquid, 1e-10 * np.eye(60))
+    >>> round(found.pressure / 100.0)
+    886
     """
-    from scipy.optimize import least_squares
-
-    p, t = as_floats(pressure).ravel(), as_floats(temperature).ravel()
-    sigma = np.broadcast_to(as_floats(error), p.shape)
-
-    def base(water: float) -> float:
-        humid = min(float(dewpoint(vapor_pressure(pressure0, water))), temperature0)
-        return float(lcl(pressure0, temperature0, humid, nuclei_heat)[0])
-
-    if not total_water > 0.0:
+    p, v, c = (as_floats(each).ravel() for each in (pressure, vapor, condensed))
+    noise = as_floats(covariance)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = c / (c + v)
+    cloudy = np.flatnonzero(share > least)
+    clear = np.flatnonzero(~(share > least))
+    full = np.flatnonzero(share > MOST)
+    end = int(full[0]) if full.size else len(p)
+    clear = clear[clear < end]
+    if not cloudy.size or not clear.size or least > 0.5 * MOST:
         return None
-    expected = base(total_water)
-    near = (p >= _REACH * expected) & np.isfinite(sigma) & (sigma > 0.0)
-    if np.sum(near & (p > expected)) < 3 or np.sum(near & (p < expected)) < 5:
+    near = np.arange(int(clear[-1]) + 1, end)
+    if near.size < 8 or not np.all(np.isfinite(share[near])):
         return None
-    levels, seen, weight = p[near], t[near], 1.0 / sigma[near]
-
-    def misfit(free: FloatArray) -> FloatArray:
-        path = parcel_path(levels, pressure0, temperature0, float(np.exp(free[0])), most_liquid, nuclei_heat)
-        residual: FloatArray = (path.temperature + free[1] - seen) * weight
-        return residual
-
-    fit = least_squares(misfit, (np.log(total_water), 0.0), diff_step=1e-4, x_scale=(0.1, 0.1))
-    log_water = float(fit.x[0])
-    spread = float(np.sqrt(np.linalg.inv(fit.jac.T @ fit.jac)[0, 0]))
-    found = base(math.exp(log_water))
-    step = 1e-3
-    slope = (base(math.exp(log_water + step)) - base(math.exp(log_water - step))) / (2.0 * step)
-    return CloudBase(found, abs(slope) * spread)
+    # of the water, all of which is known, so much is vapour
+    scale = np.outer(1.0 / (c + v)[near], 1.0 / (c + v)[near])
+    middle = float(np.log(p[near]).mean())
+    x = np.log(p[near]) - middle
+    rows = np.stack([np.ones_like(x), x, x * x])
+    weight = 1.0 / (np.diag(noise)[near] * np.diag(scale))
+    solve = np.linalg.solve(rows * weight @ rows.T, rows * weight)
+    a, b, d = solve @ share[near]
+    inside = b * b - 4.0 * a * d
+    if not (b < 0.0 and inside > 0.0):
+        return None
+    root = -2.0 * a / (b - np.sqrt(inside))
+    slope = b + 2.0 * d * root
+    gain = np.array([1.0, root, root * root]) @ solve / slope
+    found = float(np.exp(middle + root))
+    error = found * float(np.sqrt(gain @ (noise[np.ix_(near, near)] * scale) @ gain))
+    return CloudBase(found, error) if found <= 1.05 * p[0] and np.isfinite(error) else None

@@ -1,5 +1,7 @@
 """A cloud that rains at a finite rate: the path of a parcel, which depends on time as well."""
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -28,6 +30,7 @@ def raining_path(
     rate: float,
     most_liquid: float = 0.0,
     nuclei_heat: float = 0.0,
+    scatter: float = 0.0,
 ) -> ParcelPath:
     r"""Follow a parcel up and down whose cloud rains in proportion to its liquid beyond a threshold.
 
@@ -49,6 +52,9 @@ def raining_path(
         The threshold [kg kg^-1].
     nuclei_heat
         Heat capacity of whatever is as warm as the air, per molecule of air [k].
+    scatter
+        Standard deviation of the liquid of a small cloud about what is at equilibrium [kg kg^-1]. A surplus rains, and
+        what is missing does not come back: so more rains than from a cloud that does not scatter.
 
     Returns
     -------
@@ -88,6 +94,7 @@ def raining_path(
     keeps = checked_not_negative(as_floats(most_liquid), "most_liquid") / MASS_RATIO
     heat = AIR_HEAT + checked_not_negative(as_floats(nuclei_heat), "nuclei_heat")
     fast = checked_not_negative(as_floats(rate), "rate")
+    spread = float(checked_not_negative(as_floats(scatter), "scatter")) / MASS_RATIO
     steps = np.diff(moments, prepend=0.0)
     if np.any(steps < 0.0):
         raise ValueError("time must not run backwards.")
@@ -96,13 +103,27 @@ def raining_path(
     for k in range(len(p)):
         level = p[k : k + 1]
         t, vapor = _state(s, level, water, heat)
-        lost = np.maximum(water - vapor - keeps, 0.0) * -np.expm1(-fast * steps[k])
+        lost = np.minimum(_surplus(float(water - vapor - keeps), spread) * -np.expm1(-fast * steps[k]), water - vapor)
         water, s = water - lost, s - lost * LIQUID_HEAT * np.log(t / TRIPLE_TEMPERATURE)
         if lost > 0.0:
             t, vapor = _state(s, level, water, heat)
         rows[k] = float(t), float(vapor), float(water)
     columns = rows[:, 0], MASS_RATIO * rows[:, 1], MASS_RATIO * (rows[:, 2] - rows[:, 1])
     return ParcelPath(*columns, MASS_RATIO * (given - rows[:, 2]))
+
+
+def _surplus(mean: float, scatter: float) -> float:
+    r"""Return the mean of what lies above zero, :math:`m \Phi(m/s) + s \phi(m/s)` for a normal distribution.
+
+    Examples
+    --------
+    >>> _surplus(2.0, 0.0), round(_surplus(0.0, 1.0), 3)
+    (2.0, 0.399)
+    """
+    if not scatter > 0.0:
+        return max(mean, 0.0)
+    a = mean / scatter
+    return 0.5 * mean * math.erfc(-a / math.sqrt(2.0)) + scatter * math.exp(-0.5 * a * a) / math.sqrt(2.0 * math.pi)
 
 
 def _state(s: FloatArray, level: FloatArray, water: FloatArray, heat: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -237,7 +238,7 @@ def spheres_arrive(diameter: float, start: float, bottom: float, top: float, fre
 @job("requirement-lifting", quick=True)
 def rising_parcel(found: Findings) -> None:
     """Weigh what the rising parcel leaves out."""
-    _, settings, setup = set_up("lifting-dry")
+    scene, settings, setup = set_up("lifting-dry")
     si = settings.si
     start, bottom, top, sigma = si.temperature, si.pressure, si.top_pressure, si.diameter
     end = float(theory.dry_adiabat_temperature(top, start, bottom, 5))
@@ -248,8 +249,10 @@ def rising_parcel(found: Findings) -> None:
     seconds = setup.duration * scale.time
     climbed = float(theory.height_of_pressure(top, start, bottom, si.lapse_rate))
     free = {width: mean_free(start, bottom, width) for width in (sigma, DRY_AIR.diameter)}
-    hurry = theory.FINITE_SPEED * end / settings.ascent
-    hour = theory.FINITE_SPEED * end / (3600.0 / free[DRY_AIR.diameter][1])
+    ascent = scene._ascent(settings)
+    hurry = end * ascent.finite_speed(top)
+    # in an hour the order that counts is the first
+    hour = end * replace(ascent, length=1e6, height=0.0).finite_speed(top) * 1e6 / (3600.0 / free[DRY_AIR.diameter][1])
     sound = math.sqrt(float(theory.adiabatic_index(5)) * BOLTZMANN * end / mass)
     piston = (high - low) / seconds
     room = {width: spheres_arrive(width, start, bottom, top, 5) for width in (sigma, DRY_AIR.diameter)}

@@ -10,8 +10,8 @@ from atmosbox.scene import sounding
 from atmosbox.simulation import runner
 
 
-def own(moisture: float, most_liquid: float, warmer: float = 0.0) -> theory.Convection:
-    """Return what theory says of the analytic sounding."""
+def own(moisture: float, most_liquid: float, warmer: float = 0.0, *, weight: bool = False) -> theory.Convection:
+    """Return what theory says of the analytic sounding, with the weight of the droplets or without it."""
     air = sounding.weisman_klemp(moisture)
     levels = np.unique(np.append(air.pressure, np.geomspace(air.pressure[0], air.pressure[-1], 400)))[::-1]
     x, known = -np.log(levels), -np.log(air.pressure)
@@ -20,7 +20,7 @@ def own(moisture: float, most_liquid: float, warmer: float = 0.0) -> theory.Conv
     water = float(theory.mixing_ratio(theory.saturation_vapor_pressure(air.dewpoint[0]), air.pressure[0]))
     path = theory.parcel_path(levels, air.pressure[0], air.temperature[0], water, most_liquid)
     base = float(theory.lcl(air.pressure[0], air.temperature[0], air.dewpoint[0])[0])
-    parcel = theory.virtual_temperature(path.temperature + warmer, path.vapor)
+    parcel = theory.density_temperature(path.temperature + warmer, path.vapor, path.liquid if weight else 0.0)
     return theory.cape_cin(levels, theory.virtual_temperature(temperature, vapour), parcel, base)
 
 
@@ -52,7 +52,10 @@ def analytic(found: Findings) -> None:
     pseudo, reversible = own(0.014, 0.0).cape, own(0.014, math.inf).cape
     found.number("pseudo", f"{pseudo:.0f} J/kg")
     found.number("reversible", f"{reversible:.0f} J/kg")
-    found.number("half-degree", f"{rounded(own(0.014, math.inf, 0.5).cape - reversible)} J/kg")
+    loaded = own(0.014, math.inf, weight=True)
+    found.number("loaded", f"{loaded.cape:.0f} J/kg")
+    warmer = own(0.014, math.inf, 0.5, weight=True).cape
+    found.number("half-degree", f"{rounded(warmer - loaded.cape)} J/kg")
     runs = []
     for seed in (1, 2, 3):
         outcome = runner.execute(runner.prepare("lifting-sounding", {"seed": seed}))
@@ -70,7 +73,7 @@ def analytic(found: Findings) -> None:
                 ),
             ]
         )
-    expected = own(0.014, math.inf)
+    expected = loaded
     assert expected.lfc is not None
     assert expected.el is not None
     runs.append(

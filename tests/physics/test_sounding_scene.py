@@ -35,7 +35,8 @@ def headline(found, name):
 
 
 def test_the_built_in_sounding_is_weisman_and_klemps_and_passes_its_own_check():
-    found = outcome()
+    # a thousand molecules hold nineteen of water, too few for theories that take them for many
+    found = outcome(molecules=4000, ascent=100)
     assert all(check.passed for check in verify(found.dataset))
     air = sounding.weisman_klemp()
     assert found.dataset.environment_temperature.values[0] == pytest.approx(air.temperature[0], abs=1.0)
@@ -44,19 +45,52 @@ def test_the_built_in_sounding_is_weisman_and_klemps_and_passes_its_own_check():
     assert headline(found, "metpy_el").agrees
 
 
-def test_the_buoyancy_is_that_of_virtual_temperatures():
+def test_the_buoyancy_is_that_of_the_weight_of_all_that_the_parcel_holds():
     data = outcome().dataset
     warmer = data.parcel_virtual_temperature.values - data.parcel_temperature.values
-    vapour = data.humidity_mixing_ratio.values
-    # T_v is T (1 + 0.608 r) to a percent of the difference
+    vapour, liquid = data.humidity_mixing_ratio.values, data.cloud_liquid_water_mixing_ratio.values
+    # T_v is T (1 + 0.608 r) to a percent of the difference, and each gram of liquid weighs as much as a thousandth of T
     assert warmer == pytest.approx(0.608 * vapour * data.parcel_temperature.values, rel=0.02)
+    loaded = data.parcel_virtual_temperature.values / data.parcel_density_temperature.values - 1.0
+    assert loaded == pytest.approx(liquid, rel=0.03)
+    assert liquid.max() > 0.01
     air = sounding.weisman_klemp()
     levels = -np.log(air.pressure)
     moist = theory.mixing_ratio(theory.saturation_vapor_pressure(air.dewpoint), air.pressure)
     around = np.interp(-np.log(data.parcel_pressure), levels, theory.virtual_temperature(air.temperature, moist))
-    expected = theory.parcel_buoyancy(data.parcel_virtual_temperature, around)
+    expected = theory.parcel_buoyancy(data.parcel_density_temperature, around)
     # the scene interpolates temperature and dewpoint, which is not quite the same between levels 250 m apart
     assert data.parcel_buoyancy.values == pytest.approx(np.asarray(expected), abs=0.002)
+
+
+def test_cape_is_measured_with_the_water_that_the_parcel_holds():
+    found = outcome(molecules=4000, ascent=100)
+    module, data = scenarios.load(SCENE), found.dataset
+    settings = runner.prepare(SCENE, SMALL | {"molecules": 4000, "ascent": 100}).settings
+    true = headline(found, "cape")
+
+    def cape(**changed):
+        other = data.assign(changed)
+        other = other.assign(
+            {name: data[name].copy(data=value) for name, value in module.theory(other, settings).items()}
+        )
+        return next(each for each in module.headlines(other, settings) if each.name == "cape").value
+
+    assert cape() == pytest.approx(true.value, rel=1e-9)
+    # half the vapour makes the parcel heavier by four tenths of a percent at the cloud base; half the liquid lighter
+    assert cape(humidity_mixing_ratio=data.humidity_mixing_ratio * 0.5) < true.value - 80.0
+    lighter = cape(cloud_liquid_water_mixing_ratio=data.cloud_liquid_water_mixing_ratio * 0.5)
+    assert lighter > true.value + 200.0
+    assert cape(parcel_temperature=data.parcel_temperature - 1.0) < true.value - 200.0
+
+
+def test_a_cloud_that_carries_its_water_has_half_the_energy_of_one_that_does_not_weigh():
+    module = scenarios.load(SCENE)
+    settings = runner.prepare(SCENE, {"molecules": 1_000_000}).settings
+    loaded, light = (module._convection(settings, weight=weight).cape for weight in (True, False))
+    # independently, at 14 g/kg: 1253 J/kg with the weight of the water, 2212 without
+    assert loaded == pytest.approx(1253.0, abs=15.0)
+    assert light == pytest.approx(2212.0, abs=15.0)
 
 
 def test_a_stable_sounding_has_no_energy_and_the_word_for_it(tmp_path):

@@ -19,7 +19,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 SHORT = ("duration", "ascent", "travel")
 FEW = 300
-SCENES = [each for each in scenarios.names() if each != "lifting-sounding"]
+SCENES = scenarios.names()
 ENERGIES = {"cape_theory", "cin_theory"}
 """Theory that may be below zero: energies of a parcel."""
 

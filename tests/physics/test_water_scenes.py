@@ -7,17 +7,19 @@ the same more finely.
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from atmosbox import theory
+from atmosbox import scenarios, theory
 from atmosbox.cli import app
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
+from atmosbox.scene.ascent import along_frames, finite_size, temperature_covariance
 from atmosbox.simulation import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -130,6 +132,46 @@ def test_a_parcel_too_dry_for_a_cloud_follows_the_dry_adiabat_and_states_no_base
     expected = theory.dry_adiabat_temperature(dry.parcel_pressure.values / 100.0, 298.15, 1000.0, 5)
     assert dry.adiabat_temperature.values == pytest.approx(expected, rel=3e-3)
     assert "Too dry for a cloud" in dry.attrs["atmosbox_panels"]
+
+
+def allowed_at(settings, level):
+    """Return what a run of lifting-moist allows at a level [K]: four standard errors, and what is known to be off."""
+    ascent = scenarios.load("lifting-moist")._ascent(settings)
+    outside = np.exp(np.interp((np.arange(60) + 0.5) / 60, np.linspace(0.0, 1.0, 400), np.log(ascent.route)))
+    cloud = along_frames(ascent, outside, 60, 10, ideal=False)
+    near = int(np.argmin(np.abs(outside - level)))
+    near = slice(min(max(near - 3, 0), 53), min(max(near - 3, 0), 53) + 7)
+    chance = math.sqrt(temperature_covariance(cloud, 10)[near, near].mean())
+    warmth = float(ascent.planned_at(level).temperature[0])
+    return 4.0 * chance * warmth + finite_size.drift(ascent, ideal=False).allowed(level)
+
+
+def test_neither_a_tenth_less_water_nor_a_pseudo_adiabat_is_within_what_is_allowed_by_default():
+    settings = runner.prepare("lifting-moist", {}).settings
+    ascent = scenarios.load("lifting-moist")._ascent(settings)
+    levels = np.array([700e2, 500e2, 300e2])
+    start = ascent.pressure, ascent.temperature
+    right, less, pseudo = (
+        theory.parcel_path(levels, *start, share * ascent.total_water, keeps, ascent.nuclei_heat).temperature
+        for share, keeps in ((1.0, math.inf), (0.9, math.inf), (1.0, 0.0))
+    )
+    allowed = np.array([allowed_at(settings, level) for level in levels])
+    # one standard error is left for chance: 1.2, 1.6 and 2.3 K of less water, 1.4 K at 300 hPa of a pseudo-adiabat
+    assert (allowed < 0.85 * (right - less)).all()
+    assert allowed[2] < 0.85 * (right - pseudo)[2]
+
+
+@pytest.mark.validate
+def test_a_run_at_the_default_tells_its_water_and_its_adiabat():
+    outcome = runner.execute(runner.prepare("lifting-moist", {"seed": 2}))
+    ascent = scenarios.load("lifting-moist")._ascent(runner.prepare("lifting-moist", {}).settings)
+    assert all(each.agrees for each in outcome.headlines)
+    start = ascent.pressure, ascent.temperature
+    for share, keeps, wrong in ((0.9, math.inf, {500, 300}), (1.0, 0.0, {300})):
+        for level in wrong:
+            path = theory.parcel_path([100.0 * level], *start, share * ascent.total_water, keeps, ascent.nuclei_heat)
+            other = replace(found(outcome)[f"temperature_at_{level}_hpa"], theory=float(path.temperature[0]))
+            assert other.agrees is False, (share, keeps, level)
 
 
 def test_air_that_is_saturated_at_the_ground_is_in_its_cloud_from_the_start():

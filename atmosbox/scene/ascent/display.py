@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.scene.ascent import finite_size
+from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance, vapour_covariance
+from atmosbox.scene.ascent.near_equilibrium import Cloud
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import Line, Panel
-from atmosbox.scene.statistics import successive_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,8 +21,11 @@ if TYPE_CHECKING:
 __all__ = ["atmosphere_panel", "lifted_headlines", "lifted_panels", "lifted_theory"]
 
 Array = NDArray[np.float64]
-BLOCK = 5
+BLOCK = 7
 """Over how many frames a temperature is averaged that is compared with the adiabat."""
+LEAST, CLUSTERED = 0.1, 3.0
+"""From which share of all water on liquid counts as a cloud, and how many times its scatter that is at least."""
+REASON = "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid"
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
@@ -118,49 +122,91 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
     return found | ({"rain_mixing_ratio_theory": path.rain} if "rain_mixing_ratio" in dataset else {})
 
 
-def lifted_headlines(dataset: xr.Dataset, ascent: MoistAscent, *, ideal: bool) -> tuple[Headline, ...]:
-    """Return the cloud base, and the temperature at some levels of a way up."""
-    pressure, temperature = dataset.parcel_pressure.values, dataset.parcel_temperature.values
-    stated, misfit = dataset.parcel_temperature_se.values, temperature - dataset.adiabat_temperature.values
-    found = []
-    base = law.fitted_cloud_base(
-        pressure, temperature, stated, ascent.pressure, ascent.temperature, ascent.total_water,
-        nuclei_heat=ascent.nuclei_heat,
-    )  # fmt: skip
-    if base is not None:
-        found.append(
-            Headline(
-                "cloud_base",
-                base.pressure,
-                base.standard_error,
-                ascent.base,
-                finite_size.blur(ascent),
-                "molecules cluster already below the base, and vapour must find liquid: it is blurred",
-                "Pa",
-                "hPa",
-                "cloud base",
-            )
-        )
-    scatter = successive_error(misfit, block=BLOCK)
+def lifted_headlines(
+    dataset: xr.Dataset, ascent: MoistAscent, frames: int, samples: int, *, ideal: bool
+) -> tuple[Headline, ...]:
+    """Return the cloud base, and the temperature at some levels of a way up.
+
+    Parameters
+    ----------
+    dataset
+        What was measured.
+    ascent
+        The way.
+    frames, samples
+        How many frames the whole way has, and how many samples each.
+    ideal
+        Whether molecules have no volume.
+    """
+    pressure, outside = dataset.parcel_pressure.values, dataset.environment_pressure.values
+    if len(pressure) < BLOCK:
+        return ()
+    cloud = along_frames(ascent, outside, frames, samples, ideal=ideal)
+    misfit = (dataset.parcel_temperature - dataset.adiabat_temperature).values
+    temperature = dataset.adiabat_temperature.values
+    chance = temperature_covariance(cloud, samples) * np.outer(temperature, temperature)
+    known = finite_size.drift(ascent, ideal=ideal)
+    found = _cloud_base(dataset, ascent, cloud, samples, known)
     for level in ascent.levels:
-        middle = int(np.argmin(np.abs(np.log(pressure / level))))
-        # the error is that of so many frames: at the top the last of them, not fewer
-        first = min(max(middle - BLOCK // 2, 0), max(len(pressure) - BLOCK, 0))
-        near = slice(first, first + BLOCK)
-        if dataset.environment_pressure.values.min() > 1.02 * level:  # the parcel's own pressure scatters
+        if outside.min() > 1.02 * level:  # the parcel's own pressure scatters
             continue
+        first = int(np.argmin(np.abs(np.log(outside / level)))) - BLOCK // 2
+        first = min(max(first, 0), len(pressure) - BLOCK)
+        near = slice(first, first + BLOCK)
         expected = float(ascent.planned_at(level).temperature[0])
         found.append(
             Headline(
                 f"temperature_at_{level / 100.0:.0f}_hpa",
                 expected + float(misfit[near].mean()),
-                float(np.hypot(scatter[middle], expected * finite_size.walk(ascent, np.array([level]))[0])),
+                float(np.sqrt(chance[near, near].mean())),
                 expected if finite_size.comparable(ascent) else None,
-                finite_size.tolerance(ascent, level, ideal=ideal),
-                "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid",
+                known.allowed(level),
+                REASON,
                 "K",
                 "degC",
                 f"temperature at {level / 100.0:.0f} hPa",
             )
         )
     return tuple(found)
+
+
+def _cloud_base(
+    dataset: xr.Dataset, ascent: MoistAscent, cloud: Cloud, samples: int, known: finite_size.Drift
+) -> list[Headline]:
+    """Return where the liquid of the parcel begins, and by how much that level is known to be off."""
+    vapour, liquid = (dataset[name].values for name in ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio"))
+    condensed = liquid + (dataset.rain_mixing_ratio.values if "rain_mixing_ratio" in dataset else 0.0)
+    if not ascent.base > ascent.top_pressure:
+        return []
+    unit = law.WATER_MASS_RATIO / cloud.air
+    noise = vapour_covariance(cloud, samples) * unit**2
+    scatter = float(np.sqrt(np.linalg.inv(cloud.resists)[:, 0, 0].max())) * unit
+    least = max(LEAST, CLUSTERED * scatter / ascent.total_water)
+    base = law.measured_cloud_base(dataset.parcel_pressure.values, vapour, condensed, noise, least)
+    if base is None:
+        return []
+    # the same measurement of theory's parcel, with what is known to be off: in frames as wide
+    path = ascent.planned[1]
+    warmer = (known.rate - known.room - known.piston) / path.temperature
+    held = np.where(
+        path.liquid > 0.0, path.vapor * (1.0 + path.vapor / law.WATER_MASS_RATIO) * known.latent * warmer, 0.0
+    )
+    off = path.vapor + held + unit * (known.late - known.clustered)
+    frames = dataset.environment_pressure.values
+    v = np.interp(np.log(frames[::-1]), np.log(np.array(ascent.route))[::-1], off[::-1])[::-1]
+    expected = law.measured_cloud_base(frames, v, ascent.total_water - v, noise, least)
+    shift = expected.pressure - ascent.base if expected is not None else 0.0
+    where = "up" if shift < 0.0 else "down"
+    return [
+        Headline(
+            "cloud_base",
+            base.pressure,
+            base.standard_error,
+            ascent.base,
+            abs(shift),
+            f"vapour must find liquid, spheres have volume: {abs(shift) / 100.0:.1f} hPa too far {where} on average",
+            "Pa",
+            "hPa",
+            "cloud base",
+        )
+    ]

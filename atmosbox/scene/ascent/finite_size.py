@@ -1,113 +1,131 @@
-"""The errors of the model itself: how far a parcel may be from its adiabat, and a cloud base from its level.
+r"""The errors of the model itself: how far from its adiabat a parcel is known to be.
 
 Three things are not as in a cloud of kilometres. The way takes nanoseconds; molecules have volume; and few of
-them are vapour, so that a cloud consists of few molecules.
+them are vapour, so that a cloud consists of few molecules. What that does is known, with its sign: see `drift`.
 """
 
+import functools
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
+from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
+from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
-from atmosbox.scene.piston import CLOSING, size_of_parcel
 
-__all__ = [
-    "blur",
-    "comparable",
-    "finite_rate",
-    "haze",
-    "lag",
-    "least_cloud",
-    "rain_scatter",
-    "tolerance",
-    "walk",
-    "warmth_of",
-]
+__all__ = ["Drift", "comparable", "drift", "least_cloud", "rain_scatter", "rained", "warmth_of"]
 
 Array = NDArray[np.float64]
+_PLACES = 24
 
 
-def finite_rate(ascent: MoistAscent) -> law.Ascent:
-    """Return the ascent at a constant rate that has the same finite-rate error; a detour makes the way faster."""
-    detour = ascent.travel / math.log(ascent.pressure / ascent.top_pressure)
-    return law.Ascent(ascent.pressure, ascent.top_pressure, ascent.length / detour**2, closing=CLOSING)
+class Drift(NamedTuple):
+    """By how much a parcel is known to be off along its planned way, each not negative, (moment,)."""
+
+    pressure: Array
+    """Where on the way [Pa]."""
+    rate: Array
+    """Too warm, by friction and by condensing at a finite rate [K]."""
+    flow: Array
+    """Too warm, by the energy of the flow, :math:`m e^2 h^2 / 6` for each molecule [K]."""
+    clusters: Array
+    """Too warm, by molecules that are clustered in clear air and at the cloud base [K]."""
+    lag: Array
+    """Too cold, because vapour and heat are under way to the liquid [K]."""
+    piston: Array
+    """Too cold, because the piston gives way to fluctuations [K]."""
+    room: Array
+    """Too cold, because molecules have volume [K]."""
+    late: Array
+    """Molecules of vapour that are under way to the liquid."""
+    clustered: Array
+    """Molecules that chance adds to the liquid."""
+    latent: Array
+    """Latent heat of a molecule over kT."""
+
+    @property
+    def warmer(self) -> Array:
+        """All that makes it too warm [K]."""
+        return self.rate + self.flow + self.clusters
+
+    @property
+    def colder(self) -> Array:
+        """All that makes it too cold [K]."""
+        return self.lag + self.piston + self.room
+
+    def at(self, pressure: float) -> tuple[float, float]:
+        """Return how much too warm and how much too cold it is where it first meets a pressure [Pa], in K."""
+        rising = slice(0, int(np.argmin(self.pressure)) + 1)
+        where = np.log(self.pressure[rising][::-1])
+        warmer, colder = (np.interp(math.log(pressure), where, x[rising][::-1]) for x in (self.warmer, self.colder))
+        return float(warmer), float(colder)
+
+    def allowed(self, pressure: float) -> float:
+        """Return how far off it may be to either side [K]: the two kinds may make up for each other."""
+        return max(self.at(pressure))
 
 
-def walk(ascent: MoistAscent, pressure: Array) -> Array:
-    r"""Return the scatter of the temperature by that of the piston's work, as a share of it, by pressure [Pa].
-
-    As in dry air it is :math:`\sqrt{2 s / N} / c_p`, for the entropy s that the finite rate makes per molecule. The
-    pressures are in the order in which they are met: the scatter at the lowest so far stays on the way down.
-    """
-    speed = finite_rate(ascent)
-    lowest = np.minimum.accumulate(np.minimum(pressure.ravel(), ascent.pressure))
-    gained = np.array([3.5 * speed.finite_speed(float(p)) for p in lowest])
-    share: Array = np.sqrt(2.0 * gained.reshape(pressure.shape) / ascent.molecules) / 3.5
-    return share
+@functools.lru_cache(maxsize=8)
+def _planned_cloud(ascent: MoistAscent, ideal: bool) -> Cloud:
+    shares, path = ascent.planned
+    return cloud_along(ascent, np.array(ascent.route), shares, ideal=ideal, path=path)
 
 
-def _latent(temperature: float) -> float:
-    """Return the latent heat of a molecule over kT."""
-    return law.BINDING_TEMPERATURE / temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
+@functools.lru_cache(maxsize=8)
+def drift(ascent: MoistAscent, *, ideal: bool) -> Drift:
+    r"""Return how far from its adiabat a parcel is known to be along its way.
 
-
-def warmth_of(water: float, temperature: float) -> float:
-    """Return by how much so much water per dry air [kg kg-1] warms the air when it condenses [K]."""
-    return temperature * _latent(temperature) / 3.5 * water / law.WATER_MASS_RATIO
-
-
-def _steepness(ascent: MoistAscent, temperature: float) -> float:
-    """Return by how much more a molecule that condenses lowers the relative humidity than by being gone."""
-    return 1.0 + ascent.vapour / ascent.molecules * _latent(temperature) ** 2 / 3.5
-
-
-def _scatter(ascent: MoistAscent, temperature: float) -> float:
-    r"""Return by how many molecules the liquid of a saturated parcel scatters.
-
-    The chance that n molecules are liquid is a product of relative humidities, one for each that joins, and each
-    lowers the next: it leaves :math:`N_w - 1` of the vapour, and warms the air. So it falls off as
-    :math:`\exp[-(1 + x \ell^2 / c_p) (n - \bar n)^2 / 2 N_w]`.
-    """
-    return math.sqrt(ascent.vapour / _steepness(ascent, temperature))
-
-
-def blur(ascent: MoistAscent) -> float:
-    r"""Return over how much pressure the cloud base is blurred, because few molecules are vapour [Pa].
-
-    The cloud grows out of the clusters of a saturated parcel over a range of humidity of one over their scatter; the
-    humidity goes as :math:`p^{1 - \ell \kappa}` on the way up.
-    """
-    if not ascent.base:
-        return 0.0
-    t = float(ascent.planned_at(ascent.base).temperature[0])
-    return ascent.base / (_scatter(ascent, t) * (_latent(t) / 3.5 - 1.0))
-
-
-def haze(ascent: MoistAscent, humidity: float, liquid: float, temperature: float) -> float:
-    r"""Return how much the molecules warm the air that are clustered beyond what theory has as liquid [K].
-
-    Of a number that scatters by s about m, but cannot be less than none, the mean is :math:`m + s \phi(m/s) /
-    \Phi(m/s)`, with the normal density and its integral. In clear air, where theory has no liquid, m is below zero, and
-    the mean is nearly RH / (1 - RH); in a cloud it soon is m.
+    Entropy that is gained shows as :math:`T \, \delta S / C_p`, see `dissipation`; vapour and heat that are under way
+    to the liquid are :math:`(L G)^{-1} \dot x` behind it, see `near_equilibrium`.
 
     Parameters
     ----------
     ascent
         The way.
-    humidity, liquid, temperature
-        Relative humidity [1], liquid per dry air [kg kg-1] and temperature [K] by theory.
+    ideal
+        Whether molecules have no volume.
     """
-    if not ascent.vapour:
-        return 0.0
-    air = ascent.molecules - ascent.vapour
-    scatter = _scatter(ascent, temperature)
-    cloudy = max(liquid, 0.0) / law.WATER_MASS_RATIO * air
-    mean = cloudy if cloudy > 0.0 else (humidity - 1.0) * scatter**2
-    a = max(mean / scatter, -30.0)
-    more = scatter * math.sqrt(2.0 / math.pi) * math.exp(-0.5 * a * a) / math.erfc(-a / math.sqrt(2.0))
-    return warmth_of(law.WATER_MASS_RATIO * (min(mean, 0.0) + more) / air, temperature)
+    cloud = _planned_cloud(ascent, ideal)
+    gain, t = entropy_gain(cloud), cloud.temperature
+    per_entropy = t / cloud.heat
+    behind = np.linalg.solve(np.einsum("tij,tjk->tik", cloud.yields, cloud.resists), cloud.change[:, :, None])[:, :, 0]
+    flow = cloud.gas * (cloud.expansion * cloud.height) ** 2 / 6.0
+    room = np.zeros_like(t)
+    if not ideal:
+        # by volume alone, as in dry air; in a cloud the heat of condensing makes good a part of it
+        dry = law.Ascent((ascent.pressure, ascent.top_pressure), ascent.length, 0.0)
+        places = np.geomspace(float(cloud.pressure.min()), float(cloud.pressure.max()), _PLACES)
+        share = [dry.room(float(p), ascent.box(ideal=False)[0]) for p in places]
+        room = t * np.interp(cloud.pressure, places, share) * 3.5 * cloud.gas / cloud.heat
+    return Drift(
+        pressure=cloud.pressure,
+        rate=per_entropy * gathered(gain.friction + gain.condensing, cloud.moment),
+        flow=t * (1.0 - cloud.slope) * flow / cloud.air_heat,
+        clusters=t * cloud.latent * cloud.clustered / (3.5 * ascent.molecules),
+        lag=np.maximum(t * np.einsum("ti,ti->t", cloud.seen(), behind), 0.0),
+        piston=-per_entropy * gathered(gain.piston, cloud.moment),
+        room=np.abs(room),
+        late=np.maximum(behind[:, 0], 0.0),
+        clustered=cloud.clustered,
+        latent=cloud.latent,
+    )
+
+
+def warmth_of(water: float, temperature: float) -> float:
+    """Return by how much so much water per dry air [kg kg-1] warms the air when it condenses [K]."""
+    latent = law.BINDING_TEMPERATURE / temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
+    return temperature * latent / 3.5 * water / law.WATER_MASS_RATIO
+
+
+def _at_the_top(ascent: MoistAscent) -> tuple[float, float]:
+    """Return variance and memory [mean free times at the start] of the number of liquid molecules at the top."""
+    cloud = _planned_cloud(ascent, False)
+    top = int(np.argmin(cloud.pressure))
+    variance = float(np.linalg.inv(cloud.resists[top])[0, 0])
+    return variance, variance / float(cloud.yields[top, 0, 0])
 
 
 def least_cloud(ascent: MoistAscent) -> float:
@@ -117,8 +135,8 @@ def least_cloud(ascent: MoistAscent) -> float:
     """
     if not ascent.vapour:
         return 0.0
-    t = float(ascent.planned_at(ascent.top_pressure).temperature[0])
-    return law.WATER_MASS_RATIO * 3.0 * _scatter(ascent, t) / (ascent.molecules - ascent.vapour)
+    scatter = math.sqrt(_at_the_top(ascent)[0])
+    return law.WATER_MASS_RATIO * 3.0 * scatter / (ascent.molecules - ascent.vapour)
 
 
 def comparable(ascent: MoistAscent) -> bool:
@@ -126,56 +144,31 @@ def comparable(ascent: MoistAscent) -> bool:
     return not ascent.rains or ascent.most_liquid >= least_cloud(ascent)
 
 
-def _meeting(ascent: MoistAscent, pressure: float) -> float:
-    r"""Return how long a molecule of vapour flies until it meets liquid, :math:`4 V / A \bar v` [mean free times]."""
-    density, sides, _ = size_of_parcel(ascent.scale, ascent.molecules, ascent.pressure, ideal=False)
-    speed = float(law.mean_speed(1.0, law.WATER_MASS_RATIO))
-    lasts = 4.0 * float(sides[2]) * ascent.pressure / pressure / (ascent.area * speed)
-    return lasts / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-
-
-def lag(ascent: MoistAscent, pressure: float) -> float:
-    r"""Return how much too cold the cloud is at a pressure because vapour must find liquid first [K].
-
-    Vapour is left over for the time :math:`4 V / A \bar c_v` that it takes to meet liquid, while saturation falls at
-    the rate at which the parcel rises. The heat that it has not yet given up is missing, to air and vapour. And what
-    has condensed makes the droplets warmer than the air, until the molecules of air that hit them have taken its heat
-    along, 3 k for each degree: so more evaporates from them, and more vapour is left, by :math:`x \ell^2/3` times
-    the time :math:`4 V / A \bar c_a`.
-    """
-    if pressure >= ascent.base:
-        return 0.0
-    step = 0.01
-    start = ascent.pressure, ascent.temperature, ascent.total_water
-    falling = law.parcel_path([pressure, pressure * (1.0 - step)], *start, nuclei_heat=ascent.nuclei_heat)
-    per_log = (falling.vapor[0] - falling.vapor[1]) / step
-    t = float(falling.temperature[0])
-    share = float(falling.vapor[0]) / law.WATER_MASS_RATIO
-    slower = float(law.mean_speed(1.0, law.WATER_MASS_RATIO) / law.mean_speed(1.0, 1.0))
-    warm = 1.0 + share * _latent(t) ** 2 / 3.0 * slower
-    late = float(per_log * ascent.travel / ascent.length * _meeting(ascent, pressure)) * warm
-    return warmth_of(late, t) / (1.0 + share * _latent(t) ** 2 / 3.5)
+def rained(ascent: MoistAscent) -> law.ParcelPath:
+    """Return the path of a parcel that rains, and whose liquid scatters as much as that of so few molecules."""
+    cloud = _planned_cloud(ascent, False)
+    raining = cloud.liquid > 0.0
+    if not raining.any():
+        return ascent.planned[1]
+    variance = float(np.linalg.inv(cloud.resists[raining])[:, 0, 0].mean())
+    scatter = law.WATER_MASS_RATIO * math.sqrt(variance) / (ascent.molecules - ascent.vapour)
+    return ascent.path(np.array(ascent.route), ascent.planned[0], scatter)
 
 
 def rain_scatter(ascent: MoistAscent) -> float:
     r"""Return by how much the rain scatters, per dry air [kg kg-1].
 
-    Rain depends on what the cloud held during the last time 1/r, and the scatter s of the cloud decays within the time
-    :math:`\tau` in which vapour meets liquid, over the steepness; what is left is :math:`s \sqrt{r \tau}`.
+    What is left of the water is decided in the last time 1/r, when hardly any more condenses: the cloud scatters by s
+    about what it holds, and rains half of the time, so that a surplus goes at the rate r/2. The rain follows the
+    positive half of a normal scatter that is remembered for the time :math:`\tau`, whose variance is
+    :math:`s^2 (1/2 - 1/2 \pi)`: this leaves :math:`(1 - 1/\pi) s^2 r \tau`. And molecules fall one by one:
+    :math:`s / \sqrt{2 \pi}` are too many on average, and as large is the variance. Of what condenses meanwhile, J
+    molecules in a mean free time, half of J/r comes to it.
     """
-    t = float(ascent.planned_at(ascent.top_pressure).temperature[0])
-    memory = _meeting(ascent, ascent.top_pressure) / _steepness(ascent, t)
-    lost = max(_scatter(ascent, t) * math.sqrt(RAIN * memory), 1.0)
+    variance, memory = _at_the_top(ascent)
+    cloud = _planned_cloud(ascent, False)
+    top = int(np.argmin(cloud.pressure))
+    surplus = max(float(cloud.change[: top + 1, 0][-20:].mean()) / RAIN, 0.0)
+    unsteady = (1.0 - 1.0 / math.pi) * variance * RAIN * memory + math.sqrt(variance / (2.0 * math.pi))
+    lost = math.sqrt(max(unsteady + 0.5 * surplus, 1.0))
     return law.WATER_MASS_RATIO * lost / (ascent.molecules - ascent.vapour)
-
-
-def tolerance(ascent: MoistAscent, pressure: float, *, ideal: bool) -> float:
-    """Return how far from the adiabat the model itself may take the parcel where it first meets a pressure [K]."""
-    density = size_of_parcel(ascent.scale, ascent.molecules, ascent.pressure, ideal=ideal)[0]
-    speed = finite_rate(ascent)
-    room = 0.0 if ideal else speed.room(min(pressure, ascent.pressure), density)
-    path = ascent.planned_at(pressure)
-    t = float(path.temperature[0])
-    humidity = float(law.vapor_pressure(pressure, path.vapor[0]) / law.saturation_vapor_pressure(t))
-    clustered = haze(ascent, humidity, float(path.liquid[0]), t)
-    return t * (speed.finite_speed(pressure) + room) + lag(ascent, pressure) + clustered

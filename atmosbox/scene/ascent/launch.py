@@ -6,15 +6,15 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox import theory as law
 from atmosbox.engine import FollowPressure, Mist
-from atmosbox.scene.ascent.finite_size import finite_rate, least_cloud, walk
+from atmosbox.scene.ascent.finite_size import drift, least_cloud
+from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
 from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
 from atmosbox.scene.knob import altitude, way
 from atmosbox.scene.moisture import water
-from atmosbox.scene.piston import CLOSING, moist_parcel, size_of_parcel
+from atmosbox.scene.piston import CLOSING, moist_parcel
 from atmosbox.scene.setup import Setup
 from atmosbox.theory.constants import DRY_AIR
 
@@ -53,10 +53,8 @@ def rise(
     """
     rng = np.random.default_rng(seed)
     scale, n = ascent.scale, ascent.molecules
-    density, sides, excess = size_of_parcel(scale, n, ascent.pressure, ideal=engine.ideal)
-    mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-    if engine.ideal:  # no excluded volume
-        mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
+    _, sides, excess = ascent.box(ideal=engine.ideal)
+    mean_free_time = ascent.mean_free_time(ideal=engine.ideal)
     duration = ascent.length * mean_free_time
     shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
     driver = FollowPressure(
@@ -85,14 +83,18 @@ def rise(
     def curve(pressure: Array) -> Array:
         return ascent.path(pressure, np.arange(1, pressure.size + 1) / (frames * samples)).temperature
 
-    warmth = ascent.temperature * finite_rate(ascent).finite_speed(ascent.top_pressure)
+    def scatter(pressure: Array) -> Array:
+        cloud = along_frames(ascent, pressure, frames, samples, ideal=engine.ideal)
+        return np.sqrt(np.diag(temperature_covariance(cloud, samples)))
+
+    known = drift(ascent, ideal=engine.ideal)
     base = ascent.base
     return Setup(
         parcel,
         scale,
         duration,
         frames,
-        (Air(), Water(), MoistLift(driver, environment, curve, lambda p: walk(ascent, p))),
+        (Air(), Water(), MoistLift(driver, environment, curve, scatter)),
         samples=samples,
         facts={
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)
@@ -107,7 +109,8 @@ def rise(
                 if ascent.rains
                 else {}
             ),
-            "error by the finite speed": f"up to {warmth:.2g} K",
+            "error by the finite speed": f"up to {float((known.rate + known.flow).max()):.2g} K too warm, "
+            f"{float(known.lag.max()):.2g} K too cold",
         },
         knobs=(altitude(parcel, driver, height) if _climbs(height) else way(parcel, driver),),
         ends=True,

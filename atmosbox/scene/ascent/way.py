@@ -9,12 +9,19 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.scene.moisture import nuclei_heat_capacity, vapour_molecules
+from atmosbox.scene.piston import size_of_parcel
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 __all__ = ["RAIN", "MoistAscent"]
 
 Array = NDArray[np.float64]
+FLATNESS = 0.1
+"""Height of the box over its width at the start.
+
+The droplets flow with the air, the faster the higher they are, and the pushes of the molecules on them do work by
+chance: a low box has less of it, see `atmosbox.scene.ascent.dissipation`.
+"""
 RAIN = 0.05
 """How often a molecule that is too many for the cloud falls out per mean free time at the start, if it rains.
 
@@ -69,6 +76,17 @@ class MoistAscent:
         """The units of the box."""
         return Scale(self.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
 
+    def box(self, *, ideal: bool) -> tuple[float, Array, float]:
+        """Return density, sides that centres can reach, and (Z - 1) / n at the start; see `size_of_parcel`."""
+        return size_of_parcel(self.scale, self.molecules, self.pressure, ideal=ideal, flatness=FLATNESS)
+
+    def mean_free_time(self, *, ideal: bool) -> float:
+        """Return the mean free time at the start, in units of the box."""
+        density = self.box(ideal=ideal)[0]
+        time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+        # molecules without volume meet each other less often
+        return time * (float(law.contact_value(law.packing_fraction(density, 1.0))) if ideal else 1.0)
+
     @property
     def vapour(self) -> int:
         """How many molecules are vapour at the start."""
@@ -101,12 +119,16 @@ class MoistAscent:
         """Whether liquid falls out."""
         return math.isfinite(self.most_liquid)
 
-    def path(self, pressure: Array, share: Array) -> law.ParcelPath:
-        """Return temperature and water along pressures [Pa], met when these shares of the time, 0 to 1, have passed."""
+    def path(self, pressure: Array, share: Array, scatter: float = 0.0) -> law.ParcelPath:
+        """Return temperature and water along pressures [Pa], met when these shares of the time, 0 to 1, have passed.
+
+        If it rains, liquid that scatters so much [kg kg-1] rains more.
+        """
         start = self.pressure, self.temperature, self.total_water
         if not self.rains:
             return law.parcel_path(pressure, *start, nuclei_heat=self.nuclei_heat)
-        return law.raining_path(share * self.length, pressure, *start, RAIN, self.most_liquid, self.nuclei_heat)
+        rain = RAIN, self.most_liquid, self.nuclei_heat, scatter
+        return law.raining_path(share * self.length, pressure, *start, *rain)
 
     @functools.cached_property
     def planned(self) -> tuple[Array, law.ParcelPath]:

@@ -12,7 +12,6 @@ from atmosbox.engine import FollowPressure, Snapshot
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.instruments.lifted_air import REFERENCE_PRESSURE, Environment
 from atmosbox.scene.instruments.water import gas_kT
-from atmosbox.scene.statistics import successive_error
 from atmosbox.scene.units import Scale
 
 __all__ = ["MoistLift"]
@@ -24,10 +23,9 @@ class MoistLift:
     r"""A parcel of moist air on its way: temperature and pressure of parcel and environment against height.
 
     Both are means over the samples within a frame; of the pressure, its logarithm. The number of molecules of vapour is
-    never constant, nor is the temperature: each molecule that condenses warms the others. That noise has a
-    memory of a frame or two. How large it is in the mean of a frame is told by how much the misfit from the adiabat
-    changes within three frames, by `atmosbox.scene.statistics.successive_error`. To it comes the noise of the piston's
-    work, which adds up on the way.
+    never constant, nor is the temperature: each molecule that condenses warms the others. The error is that of the
+    mean of a frame, from the theory of such fluctuations: within one run, what has gathered by chance cannot be told
+    from what the finite rate has done.
 
     Parameters
     ----------
@@ -37,8 +35,9 @@ class MoistLift:
         The environment.
     curve
         Temperatures [K] that theory expects along a sequence of pressures [Pa], in the order in which they are met.
-    walk
-        Standard deviation that the piston's work has left behind at a pressure [Pa], as a share of the temperature.
+    scatter
+        Standard deviations of the means of frames, as shares of the temperature, for the pressures of the environment
+        [Pa] in the middle of them.
     """
 
     def __init__(
@@ -46,12 +45,12 @@ class MoistLift:
         driver: FollowPressure,
         environment: Environment,
         curve: Callable[[Array], Array],
-        walk: Callable[[Array], Array],
+        scatter: Callable[[Array], Array],
     ) -> None:
         self._driver = driver
         self._environment = environment
         self._curve = curve
-        self._walk = walk
+        self._scatter = scatter
         self._looks: list[tuple[float, float]] = []
         self._seen: list[list[tuple[float, float]]] = []
         self._rows: list[tuple[float, ...]] = []
@@ -74,22 +73,21 @@ class MoistLift:
         kT, p = np.moveaxis(np.array(self._seen), 2, 0)
         temperature, pressure = kT * scale.temperature, p * scale.pressure
         expected = self._curve(pressure.ravel()).reshape(pressure.shape)
-        misfit = (temperature - expected).mean(axis=1)
         parcel_temperature = temperature.mean(axis=1)
         parcel_pressure = np.exp(np.log(pressure).mean(axis=1))
-        error = np.hypot(successive_error(misfit, lag=3), self._walk(parcel_pressure) * parcel_temperature)
         around = self._environment
         middle = time - 0.5 * np.diff(time, prepend=0.0)
         middle = np.array([self._driver.course.moment(t) for t in middle]) * scale.time
+        outside = np.array([around.pressure(t) for t in middle])
         return Readings(
             parcel_temperature=parcel_temperature,
-            parcel_temperature_se=error,
+            parcel_temperature_se=self._scatter(outside) * parcel_temperature,
             parcel_pressure=parcel_pressure,
             parcel_potential_temperature=parcel_temperature * (REFERENCE_PRESSURE / parcel_pressure) ** (2.0 / 7.0),
             parcel_volume=volume * scale.length**3 * scale.weight,
             parcel_height=np.array([around.height(t) for t in middle]),
             environment_temperature=np.array([around.temperature(t) for t in middle]),
-            environment_pressure=np.array([around.pressure(t) for t in middle]),
+            environment_pressure=outside,
             adiabat_temperature=expected.mean(axis=1),
             piston_height=ceiling * scale.length,
             piston_velocity=velocity * scale.velocity,

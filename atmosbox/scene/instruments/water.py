@@ -49,33 +49,25 @@ class Water:
     """
 
     def __init__(self) -> None:
-        self._looks: list[tuple[float, float, float]] = []
+        self._looks: list[tuple[float, ...]] = []
         self._rows: list[tuple[float, ...]] = []
         self._energy: list[float] = []
         self._counts: list[tuple[int, int, int]] = []
         self._last = (0.0, 0, 0)
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Read vapour pressure and temperatures."""
+        """Read vapour pressure and temperatures, and how much of the water is what."""
         kT = gas_kT(parcel)
-        self._looks.append((kT, vapour_pressure(parcel, kT), parcel.liquid_kT))
+        air = parcel.number - parcel.vapour
+        shares = ((each / air if air else math.nan) for each in (parcel.vapour, parcel.liquid, parcel.rained))
+        self._looks.append((kT, vapour_pressure(parcel, kT), parcel.liquid_kT, *shares))
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read the counters."""
         time, condensed, evaporated = self._last
         lasted = parcel.time - time
-        means = np.mean(self._looks, axis=0)
-        air = parcel.number - parcel.vapour
-        self._rows.append(
-            (
-                *means,
-                (parcel.condensed - condensed) / lasted,
-                (parcel.evaporated - evaporated) / lasted,
-                parcel.vapour / air if air else math.nan,
-                parcel.liquid / air if air else math.nan,
-                parcel.rained / air if air else math.nan,
-            )
-        )
+        rates = (parcel.condensed - condensed) / lasted, (parcel.evaporated - evaporated) / lasted
+        self._rows.append((*np.mean(self._looks, axis=0), *rates))
         self._energy.append(parcel.condensed_energy)
         self._counts.append((parcel.vapour, parcel.liquid, parcel.rained))
         self._last = (parcel.time, parcel.condensed, parcel.evaporated)
@@ -85,7 +77,7 @@ class Water:
         """Return the series; see `Instrument`."""
         if not self._rows:
             return Readings()
-        kT, pressure, liquid_kT, condensing, evaporating, vapour, liquid, rain = np.array(self._rows).T
+        kT, pressure, liquid_kT, vapour, liquid, rain, condensing, evaporating = np.array(self._rows).T
         counts = np.array(self._counts)
         saturation = law.saturation_vapor_pressure(np.minimum(kT * scale.temperature, _CRITICAL))
         e = pressure * scale.pressure

@@ -1,0 +1,123 @@
+"""CAPE, CIN, LFC and EL of a parcel that has been measured, with their errors.
+
+What counts is how dense the parcel is: its temperature, its vapour and its liquid, all as measured. Its difference from
+the environment is smoothed, for the levels are where curves cross, and noise crosses often. How far chance takes the
+numbers, and what the smoothing does to them, is told by parcels drawn at random about theory's, which are measured in
+the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox import theory as law
+from atmosbox.scene.ascent import finite_size
+from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
+from atmosbox.scene.ascent.way import MoistAscent
+from atmosbox.scene.headline import Headline
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["convection_headlines"]
+
+Array = NDArray[np.float64]
+_NEAR = 4
+"""How many frames on either side smooth one of them."""
+_DRAWN = 200
+_SEED = 20
+_LEAST = 0.9
+"""Which share of the parcels drawn must have a level for it to be reported."""
+
+
+def convection_headlines(
+    dataset: xr.Dataset,
+    ascent: MoistAscent,
+    frames: int,
+    samples: int,
+    around: Callable[[Array], Array],
+    *,
+    ideal: bool,
+) -> tuple[Headline, ...]:
+    """Return CAPE, CIN and the levels between which the parcel rises by itself.
+
+    Parameters
+    ----------
+    dataset
+        A whole ascent.
+    ascent
+        The way.
+    frames, samples
+        How many frames the way has, and how many samples each.
+    around
+        Virtual temperature [K] of the environment at pressures [Pa].
+    ideal
+        Whether molecules have no volume.
+    """
+    outside, pressure = dataset.environment_pressure.values, dataset.parcel_pressure.values
+    warmer = dataset.parcel_density_temperature.values - around(pressure)
+    levels = np.concatenate([[ascent.pressure], outside, [ascent.top_pressure]])
+    beside, smooth = around(levels), _smoother(len(outside))
+    path = ascent.planned[1]
+
+    def energies(differences: Array, base: float) -> law.Convection:
+        # it starts with the environment's temperature and vapour
+        whole = np.concatenate([[0.0], smooth @ differences, [(smooth @ differences)[-1]]])
+        return law.cape_cin(levels, beside, beside + whole, base)
+
+    here = energies(warmer, ascent.base)
+    route = np.array(ascent.route)
+    dense = law.density_temperature(path.temperature, path.vapor, path.liquid)
+    expected = law.cape_cin(route, around(route), dense, ascent.base)
+
+    cloud = along_frames(ascent, outside, frames, samples, ideal=ideal)
+    at_frames = np.interp(-np.log(outside), -np.log(route), dense)
+    noise = temperature_covariance(cloud, samples, density=True) * np.outer(at_frames, at_frames)
+    known = finite_size.drift(ascent, ideal=ideal)
+    # a molecule that is clustered warms the parcel, and is missing among the light ones
+    light = known.clusters * (1.0 - 3.5 / known.latent)
+    off = np.interp(-np.log(outside), -np.log(route), known.rate + known.flow + light - known.colder)
+    root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
+    drawn = np.random.default_rng(_SEED).standard_normal((_DRAWN, len(noise))) @ root.T
+    seen = [energies(at_frames + off + each - around(outside), ascent.base) for each in drawn]
+    rows = (
+        ("cape", "J kg-1", "J kg-1", "CAPE, the cloud carries its water"),
+        ("cin", "J kg-1", "J kg-1", "CIN of the parcel"),
+        ("lfc", "Pa", "hPa", "level of free convection"),
+        ("el", "Pa", "hPa", "equilibrium level"),
+    )
+    found = []
+    for name, unit, shown, label in rows:
+        value, answer = getattr(here, name), getattr(expected, name)
+        others = [level for each in seen if (level := getattr(each, name)) is not None]
+        if value is None or answer is None or len(others) < _LEAST * _DRAWN:
+            continue
+        shift, scatter = float(np.mean(others)) - answer, float(np.std(others, ddof=1))
+        if unit == "J kg-1" and abs(shift) > 0.5 * abs(answer) > 0.0:  # clusters leave no energy to be measured
+            continue
+        reason = "the ascent is not infinitely slow, vapour must find liquid, and curves are smoothed before they cross"
+        found.append(Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label))
+    return tuple(found)
+
+
+def _smoother(number: int) -> Array:
+    """Return the matrix that lays a parabola through each value and its neighbours.
+
+    Examples
+    --------
+    A parabola stays as it is:
+
+    >>> curve = np.arange(20.0) ** 2
+    >>> bool(np.allclose(_smoother(20) @ curve, curve))
+    True
+    """
+    rows = np.zeros((number, number))
+    for k in range(number):
+        near = np.arange(max(k - _NEAR, 0), min(k + _NEAR + 1, number))
+        powers = (near - k)[:, None] ** np.arange(min(3, len(near)))
+        rows[k, near] = np.linalg.pinv(powers.astype(float))[0]
+    return rows

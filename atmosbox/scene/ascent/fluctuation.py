@@ -1,0 +1,103 @@
+r"""How far chance takes a parcel from its adiabat, and for how long: the covariance of its frames.
+
+A single run cannot tell it: what its entropy has gathered by chance stays to the end, and so neighbouring frames are
+off to the same side. Two parts follow from the molecules.
+
+* **Vapour and heat** that have not found their way to the liquid, or not back: `near_equilibrium` says how far x
+  scatters and how fast it returns, :math:`C(t) = e^{-L G t} G^{-1}`. It is forgotten within a frame or two.
+* **Entropy** that has been gathered by chance: `dissipation` says how its variance grows. At a given pressure it shows
+  in the temperature as :math:`\delta T = T \, \delta S / C_p`, where C_p counts the heat of condensing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
+from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
+from atmosbox.scene.ascent.way import MoistAscent
+
+__all__ = ["along_frames", "temperature_covariance", "vapour_covariance"]
+
+Array = NDArray[np.float64]
+
+
+def along_frames(ascent: MoistAscent, pressure: Array, frames: int, samples: int, *, ideal: bool) -> Cloud:
+    """Return the parcel at each sample of the frames that have been recorded.
+
+    Parameters
+    ----------
+    ascent
+        The way.
+    pressure : (frame,)
+        Pressure of the environment in the middle of each frame [Pa].
+    frames, samples
+        How many frames the whole way has, and how many samples each.
+    ideal
+        Whether molecules have no volume.
+    """
+    logs = np.log(pressure)
+    middle = (np.arange(len(logs)) + 0.5) / frames
+    last = 1.5 * logs[-1] - 0.5 * logs[-2] if len(logs) > 1 else logs[-1]
+    where = np.concatenate([[0.0], middle, [len(logs) / frames]])
+    share = np.arange(1, len(logs) * samples + 1) / (frames * samples)
+    return cloud_along(
+        ascent,
+        np.exp(np.interp(share, where, np.concatenate([[np.log(ascent.pressure)], logs, [last]]))),
+        share,
+        ideal=ideal,
+    )
+
+
+def _of_means(covariance: Array, samples: int) -> Array:
+    """Return the covariance of the means over so many neighbours."""
+    frames = len(covariance) // samples
+    return np.asarray(covariance.reshape(frames, samples, frames, samples).mean(axis=(1, 3)))
+
+
+def _covariance(cloud: Cloud, seen: Array, held: Array, samples: int) -> Array:
+    """Return the covariance of frame means of what x shows as ``seen``, and a unit of entropy as ``held``."""
+    root = np.linalg.cholesky(cloud.resists)
+    rate, mode = np.linalg.eigh(np.einsum("tji,tjk,tkl->til", root, cloud.forgets, root))
+    size = np.einsum("tji,tj->ti", mode, np.linalg.solve(root, seen[:, :, None])[:, :, 0])
+    found = np.zeros((len(held), len(held)))
+    for k in range(2):
+        age = gathered(rate[:, k], cloud.moment)
+        amplitude = np.abs(size[:, k])
+        found += np.outer(amplitude, amplitude) * np.exp(-np.abs(age[:, None] - age))
+    variance = gathered(entropy_gain(cloud).variance, cloud.moment)
+    return _of_means(found + np.outer(held, held) * np.minimum(variance[:, None], variance), samples)
+
+
+def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False) -> Array:
+    """Return the covariance of the frame means of a parcel minus its adiabat, as shares of the temperature.
+
+    Parameters
+    ----------
+    cloud
+        The parcel at each sample.
+    samples
+        How many of them make a frame.
+    density
+        Whether the density temperature is meant, to which vapour and liquid count.
+
+    Returns
+    -------
+    (frame, frame) ndarray
+    """
+    held = 1.0 / cloud.heat
+    if density:  # warmer air holds more vapour
+        held = held * np.where(cloud.liquid > 0.0, 1.0 + cloud.vapour / cloud.air * cloud.latent, 1.0)
+    return _covariance(cloud, cloud.seen(density=density), held, samples)
+
+
+def vapour_covariance(cloud: Cloud, samples: int) -> Array:
+    """Return the covariance of the frame means of the number of molecules of vapour, (frame, frame)."""
+    share = cloud.vapour / cloud.air
+    held = np.where(cloud.liquid > 0.0, cloud.vapour * (1.0 + share) * cloud.latent / cloud.heat, 0.0)
+    gone = np.zeros((len(held), 2))
+    gone[:, 0] = -1.0
+    # beside theory's vapour at the pressure that the gas then has
+    pressure = cloud.warms - np.array([1.0, 0.0]) / cloud.gas[:, None]
+    return _covariance(cloud, gone - cloud.vapour_slope[:, None] * pressure, held, samples)
