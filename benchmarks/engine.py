@@ -4,9 +4,9 @@
     python benchmarks/engine.py --against FOLDER --repeats 9
 
 Machines are noisy: what counts is the ratio of two engines that take turns, the median over many short slices.
-FOLDER holds a module ``exact.py`` with ``make(PX, PZ, GRAV, THERM, K)``, which returns kernels, and
-``Sim(kernels, X, V, L, g, m, PX, PZ)``, which advances equal spheres of unit diameter by ``go(nc=collisions)``
-and counts them in ``cnt[0]``.
+FOLDER is a checkout of atmosbox, of another commit, whose engine runs in a second process. Or it holds a module
+``exact.py`` with ``make(PX, PZ, GRAV, THERM, K)``, which returns kernels, and ``Sim(kernels, X, V, L, g, m, PX, PZ)``,
+which advances equal spheres of unit diameter by ``go(nc=collisions)`` and counts them in ``cnt[0]``.
 """
 
 import argparse
@@ -14,7 +14,10 @@ import gc
 import importlib
 import json
 import math
+import os
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -22,11 +25,11 @@ from typing import Any
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, os.environ.get("ATMOSBOX_CHECKOUT", str(Path(__file__).resolve().parents[1])))
 
-from atmosbox.engine import HeatBath, ParcelSet, Periodic, maxwell_velocities, random_positions
+from atmosbox.engine import HeatBath, ParcelSet, Periodic
 
-RATE = {0.01: 0.138854, 0.1: 1.765845}  # collisions of a molecule per reduced time
+RATE = {0.01: 0.138854, 0.1: 1.765845, 0.3: 9.6, 0.49: 32.0}  # collisions of a molecule per reduced time, about
 
 
 class Ours:
@@ -48,6 +51,48 @@ class Ours:
         self.box.advance(time)
 
 
+class Checkout:
+    """The engine of another checkout, in a process of its own, which computes only while it is asked to."""
+
+    def __init__(self, folder: Path, x: np.ndarray, v: np.ndarray, side: float, gravity: float) -> None:
+        with tempfile.TemporaryDirectory() as place:
+            start = Path(place) / "start.npz"
+            np.savez(start, x=x, v=v, side=side, gravity=gravity)
+            self.process = subprocess.Popen(
+                [sys.executable, str(Path(__file__).resolve()), "--serve", str(start)],
+                env=os.environ | {"ATMOSBOX_CHECKOUT": str(folder), "PYTHONPATH": str(folder)},
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=folder,
+            )  # fmt: skip
+            self.warm = self._ask(0)
+
+    def _ask(self, collisions: int) -> float:
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        print(collisions, file=self.process.stdin, flush=True)
+        return float(self.process.stdout.readline())
+
+    def pace(self, collisions: int) -> float:
+        """Return collisions per CPU second of one slice."""
+        return self._ask(collisions)
+
+    def close(self) -> None:
+        """End the process."""
+        self.process.communicate()
+
+
+def serve(start: Path) -> None:
+    """Advance the box of a file by as many collisions as each line of the input says; answer with the pace."""
+    with np.load(start) as told:
+        ours = Ours(told["x"], told["v"], float(told["side"]), float(told["gravity"]))
+    n = ours.box.number
+    for line in sys.stdin:
+        if int(line):
+            print(pace(ours.advance, int(line)), flush=True)
+        else:
+            ours.warm_up(4.0 / RATE.get(round(n * math.pi / 6.0 / ours.box.volume, 3), 1.0))
+            print(0.0, flush=True)
+
+
 class Theirs:
     """Another engine, from the folder named on the command line."""
 
@@ -58,6 +103,13 @@ class Theirs:
             kernels, x.copy(), v.copy(), np.array([side] * 3), g=gravity, m=4.0 if phi < 0.05 else 2.5,
             PX=True, PZ=not walled,
         )  # fmt: skip
+
+    def pace(self, collisions: int) -> float:
+        """Return collisions per CPU second of one slice."""
+        return pace(self.advance, collisions)
+
+    def close(self) -> None:
+        """Do nothing: it runs in this process."""
 
     def advance(self, collisions: int) -> int:
         """Advance by so many collisions."""
@@ -73,18 +125,36 @@ def pace(advance: Callable[[int], int], collisions: int) -> float:
     return done / (time.process_time() - start)
 
 
-def measure(n: int, phi: float, case: str, repeats: int, other: Any) -> dict[str, Any]:
-    """Return the medians of one case."""
+def start_of(n: int, phi: float, *, walled: bool) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return places, velocities and the side of the box: at random, or on a lattice where that is too dense."""
+    from atmosbox.engine import maxwell_velocities, random_positions
+
     side = (n * math.pi / 6.0 / phi) ** (1.0 / 3.0)
     rng = np.random.default_rng(1)
+    if phi <= 0.3:
+        x = random_positions((side,) * 3, np.ones(n), rng, periodic=(True, True, not walled))
+    else:
+        # the face-centred cubic lattice, with holes
+        cubes = math.ceil((n / 4.0) ** (1.0 / 3.0))
+        corner = np.stack(np.meshgrid(*[np.arange(cubes)] * 3, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+        sites = np.array([[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]])
+        x = (corner + sites).reshape(-1, 3) * side / cubes
+        x = x[np.sort(rng.permutation(len(x))[:n])]
+    return x, maxwell_velocities(1.0, np.ones(n), rng, exact=True), side
+
+
+def measure(n: int, phi: float, case: str, repeats: int, other: Any) -> dict[str, Any]:
+    """Return the medians of one case; ``other`` is a module or the folder of a checkout, or None."""
     walled = case == "gravity"
-    x = random_positions((side,) * 3, np.ones(n), rng, periodic=(True, True, not walled))
-    v = maxwell_velocities(1.0, np.ones(n), rng, exact=True)
+    x, v, side = start_of(n, phi, walled=walled)
     gravity = 1.0 / side if walled else 0.0
     ours = Ours(x, v, side, gravity)
     ours.warm_up(4.0 / RATE.get(phi, 1.0))
-    theirs = Theirs(other, x, v, side, gravity, phi) if other else None
-    if theirs:
+    theirs: Checkout | Theirs | None = None
+    if isinstance(other, Path):
+        theirs = Checkout(other, x, v, side, gravity)
+    elif other:
+        theirs = Theirs(other, x, v, side, gravity, phi)
         theirs.advance(2 * n)
     slice_ = max(30_000, n // 2)
     paces, others = [], []
@@ -92,8 +162,10 @@ def measure(n: int, phi: float, case: str, repeats: int, other: Any) -> dict[str
     for _ in range(repeats):
         paces.append(pace(ours.advance, slice_))
         if theirs:
-            others.append(pace(theirs.advance, slice_))
+            others.append(theirs.pace(slice_))
     gc.enable()
+    if theirs:
+        theirs.close()
     events = ours.box.events
     result = {
         "case": case,
@@ -118,9 +190,15 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--against", type=Path, help="folder of another engine, to take turns with")
     parser.add_argument("--json", type=Path, help="file for the numbers")
+    parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)
     asked = parser.parse_args(arguments)
+    if asked.serve:
+        serve(asked.serve)
+        return []
     other = None
-    if asked.against:
+    if asked.against and (asked.against / "atmosbox").is_dir():
+        other = asked.against.resolve()
+    elif asked.against:
         sys.path.insert(0, str(asked.against))
         other = importlib.import_module("exact")
     print("| case | phi | N | thousand collisions / s | other | ratio | bytes per molecule |")

@@ -36,7 +36,7 @@ import sys
 import tempfile
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import FrameType
@@ -155,6 +155,22 @@ def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
     return module.ParcelSet(x, v, length=length, walls=tuple(walls), diameter=sizes, **options)
 
 
+def leaves(parts: tuple[Any, ...]) -> Iterator[Any]:
+    """Yield what stands in tuples of tuples."""
+    for part in parts:
+        if isinstance(part, tuple):
+            yield from leaves(part)
+        else:
+            yield part
+
+
+def of_another(part: Any, state: Any) -> Any:
+    """Return the same NamedTuple of NamedTuples, of the classes of another engine."""
+    if not isinstance(part, tuple):
+        return part
+    return getattr(state, type(part).__name__)(*(of_another(each, state) for each in part))
+
+
 class Bench:
     """The arrays of one box, on which the kernels of several engines do the same work again and again."""
 
@@ -162,8 +178,7 @@ class Bench:
         self._modes = box._modes
         self._gas = box._gas()
         self._until = box._now + span
-        parts = [p for each in self._gas for p in (each if type(each).__mro__[1] is tuple else (each,))]
-        self._arrays = [part for part in parts if isinstance(part, np.ndarray)]
+        self._arrays = [part for part in leaves(self._gas) if isinstance(part, np.ndarray)]
         self._before = [np.array(each) for each in self._arrays]
 
     def kernel(self, module: Any) -> Callable[[], float]:
@@ -171,14 +186,16 @@ class Bench:
         # numba finds machine code on disk only if the classes of its arguments are those that a name leads to
         sys.modules.update(module.modules)
         state = module.types
-        gas = state.Gas(*(getattr(state, type(p).__name__)(*p) if isinstance(p, tuple) else p for p in self._gas))
-        advance = module.loop.specialise(state.Modes(*self._modes))[1]
+        gas = of_another(self._gas, state)
+        _, advance, _, _, refill = module.loop.specialise(state.Modes(*self._modes))
+        over = module.loop.Status.EPOCH_OVER
 
         def work() -> float:
             for array, before in zip(self._arrays, self._before, strict=True):
                 np.copyto(array, before)
             start = time.process_time()
-            status, _ = advance(gas, self._until, 1 << 60)
+            while (status := advance(gas, self._until, 1 << 60)[0]) == over:
+                refill(gas, gas.calendar.time[1])
             lasted = time.process_time() - start
             if status != module.loop.Status.DONE:
                 raise RuntimeError("a row of the cells is full: choose another seed")

@@ -57,7 +57,7 @@ LAYERS = {
 }
 """One row a room; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
-DOORS = ("compiler", "window")
+DOORS = ("compiler", "lanes", "window")
 """The files that may speak to the compiler: what compiles kernels, and what is written in single instructions."""
 
 

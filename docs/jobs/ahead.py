@@ -7,12 +7,18 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from atmosbox.engine import ParcelSet, Specular
+from atmosbox.engine.exact.crossing import is_wall
 from atmosbox.plot.theme import DARK, FAINT
 
 MOLECULES, SIDE, DIAMETER, GROUP = 32, 8.0, 0.62, 8
-GREEN = "#009e73"
-COLOURS = {"contact": VERMILLION, "cell": BLUE, "wall": GREEN}
-LABELS = {"contact": "a contact", "cell": "a boundary of cells", "wall": "a wall"}
+GREEN, GREY = "#009e73", "#777777"
+COLOURS = {"contact": VERMILLION, "cell": BLUE, "wall": GREEN, "nobody": GREY}
+LABELS = {
+    "contact": "a contact",
+    "cell": "a boundary of cells",
+    "wall": "a wall",
+    "nobody": "nobody until then: it plans anew",
+}
 
 
 def small_gas() -> ParcelSet:
@@ -32,13 +38,12 @@ def small_gas() -> ParcelSet:
     return box
 
 
-def kind_of(event: np.void, last: dict[str, int]) -> str:
-    """Return what an event is: contact, boundary of cells, or wall."""
-    what = int(event["what"])
+def kind_of(box: ParcelSet, i: int) -> str:
+    """Return what the event of a molecule is: contact, boundary of cells, wall, or none that it knows of."""
+    what = int(box._events[i]["what"])
     if what > 5:
-        return "contact"
-    axis, upwards = "xyz"[what >> 1], what & 1
-    return "wall" if event[f"slot_{axis}"] == (last[axis] if upwards else 0) else "cell"
+        return "contact" if int(box._events[i]["partner"]) != i else "nobody"
+    return "wall" if is_wall(i, what, box._gas(), box._modes) else "cell"
 
 
 def held_by_one(box: ParcelSet, times: np.ndarray, kinds: list[str]) -> tuple[int, int]:
@@ -54,10 +59,9 @@ def held_by_one(box: ParcelSet, times: np.ndarray, kinds: list[str]) -> tuple[in
 def ahead(found: Findings) -> None:
     """Draw a small gas with the first event of each molecule, and the tournament of their times."""
     box = small_gas()
-    calendar, cells = box._calendar, box._cells
+    calendar = box._calendar
     times = calendar.time[calendar.leaf : calendar.leaf + MOLECULES] - box._now
-    last = {axis: getattr(cells, f"last_slot_{axis}") for axis in "xyz"}
-    kinds = [kind_of(event, last) for event in box._events]
+    kinds = [kind_of(box, i) for i in range(MOLECULES)]
     first = int(np.argmin(times))
     if int(calendar.winner[1]) != first:
         found.failures.append(f"the calendar says that molecule {calendar.winner[1]} is next, and it is {first}")
@@ -69,7 +73,9 @@ def ahead(found: Findings) -> None:
     with axes_of(2, (10.4, 5.4), (1.0, 1.05)) as (drawing, (left, right)):
         draw_gas(left, box, times, kinds, first)
         draw_tournament(right, calendar, times, kinds)
-        shown = [Line2D([], [], color=COLOURS[kind], marker="o", label=text) for kind, text in LABELS.items()]
+        shown = [
+            Line2D([], [], color=COLOURS[kind], marker="o", label=LABELS[kind]) for kind in COLOURS if kind in kinds
+        ]
         drawing.legend(handles=shown, loc="outside lower left", ncols=len(shown), frameon=False)
         save(found, drawing, "ahead")
 

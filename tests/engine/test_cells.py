@@ -16,7 +16,17 @@ from atmosbox.engine.exact.cells import append, choose_grid, remove, size_classe
 MARGIN = 1e-6  # how much larger than its sphere a molecule may be taken to be, in radii
 
 
-def grid_of(sides, radii, *, periodic=(False,) * 3, molecules=300, scale_height=math.inf, open_top=False, planar=False):
+def grid_of(
+    sides,
+    radii,
+    *,
+    periodic=(False,) * 3,
+    molecules=300,
+    scale_height=math.inf,
+    open_top=False,
+    planar=False,
+    rows=False,
+):
     return choose_grid(
         np.array(sides, np.float64),
         periodic,
@@ -27,6 +37,7 @@ def grid_of(sides, radii, *, periodic=(False,) * 3, molecules=300, scale_height=
         filled=float(sides[2]),
         open_top=open_top,
         scale_height=scale_height,
+        rows=rows,
     )
 
 
@@ -41,7 +52,10 @@ def grids(draw, *, even=False):
     radii = np.sort(10.0 ** random.uniform(-1.0, 0.0, number))
     scale_height = math.inf if even or periodic[2] else draw(st.sampled_from([math.inf, 0.2, 3.0, 50.0]))
     molecules = draw(st.sampled_from([1, 20, 300, 5000]))
-    grid = grid_of(sides, radii, periodic=periodic, molecules=molecules, scale_height=scale_height, open_top=open_top)
+    rows = draw(st.booleans())
+    grid = grid_of(
+        sides, radii, periodic=periodic, molecules=molecules, scale_height=scale_height, open_top=open_top, rows=rows
+    )
     return grid, sides, radii, periodic
 
 

@@ -301,7 +301,7 @@ def test_a_run_that_is_interrupted_can_be_looked_at_and_go_on():
         seen.append(time)
         raise Stop
 
-    seen, end = [], 1500.0
+    seen, end = [], 4000.0
     interrupted, whole = ParcelSet(**box("equal", number=120)), ParcelSet(**box("equal", number=120))
     with pytest.raises(Stop):
         interrupted.advance(end, watch=interrupt)

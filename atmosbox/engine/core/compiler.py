@@ -121,15 +121,30 @@ def compiled(function: Callable[..., Any], *, entry: bool, early: bool, allocate
     if early:
         return numba.njit(inline="always", **options)(function)
     if not entry:
-        return numba.njit(forceinline=True, **options)(function)
+        return _of_plain_types(numba.njit(forceinline=True, **options)(function))
     made = numba.njit(nogil=True, **options)(function)
     if _CACHE is not None:
         made._cache = _KeptKernels(function)
     return made
 
 
+def _of_plain_types(made: Any) -> Any:
+    """Let a compiled function be compiled once for all whole numbers, not once for each that stands in the source.
+
+    The code is inlined, and the processor's code is optimised for each number after that.
+    """
+    template = made.get_call_template
+
+    def plain(arguments: Any, keywords: Any) -> Any:
+        return template(tuple(types.unliteral(each) for each in arguments), keywords)  # type: ignore[attr-defined]
+
+    made.get_call_template = plain
+    return made
+
+
 def type_of(thing: Any) -> Any:
     """Return the type of a compiled function, as other compiled code sees it."""
+    cpu_target.typing_context.refresh()  # instructions of our own may have been imported since
     return cpu_target.typing_context.resolve_value_type(thing)
 
 
@@ -159,5 +174,16 @@ def prefetch(typing_context, array, index):
         )
         builder.call(function, [place, i32(0), i32(3), i32(1)])
         return context.get_dummy_value()
+
+    return signature, generate
+
+
+@intrinsic
+def lowest_bit(typing_context, bits):
+    """Return the number of the lowest bit that is set; there must be one."""
+    signature = types.int64(types.int64)
+
+    def generate(context, builder, signature, arguments):
+        return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 1))
 
     return signature, generate

@@ -32,6 +32,7 @@ __all__ = [
     "cache_folder",
     "compilations",
     "kernel",
+    "lowest_bit",
     "prefetch",
     "use_threads",
 ]
@@ -257,6 +258,11 @@ def prefetch(array, index):
     """Ask the processor to bring ``array[index]`` (first axis) into its cache; uncompiled code does nothing."""
 
 
+def lowest_bit(bits):
+    """Return the number of the lowest bit that is set; there must be one."""
+    return (int(bits) & -int(bits)).bit_length() - 1
+
+
 if COMPILED:
 
     def _prefetch() -> Any:
@@ -264,4 +270,10 @@ if COMPILED:
 
         return compiler.prefetch
 
+    def _lowest_bit() -> Any:
+        from atmosbox.engine.core import compiler
+
+        return compiler.lowest_bit
+
     prefetch = Kernel(prefetch, _prefetch)
+    lowest_bit = Kernel(lowest_bit, _lowest_bit)

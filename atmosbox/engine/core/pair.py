@@ -12,19 +12,25 @@ import numpy as np
 from atmosbox.engine.core.hard_sphere import earlier_root, quadratic, resolve_contact
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["approach", "nearest_along", "nearest_image", "predict", "reach", "resolve", "soonest_image"]
+__all__ = ["approach", "extent", "nearest_along", "nearest_image", "predict", "reach", "resolve", "soonest_image"]
+
+
+@kernel
+def extent(radius):
+    """Return how far from its centre a molecule is felt [length]: what it contributes to `reach`."""
+    return radius
 
 
 @kernel
 def reach(radius, other_radius):
-    """Return how far apart two centres are when the pair begins to feel each other [length].
+    """Return how far apart two centres are when the pair begins to feel each other [length]: the sum of both extents.
 
     Examples
     --------
     >>> reach(0.5, 0.7)
     1.2
     """
-    return radius + other_radius
+    return extent(radius) + extent(other_radius)
 
 
 @kernel

@@ -12,10 +12,12 @@ __all__ = [
     "EVENT",
     "KIND",
     "MOLECULE",
+    "PLACE_OFFSET",
     "SLOT_OFFSET",
     "Box",
     "Calendar",
     "Cells",
+    "Copies",
     "Gas",
     "Kinds",
     "Modes",
@@ -47,7 +49,7 @@ has had, and its kind (a row of `Kinds`). Only an encounter writes it.
 EVENT = np.dtype(
     {
         "names": ["contact_time", "partner", "partner_count", "slot_x", "slot_y", "slot_z", "what"],
-        "formats": ["f8", "u4", "u4", "u2", "u2", "u2", "u2"],
+        "formats": ["f8", "u4", "u4", "u2", "u2", "u2", "u1"],
         "itemsize": 32,
     }
 )
@@ -55,11 +57,15 @@ EVENT = np.dtype(
 
 Its next contact [time], with whom, how many encounters the partner had had when that was predicted (if it
 has had more since, the prediction is stale), where it stands among the cells (`cells`), and which of
-contact, crossing or wall comes first.
+contact, crossing or wall comes first. A contact with itself means that it plans anew at that time. The last eight
+bytes, which have no name here, tell its places in the rows of its cells (`rows`).
 """
 
 SLOT_OFFSET = 16
 """Where in the bytes of an `EVENT` the three slots begin."""
+
+PLACE_OFFSET = 24
+"""Where in the bytes of an `EVENT` the eight places begin."""
 
 KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size_class", "i8")])
 """A kind of molecule.
@@ -74,7 +80,8 @@ class Modes(NamedTuple):
     Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
     cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid; the
     first kind that is a drop, 0 if none is; a periodic axis so short that a molecule meets several images of another;
-    a piston that follows a pressure, whose turns compiled code makes.
+    a piston that follows a pressure, whose turns compiled code makes; whether the rows of cells hold copies of
+    trajectories (`rows`).
     """
 
     contacts: bool
@@ -89,6 +96,7 @@ class Modes(NamedTuple):
     drops: int = 0
     images: bool = False
     ascends: bool = False
+    rows: bool = False
 
 
 class Box(NamedTuple):
@@ -121,10 +129,31 @@ class Kinds(NamedTuple):
     rotational_energy: Any
 
 
+class Copies(NamedTuple):
+    """What the rows of cells hold beside names, where they hold copies of trajectories: see `rows`.
+
+    ``value`` and ``occupied`` are the memory of ``Cells.row``, read as float32 and as words of 64 bits; ``place`` is
+    that of the events, read as bytes. ``centre : (axis, cell)`` [length]; ``horizon : (layer,)`` how far ahead contacts
+    are looked for [time]; ``slack : (layer, 3)`` how far the copies may be wrong, ``epoch : (4,)`` from when until when
+    [time], and up to which speed [length/time], they hold: see `glance`. ``room : (layer,)`` [length^3; planar:
+    length^2] and ``radius`` [length] of a usual molecule tell how dense a layer is.
+    """
+
+    value: Any
+    occupied: Any
+    place: Any
+    centre: Any
+    horizon: Any
+    slack: Any
+    epoch: Any
+    room: Any
+    radius: float
+
+
 class Cells(NamedTuple):
     """Which molecules stand where.
 
-    ``row : (cell * stride,)``: each cell's number of molecules, then their indices. ``boundary : (size,
+    ``row : (cell * stride,)``: each cell's molecules (`cells`, or `rows`). ``boundary : (size,
     axis, slot)`` [length], ``first`` and ``span : (size, axis, slot)``: the first cell, and the number of
     cells, that a sphere of that size overlaps when its centre lies between ``boundary[slot]`` and
     ``boundary[slot + 1]``. ``slot : (molecule, 3)`` is a view into the events. ``last_slot_*`` is the
@@ -143,6 +172,7 @@ class Cells(NamedTuple):
     last_slot_x: int
     last_slot_y: int
     last_slot_z: int
+    copies: Copies
 
 
 class Calendar(NamedTuple):

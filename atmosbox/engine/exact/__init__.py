@@ -2,9 +2,14 @@
 
 `cells`        which molecules can meet
 `calendar`     what happens next
-`prediction`   what lies ahead of a molecule
 `encounter`    what a contact or a wall hit does
-`crossing`     from cell to cell
+`glance`       sixteen molecules at once: who of them can be met at all
+`lanes`        the same in vector instructions
+`rows`         what the rows of cells hold
+`search`       whom a molecule meets next
+`prediction`   what lies ahead of a molecule
+`membership`   who stands in which cells
+`crossing`     from cell to cell, where rows are lists of names
 `turning`      the piston of a lift turns between events
 `exact`        the loop over events
 `stall`        when time can go no further

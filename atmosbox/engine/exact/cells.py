@@ -23,6 +23,7 @@ long: first how many molecules there are, then which::
                  cell 0                 cell 1
 """
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -31,9 +32,20 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.core.state import Cells, aligned_records
+from atmosbox.engine.core.state import Cells, Copies, aligned_records
 
-__all__ = ["ROW", "Grid", "append", "choose_grid", "new_cells", "overlapped", "remove", "size_classes", "slot_at"]
+__all__ = [
+    "ROW",
+    "Grid",
+    "append",
+    "choose_grid",
+    "new_cells",
+    "new_rows",
+    "overlapped",
+    "remove",
+    "size_classes",
+    "slot_at",
+]
 
 _MARGIN = 1.0 + 1e-7
 _FEW = 4
@@ -41,9 +53,14 @@ ROW = 32
 
 
 class Grid(NamedTuple):
-    """Cells and slots along the three axes: see `state.Cells`."""
+    """Cells and slots along the three axes: see `state.Cells`.
+
+    ``edges`` of the cells along each axis [length]; ``rows`` whether their rows may hold copies of trajectories.
+    """
 
     number: tuple[int, int, int]
+    edges: tuple[NDArray[np.float64], ...]
+    rows: bool
     boundary: NDArray[np.float64]
     first: NDArray[np.int32]
     span: NDArray[np.int32]
@@ -87,8 +104,9 @@ def choose_grid(
     filled: float,
     open_top: bool,
     scale_height: float,
+    rows: bool,
 ) -> Grid:
-    """Choose the cells of a box: some two to eight molecules to a cell, layers thinner where gravity makes them denser.
+    """Choose the cells of a box: some two to nine molecules to a cell, layers thinner where gravity makes them denser.
 
     Parameters
     ----------
@@ -110,6 +128,9 @@ def choose_grid(
         Whether the ceiling moves, so that the uppermost cells must have no end.
     scale_height
         kT / m g, ``inf`` without gravity [length].
+    rows
+        Whether rows of cells may hold copies of trajectories; they need cells wider than any molecule, and four or more
+        along a periodic axis.
 
     Raises
     ------
@@ -124,11 +145,18 @@ def choose_grid(
     share = molecules * (math.pi * typical**2 if planar else 4.0 / 3.0 * math.pi * typical**3) / room
     # measured (benchmarks): the pace is flat about this many molecules to a cell
     occupancy = min(max(2.2 * (0.1 / share) ** (1.0 / 3.0), 1.5), 8.0) if share > 0.0 else 8.0
-    width = _widths(np.array([length[0], length[1], filled]), molecules / occupancy, planar)
-    number = []
-    spanning = not exact_radius
+    room_of = np.array([length[0], length[1], filled])
+    chosen = None
+    if rows and biggest > 0.0:
+        occupancy = 9.0 if share < 0.05 else 8.0
+        width = _widths(room_of, molecules / occupancy, planar)
+        chosen = _choose_for_rows(length, room_of, width, most, periodic, molecules, planar=planar)
+    if chosen is None:
+        width = _widths(room_of, molecules / occupancy, planar)
+    number = list(chosen or [])
+    spanning = not exact_radius and not chosen
     images = False
-    for axis in range(3):
+    for axis in range(0 if chosen else 3):
         n = max(1, min(int(length[axis] / width[axis]), 20_000))
         if planar and axis == 1:
             n = 1
@@ -161,21 +189,68 @@ def choose_grid(
         thinnest = 0.25 * width[2] if spanning else max(2.002 * biggest, 0.05 * width[2])
         edges[2] = _layers(float(length[2]), number[2], scale_height, thinnest)
         number[2] = len(edges[2]) - 1
+    inner = spanning or (chosen is not None and not exact_radius)
     tables = [
-        [_slots(edges[axis], float(r), periodic[axis], spanning, open_top=open_top and axis == 2) for axis in range(3)]
+        [
+            _slots(edges[axis], float(r), periodic[axis], spanning, inner=inner, open_top=open_top and axis == 2)
+            for axis in range(3)
+        ]
         for r in radii
     ]
     slots = max(len(table[1]) for row in tables for table in row)
-    boundary = np.full((len(radii), 3, slots + 1), np.inf)
+    boundary = np.full((len(radii), 3, slots + 2), np.inf)
     first = np.zeros((len(radii), 3, slots), np.int32)
     span = np.ones((len(radii), 3, slots), np.int32)
     for size, row in enumerate(tables):
         for axis, (b, f, s) in enumerate(row):
             boundary[size, axis, : len(b)] = b
+            if chosen and periodic[axis]:  # the boundary after the last but one, a turn further
+                boundary[size, axis, len(b)] = b[1] + b[-1] - b[0]
+            if chosen and open_top and axis == 2:  # who gets there is above all cells
+                boundary[size, axis, len(b) - 1] = length[2]
             first[size, axis, : len(f)] = f
             span[size, axis, : len(s)] = s
     last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
-    return Grid((number[0], number[1], number[2]), boundary, first, span, (last[0], last[1], last[2]), spanning, images)
+    return Grid(
+        (number[0], number[1], number[2]), tuple(edges), chosen is not None, boundary, first, span,
+        (last[0], last[1], last[2]), spanning, images,
+    )  # fmt: skip
+
+
+def _choose_for_rows(
+    length: NDArray[np.float64], room: NDArray[np.float64], width: NDArray[np.float64], most: list[float],
+    periodic: tuple[bool, bool, bool], molecules: int, *, planar: bool,
+) -> list[int] | None:  # fmt: skip
+    """Return how many cells along each axis come nearest to a width, if rows may hold copies then, else None.
+
+    Of ``room`` [length] the cells of that width are wanted; ``length`` is what the cells cover.
+    """
+    if room.min() < 1e-6 or length.max() > 1e6:
+        return None  # single precision would need other units
+    wanted = 1.0
+    near = []
+    for axis in range(3):
+        step = 2 if periodic[axis] else 1
+        least = 4 if periodic[axis] else 1
+        ideal = length[axis] / width[axis]
+        if planar and axis == 1:
+            near.append([1])
+            continue
+        wanted *= ideal
+        lower = step * math.floor(ideal / step)
+        top = min(step * math.floor(most[axis] / step), 20_000)
+        if top < least:
+            return None
+        near.append(sorted({min(max(n, least), top) for n in (lower, lower + step)}))
+    best: tuple[int, ...] = min(
+        itertools.product(*near),
+        key=lambda n: (
+            abs(math.log(math.prod(n) / max(wanted, 1.0)))
+            + 0.5 * float(np.std([math.log(n[a] * width[a] / length[a]) for a in range(3)]))
+        ),
+    )
+    crowd = molecules / math.prod(best)
+    return list(best) if crowd <= 30.0 else None
 
 
 def _widths(length: NDArray[np.float64], number: float, planar: bool) -> NDArray[np.float64]:
@@ -211,9 +286,12 @@ def _layers(height: float, number: int, scale_height: float, thinnest: float) ->
 
 
 def _slots(
-    edges: NDArray[np.float64], radius: float, periodic: bool, spanning: bool, *, open_top: bool
+    edges: NDArray[np.float64], radius: float, periodic: bool, spanning: bool, *, inner: bool, open_top: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
-    """Return boundaries, first cells and numbers of cells of the slots along one axis for one radius."""
+    """Return boundaries, first cells and numbers of cells of the slots along one axis for one radius.
+
+    With ``inner`` the table holds no walls, which are then each molecule's own business: not all of a class are alike.
+    """
     reach = radius * _MARGIN
     n = len(edges) - 1
     length = float(edges[-1])
@@ -226,15 +304,16 @@ def _slots(
         reach *= _MARGIN
     if periodic:
         shifted = np.concatenate([edges[:-1] + reach, edges[1:] - reach])
-        inner = np.sort(np.mod(shifted, length)) if spanning else np.sort(shifted)
-        boundary = np.append(inner, inner[0] + length)
+        first = np.sort(np.mod(shifted, length)) if spanning else np.sort(shifted)
+        boundary = np.append(first, first[0] + length)
     else:
-        inner = np.sort(np.concatenate([edges[1:-1] - reach, edges[1:-1] + reach]))
+        between = np.sort(np.concatenate([edges[1:-1] - reach, edges[1:-1] + reach]))
         if spanning:
-            inner = inner[(inner > 0.0) & (inner < length)]
-            boundary = np.concatenate([[-np.inf], inner, [np.inf]])
+            between = between[(between > 0.0) & (between < length)]
+        if inner:
+            boundary = np.concatenate([[-np.inf], between, [np.inf]])
         else:
-            boundary = np.concatenate([[radius], inner, [np.inf if open_top else length - radius]])
+            boundary = np.concatenate([[radius], between, [np.inf if open_top else length - radius]])
     bounded = np.clip(boundary, min(0.0, boundary[1]), max(length, boundary[-2])) if not periodic else boundary
     middle = 0.5 * (bounded[1:] + bounded[:-1])
     low = _cell_of(middle - reach, edges, periodic)
@@ -254,14 +333,20 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
     return cell
 
 
-def new_cells(grid: Grid, slot: NDArray[np.uint16], stride: int) -> Cells:
-    """Return the empty cells of a grid, each with room for ``stride`` - 1 molecules.
+def new_rows(grid: Grid, stride: int) -> NDArray[np.uint32]:
+    """Return the memory of all rows of a grid, each so many words long, all empty."""
+    rows: NDArray[np.uint32] = aligned_records(math.prod(grid.number) * stride, np.dtype("u4")).view(np.ndarray)
+    return rows
 
-    ``slot : (molecule, 3)`` is where it is kept in which slot each molecule stands.
+
+def new_cells(grid: Grid, slot: NDArray[np.uint16], row: NDArray[np.uint32], stride: int, copies: Copies) -> Cells:
+    """Return the empty cells of a grid.
+
+    ``slot : (molecule, 3)`` is where it is kept in which slot each molecule stands, ``row`` the memory of the rows,
+    each ``stride`` words long: room for ``stride`` - 1 molecules, or for copies.
     """
-    rows = aligned_records(math.prod(grid.number) * stride, np.dtype([("i", "u4")]))
     return Cells(
-        row=np.ascontiguousarray(rows["i"]),
+        row=row,
         stride=stride,
         boundary=grid.boundary,
         first=grid.first,
@@ -273,6 +358,7 @@ def new_cells(grid: Grid, slot: NDArray[np.uint16], stride: int) -> Cells:
         last_slot_x=grid.last_slot[0],
         last_slot_y=grid.last_slot[1],
         last_slot_z=grid.last_slot[2],
+        copies=copies,
     )
 
 
@@ -287,8 +373,8 @@ def overlapped(slot, size, axis, cells, modes):
 @kernel
 def slot_at(u, size, axis, last, cells, modes):
     """Return the slot along an axis in which a centre at the coordinate u [length] lies."""
-    if modes.mixed:
-        last = cells.boundary.shape[2] - 2
+    if modes.mixed and not modes.rows:
+        last = cells.boundary.shape[2] - 3
         while last > 0 and cells.boundary[size, axis, last] == math.inf:
             last -= 1
     lower = 0

@@ -11,36 +11,44 @@ from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.cells import append, overlapped, remove
-from atmosbox.engine.exact.prediction import CONTACT, Meeting, next_move, side, size_and_radius, soonest_in_cell
+from atmosbox.engine.exact.encounter import size_and_radius
+from atmosbox.engine.exact.prediction import Meeting, next_move, side, soonest_in_cell
+from atmosbox.engine.exact.search import CONTACT
 
-__all__ = ["Crossed", "cross"]
+__all__ = ["Crossed", "cross", "is_wall"]
 
 
 class Crossed(IntEnum):
     """What came of it when a molecule reached a boundary.
 
-    ``WALL`` the boundary is a wall, and nothing is changed; ``ENTERED`` the molecule is in a further cell; ``LEFT`` it
-    has left one; ``FULL`` the row of a new cell must grow first, and nothing is changed.
+    ``ENTERED`` the molecule is in a further cell; ``LEFT`` it has left one; ``FULL`` the row of a new cell must grow
+    first, and nothing is changed.
     """
 
-    WALL = 0
     ENTERED = 1
     LEFT = 2
     FULL = 3
 
 
 @kernel
-def _is_wall(slot, axis, up, size, radius, gas, modes):
-    """Tell whether the boundary that a molecule has reached is a wall."""
+def is_wall(i, what, gas, modes):
+    """Tell whether the boundary that molecule i has reached is a wall, or the end of all cells."""
     cells = gas.cells
+    axis = what >> 1
+    up = what & 1
+    slot = np.int64(cells.slot[i, axis])
     length, inverse = side(axis, gas.box)
     if inverse != 0.0:
         return False
     if modes.spanning:
+        size, radius = size_and_radius(i, gas, modes)
         if up == 1:
             return cells.boundary[size, axis, slot + 1] >= length - radius
         return cells.boundary[size, axis, slot] <= radius
     last = cells.last_slot_x if axis == 0 else (cells.last_slot_y if axis == 1 else cells.last_slot_z)
+    if modes.rows:
+        # the first and the last cell, of which a molecule may be in another one too
+        return slot < 2 if up == 0 else slot + 1 >= last
     return slot + up == 0 or slot + up == last + 1
 
 
@@ -58,8 +66,6 @@ def cross(i, what, t, at, gas, modes):
     up = what & 1
     slot = np.int64(cells.slot[i, axis])
     size, radius = size_and_radius(i, gas, modes)
-    if _is_wall(slot, axis, up, size, radius, gas, modes):
-        return Crossed.WALL
     # the next slot; beyond a periodic end it is the first or last, and the molecule goes on one length further
     length, inverse = side(axis, gas.box)
     next_slot = slot + 2 * up - 1

@@ -11,7 +11,7 @@ from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Motion
 from atmosbox.engine.core.walls import bounce_off
 
-__all__ = ["hit", "kind_of", "meet", "motion_at", "write"]
+__all__ = ["hit", "kind_of", "meet", "motion_at", "size_and_radius", "slots_of", "write"]
 
 
 @kernel
@@ -49,6 +49,23 @@ def kind_of(i, gas, modes):
     """Return mass [mass], radius [length] and rotational degrees of freedom of molecule i."""
     kind = gas.kinds.table[np.int64(gas.molecules[i].kind) if modes.mixed else 0]
     return kind.mass, kind.radius, kind.rotation if modes.rotation else 0.0
+
+
+@kernel
+def size_and_radius(i, gas, modes):
+    """Return the size class and the radius [length] of molecule i."""
+    table = gas.kinds.table
+    if modes.mixed:
+        kind = table[gas.molecules[i].kind]
+        return np.int64(kind.size_class), kind.radius
+    return np.int64(0), table[0].radius
+
+
+@kernel
+def slots_of(i, gas):
+    """Return the slots of molecule i along x, y and z: see `cells`."""
+    event = gas.events[i]
+    return np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
 
 
 @kernel

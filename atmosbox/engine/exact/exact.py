@@ -18,14 +18,17 @@ from typing import Any
 
 import numpy as np
 
-from atmosbox.engine.core.jit import kernel, prefetch
+from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.calendar import next_event
-from atmosbox.engine.exact.cells import append, overlapped, slot_at
-from atmosbox.engine.exact.crossing import Crossed, cross
-from atmosbox.engine.exact.encounter import hit, meet, motion_at
-from atmosbox.engine.exact.prediction import CEILING, CONTACT, plan, side, size_and_radius
+from atmosbox.engine.exact.cells import slot_at
+from atmosbox.engine.exact.crossing import Crossed, cross, is_wall
+from atmosbox.engine.exact.encounter import hit, meet, motion_at, size_and_radius
+from atmosbox.engine.exact.membership import Change, change, listed, places
+from atmosbox.engine.exact.prediction import CEILING, call, plan, side
+from atmosbox.engine.exact.rows import STOP, fill
+from atmosbox.engine.exact.search import CONTACT
 from atmosbox.engine.exact.turning import Next, ahead, gauges, replan_under, turn
 
 __all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
@@ -37,8 +40,9 @@ class Status(IntEnum):
     ``DONE`` the time asked for is reached; ``BUSY`` as many events are resolved as were asked for; ``ROW_FULL`` the
     row of a cell must grow; ``STALLED`` events pile up without progress in time; ``MEETS_LIQUID`` the next event is a
     molecule that meets a pool or a drop, which is left to the caller; ``CROWDED`` a molecule that evaporates finds no
-    free place; ``CRUSHED`` the piston has come too low; ``TURNED`` the piston has turned, and the cells must be laid
-    out anew for a box that has become higher or lower.
+    free place; ``EPOCH_OVER`` the copies in the rows must be written anew before the next event; ``OUTGROWN`` a
+    molecule has risen above the cells, which must be laid out anew; ``CRUSHED`` the piston has come too low; ``TURNED``
+    the piston has turned, and the cells must be laid out anew for a box that has become higher or lower.
     """
 
     DONE = 0
@@ -47,55 +51,30 @@ class Status(IntEnum):
     STALLED = 3
     MEETS_LIQUID = 4
     CROWDED = 5
+    EPOCH_OVER = 6
+    OUTGROWN = 7
     CRUSHED = 8
     TURNED = 9
 
 
-_MANY = 4_000
-"""From how many molecules on it is memory that takes the time, so that it pays to fetch ahead."""
 CHECK_EVERY = 1024
 """After how many events it is checked whether they pile up."""
 _FLOOR, _CEILING = 4, 5
 
 
 @kernel
-def _fetch_ahead(gas, modes):
-    """Fetch what the runners-up of the tournament will need: at many molecules memory is what takes the time.
+def _fetch_ahead(gas):
+    """Fetch what the runners-up of the tournament will need.
 
     The nodes 2 to 7 of the tournament hold those who have lost against the winner in the last rounds; one of them is
     most often the next event but one.
     """
-    calendar, cells, events = gas.calendar, gas.cells, gas.events
+    calendar = gas.calendar
     for node in range(2, 8):
         i = np.int64(calendar.winner[node])
         prefetch(gas.molecules, i)
-        prefetch(events, i)
+        prefetch(gas.events, i)
         prefetch(calendar.time, calendar.leaf + i)
-        if node < 4 and not modes.spanning:
-            event = events[i]
-            what = np.int64(event.what)
-            sx = np.int64(event.slot_x)
-            sy = np.int64(event.slot_y)
-            sz = np.int64(event.slot_z)
-            cell = ((sx >> 1) * cells.number_y + (sy >> 1)) * cells.number_z + (sz >> 1)
-            if what == CONTACT:
-                j = np.int64(event.partner)
-                prefetch(gas.molecules, j)
-                prefetch(events, j)
-                prefetch(calendar.time, calendar.leaf + j)
-            else:
-                up = what & 1
-                if what < 2:
-                    step = cells.number_y * cells.number_z
-                    slot = sx
-                elif what < 4:
-                    step = cells.number_z
-                    slot = sy
-                else:
-                    step = 1
-                    slot = sz
-                cell += step * ((2 * up - 1) if (slot & 1) == 0 else (1 - up))
-            prefetch(cells.row, cell * cells.stride)
 
 
 @kernel
@@ -115,42 +94,45 @@ def proceed(gas, until, most, modes):
     tallies = gas.tallies
     done = 0
     status = Status.BUSY
-    many = gas.molecules.size >= _MANY
     contacts = entered = left = stale = wall_hits = 0
+    epoch_end = gas.cells.copies.epoch[STOP]
     while done < most:
         # whose event is next?
         i, t = next_event(gas.calendar)
         if not t <= until:
             status = Status.DONE
             break
+        if modes.rows and t > epoch_end:
+            status = Status.EPOCH_OVER
+            break
         if done & (CHECK_EVERY - 1) == CHECK_EVERY - 1 and piled_up(t, CHECK_EVERY, gas):
             status = Status.STALLED
             break
-        if many:
-            _fetch_ahead(gas, modes)
+        _fetch_ahead(gas)
         event = gas.events[i]
         what = np.int64(event.what)
         at = motion_at(i, t, gas, modes)
-        # a boundary between cells: the molecule flies on, and only its cells and its event change
-        if what < CONTACT:
-            crossed = cross(i, what, t, at, gas, modes)
-            if crossed == Crossed.FULL:
-                status = Status.ROW_FULL
-                break
-            if crossed != Crossed.WALL:
+        j = -1
+        other = at
+        boundary = CONTACT
+        if what < CONTACT and not is_wall(i, what, gas, modes):
+            # a boundary between cells: the molecule flies on, and only its cells and its event change
+            if modes.rows:
+                boundary = what
+                entered += 1
+            else:
+                crossed = cross(i, what, t, at, gas, modes)
+                if crossed == Crossed.FULL:
+                    status = Status.ROW_FULL
+                    break
                 entered += 1 if crossed == Crossed.ENTERED else 0
                 left += 1 if crossed == Crossed.LEFT else 0
                 done += 1
                 continue
-            if modes.pool and what == _FLOOR:
-                status = Status.MEETS_LIQUID
-                break
-        # a contact, if the partner is still on the way that was predicted; or a wall
-        j = -1
-        other = at
-        if what == CONTACT:
+        elif what == CONTACT:
+            # a contact, if the partner is still on the way that was predicted
             j = np.int64(event.partner)
-            if gas.molecules[j].count == event.partner_count:
+            if j != i and gas.molecules[j].count == event.partner_count:
                 if (
                     modes.drops > 0
                     and max(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops
@@ -160,21 +142,32 @@ def proceed(gas, until, most, modes):
                 at, other = meet(i, j, t, at, gas, modes)
                 contacts += 1
             else:
-                stale += 1
+                # a contact with itself at the time of its clock means a new velocity, which makes nothing stale
+                stale += 1 if j != i or gas.molecules[i].clock < t else 0
                 j = -1
         else:
+            if modes.pool and what == _FLOOR:
+                status = Status.MEETS_LIQUID
+                break
+            if modes.rows and modes.piston and what == _CEILING:
+                status = Status.OUTGROWN
+                break
             at = hit(i, _CEILING if what == CEILING else what, t, at, gas, modes)
             wall_hits += 1
         done += 1
         # both plan anew; in one loop, so that the search for contacts is compiled into it once
+        full = False
         m = i
         while True:
-            plan(m, t, at, gas, modes)
+            full |= plan(m, t, at, boundary, gas, modes)
             if j < 0:
                 break
             m = j
             j = -1
             at = other
+        if full:
+            status = Status.ROW_FULL
+            break
     tallies.count[0] += contacts
     tallies.count[1] += entered
     tallies.count[2] += left
@@ -202,14 +195,14 @@ def _into_box(i, axis, u, size, gas):
 
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling`` and ``overlap``.
+    """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
 
     They are closures over plain flags, compiled once per set and kept on disk.
     """
 
     @kernel(entry=True)
     def place(gas, now):
-        """Enter all molecules into their cells at time ``now`` and plan their events, unless a row is full."""
+        """Enter all molecules into their cells at time ``now``, where they plan their events, unless a row is full."""
         cells = gas.cells
         row = cells.row
         row[:] = 0
@@ -218,25 +211,25 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 continue
             at = motion_at(i, now, gas, modes)
             size, _ = size_and_radius(i, gas, modes)
-            cells.slot[i, 0] = slot_at(_into_box(i, 0, at.x, size, gas), size, 0, cells.last_slot_x, cells, modes)
-            cells.slot[i, 1] = slot_at(_into_box(i, 1, at.y, size, gas), size, 1, cells.last_slot_y, cells, modes)
-            cells.slot[i, 2] = slot_at(_into_box(i, 2, at.z, size, gas), size, 2, cells.last_slot_z, cells, modes)
-            first_x, span_x = overlapped(np.int64(cells.slot[i, 0]), size, 0, cells, modes)
-            first_y, span_y = overlapped(np.int64(cells.slot[i, 1]), size, 1, cells, modes)
-            first_z, span_z = overlapped(np.int64(cells.slot[i, 2]), size, 2, cells, modes)
-            for a in range(first_x, first_x + (span_x if modes.contacts else 0)):
-                for b in range(first_y, first_y + span_y):
-                    for c in range(first_z, first_z + span_z):
-                        cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
-                        start = (cell + c % cells.number_z) * cells.stride
-                        if np.int64(row[start]) + 1 >= cells.stride:
-                            return Status.ROW_FULL.value
-                        append(row, start, i)
-        for i in range(gas.molecules.size):
-            if modes.phases and math.isinf(gas.molecules[i].clock):
-                continue
-            plan(i, now, motion_at(i, now, gas, modes), gas, modes)
+            slots = (
+                slot_at(_into_box(i, 0, at.x, size, gas), size, 0, cells.last_slot_x, cells, modes),
+                slot_at(_into_box(i, 1, at.y, size, gas), size, 1, cells.last_slot_y, cells, modes),
+                slot_at(_into_box(i, 2, at.z, size, gas), size, 2, cells.last_slot_z, cells, modes),
+            )
+            cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = slots
+            call(i, now, gas)
+            if modes.contacts and not modes.rows:
+                if change(Change.TEST, i, size, slots, cells, modes):
+                    return Status.ROW_FULL.value
+                change(Change.ADD, i, size, slots, cells, modes)
+        if modes.rows and fill(now, gas, modes):
+            return Status.ROW_FULL.value
         return Status.DONE.value
+
+    @kernel(entry=True)
+    def refill(gas, now):
+        """Write the copies in all rows anew at time ``now``; tell whether a row is too short."""
+        return fill(now, gas, modes)
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
@@ -277,15 +270,15 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         first = -1
         second = -1
         for cell in range(cells.number_x * cells.number_y * cells.number_z):
-            start = cell * cells.stride
-            end = start + 1 + np.int64(cells.row[start])
-            for p in range(start + 1, end):
-                i = np.int64(cells.row[p])
-                one = gas.molecules[i]
-                _, radius = size_and_radius(i, gas, modes)
-                for q in range(p + 1, end):
-                    j = np.int64(cells.row[q])
-                    two = gas.molecules[j]
+            start = (cell * cells.stride) & POSITIVE
+            for p in range(places(start, cells, modes)):
+                i = listed(start, p, cells, modes)
+                for q in range(p):
+                    j = listed(start, q, cells, modes)
+                    if i < 0 or j < 0:
+                        continue
+                    one, two = gas.molecules[i], gas.molecules[j]
+                    _, radius = size_and_radius(i, gas, modes)
                     _, other_radius = size_and_radius(j, gas, modes)
                     rx, ry, rz = nearest_image(one.x - two.x, one.y - two.y, one.z - two.z, gas.box, modes)
                     distance = reach(radius, other_radius)
@@ -296,4 +289,4 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                         second = max(i, j)
         return deepest, first, second
 
-    return place, ascend if modes.ascends else advance, replan_ceiling, overlap
+    return place, ascend if modes.ascends else advance, replan_ceiling, overlap, refill

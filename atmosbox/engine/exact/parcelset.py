@@ -20,8 +20,9 @@ from atmosbox.engine.core.refusal import RefusedError, StalledError
 from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas, Modes, aligned_records
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.calendar import new_calendar
-from atmosbox.engine.exact.cells import ROW, choose_grid, new_cells
+from atmosbox.engine.exact.cells import ROW, Grid, choose_grid, new_cells, new_rows
 from atmosbox.engine.exact.exact import Status, specialise
+from atmosbox.engine.exact.rows import MOST, copies_of, row_stride
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
@@ -48,12 +49,16 @@ class ParcelSet(Parcel):
 
     engine: ClassVar[str] = "exact"
 
+    _frugal = True
+    _crowded: bool
+    """Whether so many molecules have come together in one cell that rows cannot hold copies of trajectories."""
     _present: slice | NDArray[np.bool_] = slice(None)
     """Which molecules are in the box: all of them."""
     _first_drop: int = 0
     """The first kind that is a drop, 0 if none is."""
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        self._crowded = False
         self._fill(position, velocity, rotational_energy)
         self._box = new_box(
             self._sides,
@@ -66,6 +71,8 @@ class ParcelSet(Parcel):
         )
         self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
         self._cells: Cells
+        self._grid: Grid
+        self._places: int
         self._lay_out()
         depth, i, j = self._overlap(self._gas())
         if depth > _OVERLAP:
@@ -77,7 +84,7 @@ class ParcelSet(Parcel):
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         """Write down the molecules."""
         self._kinds, kind, self._size_radius = classify(
-            self._mass, self._diameter, self._rotation, rotational_energy if self._rotates else None
+            self._mass, self._diameter, self._rotation, np.array(rotational_energy) if self._rotates else None
         )
         self._molecules = aligned_records(len(position), MOLECULE)
         for axis, name in enumerate("xyz"):
@@ -87,9 +94,12 @@ class ParcelSet(Parcel):
         self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads a field of it ten times faster
 
     def memory(self) -> int:
-        """Return the bytes that molecules, events, cells and calendar take."""
-        arrays = (self._molecules, self._events, self._cells.row, self._calendar.time, self._calendar.winner)
-        return sum(int(a.nbytes) for a in arrays) + int(self._kinds.rotational_energy.nbytes)
+        """Return the bytes that molecules, events, cells and calendar take, and what is known of each molecule."""
+        arrays = [self._molecules, self._events, self._cells.row, self._calendar.time, self._calendar.winner]
+        arrays += [self._kinds.rotational_energy, self._kinds.table, self._cells.boundary]
+        for each in (self._mass, self._diameter, self._rotation):
+            arrays.append(each if each.strides != (0,) else each[:1])  # a number that all share takes the memory of one
+        return sum(int(a.nbytes) for a in arrays)
 
     def snapshot(self) -> Snapshot:
         """Return all molecules as they are now; nothing in the box changes by being looked at."""
@@ -158,12 +168,18 @@ class ParcelSet(Parcel):
             if crushed <= self._now:
                 raise StalledError(why_crushed(self))
         stop = min(local, crushed)
+        unwatched = 0
         with np.errstate(over="ignore"):
             while True:
-                status = self._proceed(stop)
+                status, done = self._proceed(stop)
+                unwatched += done
                 self._now = max(self._now, min(stop, self._next_time()))
                 if status == Status.ROW_FULL:
                     self._grow_rows()
+                elif status == Status.EPOCH_OVER:
+                    self._refill_rows(float(self._calendar.time[1]))
+                elif status == Status.OUTGROWN:
+                    self._lay_out()
                 elif status in (Status.STALLED, Status.CROWDED):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_stalled(self) if status == Status.STALLED else why_crowded(self))
@@ -177,19 +193,19 @@ class ParcelSet(Parcel):
                 elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
                     self._now = min(self._next_time(), stop)
                     raise StalledError(why_crushed(self))
-                elif status == Status.BUSY:
-                    if watch is not None:
-                        watch(float(self._walls.epoch[0]) + self._next_time())
-                else:
+                elif status == Status.DONE:
                     break
+                if watch is not None and (status == Status.BUSY or unwatched >= _CHUNK):
+                    watch(float(self._walls.epoch[0]) + self._next_time())
+                    unwatched = 0
         self._now = stop
         if crushed < local:
             raise StalledError(why_crushed(self))
 
-    def _proceed(self, until: float) -> Status:
-        """Resolve a number of events up to a local time; tell why it stopped."""
-        status, _ = self._advance(self._gas(), *self._ascent(), until, _CHUNK)
-        return Status(status)
+    def _proceed(self, until: float) -> tuple[Status, int]:
+        """Resolve a number of events up to a local time; tell why it stopped, and how many there were."""
+        status, done = self._advance(self._gas(), *self._ascent(), until, _CHUNK)
+        return Status(status), int(done)
 
     @property
     def _ascends(self) -> bool:
@@ -241,19 +257,57 @@ class ParcelSet(Parcel):
         self._events["contact_time"] -= step
         times = self._calendar.time
         times -= step
+        self._cells.copies.epoch[:2] -= step
         self._walls.piston[2] -= step
         self._tallies.progress[0] -= step
         self._walls.epoch[0] += step
         self._now -= step
 
     def _grow_rows(self) -> None:
+        """Make the rows of all cells longer."""
+        if self._modes.rows:
+            if not self._enlarge_rows():
+                self._crowded = True
+                self._lay_out()
+            else:
+                self._refill_rows(self._now)
+            return
         old = self._cells
         stride = 2 * old.stride
         cells = old.number_x * old.number_y * old.number_z
-        row = aligned_records(cells * stride, np.dtype([("i", "u4")]))["i"]
-        row = np.ascontiguousarray(row)
+        row = new_rows(self._grid, stride)
         row.reshape(cells, stride)[:, : old.stride] = old.row.reshape(cells, old.stride)
         self._cells = old._replace(row=row, stride=stride)
+
+    def _refill_rows(self, now: float) -> None:
+        """Write the copies in all rows anew at a local time, in longer rows if there is no other way."""
+        while self._refill(self._gas(), now):
+            if not self._enlarge_rows():
+                self._crowded = True
+                self._lay_out()
+                return
+
+    def _enlarge_rows(self) -> bool:
+        """Give the rows sixteen places more, empty; return whether that is possible."""
+        self._places += 16
+        if self._places > MOST:
+            return False
+        self._new_cells(row_stride(self._places, mixed=self._modes.mixed))
+        return True
+
+    def _new_cells(self, stride: int) -> None:
+        """Make empty rows of so many words for the cells that are chosen."""
+        grid, n = self._grid, len(self._fields)
+        slot = np.zeros((0, 3), np.uint16)
+        if n:
+            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
+        row = new_rows(grid, stride)
+        radius = 0.5 * self.diameter.mean() if self.diameter.size else 0.0
+        copies = copies_of(
+            row, self._events.view(np.ndarray), grid.edges, self._periodic, float(radius), self._epoch_length,
+            planar=self._planar,
+        )  # fmt: skip
+        self._cells = new_cells(grid, slot, row, stride, copies)
 
     def _lay_out(self) -> None:
         """Choose cells for the box as it is now and plan every molecule's event anew."""
@@ -275,7 +329,9 @@ class ParcelSet(Parcel):
             filled=self._filled,
             open_top=bool(moving),
             scale_height=kT / weight if weight > 0.0 and kT > 0.0 else math.inf,
+            rows=contacts and not self._crowded,
         )
+        self._grid = grid
         self._modes = Modes(
             contacts=contacts,
             gravity=self.gravity > 0.0,
@@ -289,22 +345,24 @@ class ParcelSet(Parcel):
             drops=self._first_drop,
             images=grid.images,
             ascends=self._ascends,
+            rows=grid.rows,
         )
         self._find_kernels()
         self._events = aligned_records(n, EVENT)
-        slot = np.zeros((0, 3), np.uint16)
-        if n:
-            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
-        stride = ROW
+        self._places = 32
+        self._new_cells(row_stride(self._places, mixed=self._modes.mixed) if grid.rows else ROW)
         while True:
-            self._cells = new_cells(grid, slot, stride)
             self._calendar = new_calendar(n)
             if self._place(self._gas(), self._now) != Status.ROW_FULL:
                 return
-            stride *= 2
+            if not grid.rows:
+                self._new_cells(2 * self._cells.stride)
+            elif not self._enlarge_rows():
+                self._crowded = True
+                return self._lay_out()
 
     def _find_kernels(self) -> None:
-        self._place, self._advance, self._replan, self._overlap = specialise(self._modes)
+        self._place, self._advance, self._replan, self._overlap, self._refill = specialise(self._modes)
 
     def _mean_kT(self) -> float:
         if not self.number:

@@ -14,11 +14,13 @@ from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_
 from atmosbox.engine.core.pair import approach, nearest_image, predict, reach, soonest_image
 from atmosbox.engine.exact.calendar import schedule
 from atmosbox.engine.exact.cells import overlapped
+from atmosbox.engine.exact.encounter import size_and_radius, slots_of
+from atmosbox.engine.exact.search import CONTACT, search
 
-__all__ = ["CEILING", "CONTACT", "Meeting", "next_move", "plan", "side", "size_and_radius", "soonest_in_cell"]
+__all__ = ["CEILING", "CONTACT", "Meeting", "call", "limits", "next_move", "plan", "side", "soonest_in_cell"]
 
-CONTACT, CEILING = 6, 7
-"""What comes first: 0 to 5 is a boundary or wall (twice the axis, plus 1 for the upper side), then these."""
+CEILING = 7
+"""What comes first: 0 to 5 is a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact, 7 this."""
 
 
 class Meeting(NamedTuple):
@@ -26,16 +28,6 @@ class Meeting(NamedTuple):
 
     after: float
     partner: int
-
-
-@kernel
-def size_and_radius(i, gas, modes):
-    """Return the size class and the radius [length] of molecule i."""
-    table = gas.kinds.table
-    if modes.mixed:
-        kind = table[gas.molecules[i].kind]
-        return np.int64(kind.size_class), kind.radius
-    return np.int64(0), table[0].radius
 
 
 @kernel
@@ -94,11 +86,17 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
 
 
 @kernel
-def _limits(slot, axis, size, radius, gas, modes):
-    """Return the interval in which the centre stays before it changes slot or hits a wall."""
-    low = gas.cells.boundary[size, axis, slot]
-    high = gas.cells.boundary[size, axis, slot + 1]
-    if modes.spanning:
+def limits(slot, axis, size, radius, gas, modes):
+    """Return the interval in which the centre stays before it reaches a new cell (or slot) or a wall."""
+    boundary = gas.cells.boundary
+    if modes.rows:
+        # to leave a cell is no event
+        low = boundary[size, axis, slot & ~1]
+        high = boundary[size, axis, (slot | 1) + 2 * (slot & 1)]
+    else:
+        low = boundary[size, axis, slot]
+        high = boundary[size, axis, slot + 1]
+    if modes.spanning or (modes.rows and modes.mixed):
         length, inverse = side(axis, gas.box)
         if inverse == 0.0:
             low = max(low, radius)
@@ -112,15 +110,15 @@ def next_move(slots, t, at, size, radius, gas, modes):
 
     ``slots`` are its slots along x, y and z, ``size`` its size class.
     """
-    low, high = _limits(slots[0], 0, size, radius, gas, modes)
+    low, high = limits(slots[0], 0, size, radius, gas, modes)
     time, up = time_to_leave(at.x, at.vx, low, high)
     what = up
-    low, high = _limits(slots[1], 1, size, radius, gas, modes)
+    low, high = limits(slots[1], 1, size, radius, gas, modes)
     time_y, up = time_to_leave(at.y, at.vy, low, high)
     if time_y < time:
         what = 2 + up
     time = min(time, time_y)
-    low, high = _limits(slots[2], 2, size, radius, gas, modes)
+    low, high = limits(slots[2], 2, size, radius, gas, modes)
     if modes.gravity:
         time_z, up = time_to_leave_in_gravity(at.z, at.vz, low, high, gas.box.gravity)
     else:
@@ -140,11 +138,54 @@ def next_move(slots, t, at, size, radius, gas, modes):
 
 
 @kernel
-def plan(i, t, at, gas, modes):
-    """Work out anew all that lies ahead of molecule i, which is where ``at`` says at time t; write it down."""
-    cells = gas.cells
+def plan(i, t, at, boundary, gas, modes):
+    """Work out all that lies ahead of molecule i, which is where ``at`` says at time t; write it down.
+
+    With rows it may just have reached a boundary, see `search`. Returns whether the row of a cell must grow.
+    """
     event = gas.events[i]
-    slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
+    size, radius = size_and_radius(i, gas, modes)
+    full = False
+    if modes.rows:
+        found = search(i, t, at, boundary, gas, modes)
+        at, slots, full = found.at, found.slots, found.full
+        after, partner = found.after, found.partner
+        if partner < 0 and boundary >= CONTACT:
+            partner = i  # nobody within the horizon: it plans anew when that is reached
+    else:
+        slots = slots_of(i, gas)
+        after, partner = _soonest_in_lists(i, t, at, slots, gas, modes)
+    time, what = next_move(slots, t, at, size, radius, gas, modes)
+    event.contact_time = t + after
+    if partner >= 0:
+        event.partner = partner
+        # a prediction is stale as soon as its partner has met somebody else, which its count will tell
+        event.partner_count = gas.molecules[partner].count
+    if after < time:
+        what = CONTACT
+    event.what = what
+    schedule(gas.calendar, i, t + min(time, after))
+    return full
+
+
+@kernel
+def call(i, t, gas):
+    """Let molecule i plan anew at time t, before anything else happens: it has got a new velocity.
+
+    It is entered as a contact with itself, so that the loop over events, which plans, is the one place where the search
+    for contacts is compiled.
+    """
+    event = gas.events[i]
+    event.contact_time = t
+    event.partner = i
+    event.what = CONTACT
+    schedule(gas.calendar, i, t)
+
+
+@kernel
+def _soonest_in_lists(i, t, at, slots, gas, modes):
+    """Return how long until the soonest contact with a member of the cells in three slots, and with whom."""
+    cells = gas.cells
     size, radius = size_and_radius(i, gas, modes)
     meeting = Meeting(math.inf, -1)
     if modes.contacts:
@@ -163,13 +204,4 @@ def plan(i, t, at, gas, modes):
                         cz -= cells.number_z
                     cell = (cx * cells.number_y + cy) * cells.number_z + cz
                     meeting = soonest_in_cell(cell, i, t, at, radius, meeting, gas, modes)
-    time, what = next_move(slots, t, at, size, radius, gas, modes)
-    event.contact_time = t + meeting.after
-    if meeting.partner >= 0:
-        event.partner = meeting.partner
-        # a prediction is stale as soon as its partner has met somebody else, which its count will tell
-        event.partner_count = gas.molecules[meeting.partner].count
-    if meeting.after < time:
-        what = CONTACT
-    event.what = what
-    schedule(gas.calendar, i, t + min(time, meeting.after))
+    return meeting.after, meeting.partner

@@ -13,8 +13,9 @@ import numpy as np
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, Lift, ceiling_velocity
 from atmosbox.engine.exact.calendar import schedule
-from atmosbox.engine.exact.encounter import motion_at
-from atmosbox.engine.exact.prediction import CEILING, CONTACT, next_move, size_and_radius
+from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
+from atmosbox.engine.exact.prediction import CEILING, limits, next_move
+from atmosbox.engine.exact.search import CONTACT
 
 __all__ = ["HIGHEST", "LOWEST", "Ascent", "Next", "ahead", "gauges", "replan_under", "turn"]
 
@@ -104,9 +105,9 @@ def replan_under(lowest, now, gas, modes):
         if modes.phases and math.isinf(gas.molecules[i].clock):
             continue
         event = gas.events[i]
-        slots = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
+        slots = slots_of(i, gas)
         size, radius = size_and_radius(i, gas, modes)
-        if gas.cells.boundary[size, 2, slots[2] + 1] < lowest - radius and np.int64(event.what) != CEILING:
+        if limits(slots[2], 2, size, radius, gas, modes)[1] < lowest - radius and np.int64(event.what) != CEILING:
             continue
         time, what = next_move(slots, now, motion_at(i, now, gas, modes), size, radius, gas, modes)
         time += now

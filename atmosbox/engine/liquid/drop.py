@@ -23,7 +23,7 @@ from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
-from atmosbox.engine.exact.prediction import plan
+from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.liquid.drop_shape import DropRecords, about, placed, radius_of, resize, surface_left, within
 from atmosbox.engine.liquid.insertion import Place, has_room, move_to, place_at
 from atmosbox.engine.liquid.moist import ceiling_at, renew
@@ -135,7 +135,7 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
             kinds.rotational_energy[i] = spin
         after = Motion(at.x, at.y, at.z, vx, vy, vz)
         write(i, t, after, gas)
-        plan(i, t, after, gas, modes)
+        call(i, t, gas)
     write(j, t, Motion(drop.x, drop.y, drop.z, wx, wy, wz), gas)
     _renew(t, gas, drops, reservoir)
 
@@ -243,7 +243,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
                 status, j = _emit(due, gas, drops, reservoir, modes)
                 if status != Status.DONE:
                     return status.value, done
-            plan(j, t, motion_at(j, t, gas, modes), gas, modes)
+            call(j, t, gas)
         return Status.BUSY.value, done
 
     return begin, advance

@@ -123,9 +123,9 @@ class DropParcelSet(MoistParcelSet):
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return np.append(self.present, np.zeros(len(self._drops.record), np.bool_))
 
-    def _proceed(self, until: float) -> Status:
-        status, _ = self._drop_advance(self._gas(), self._drops, self._reservoir, until, _CHUNK)
-        return Status(status)
+    def _proceed(self, until: float) -> tuple[Status, int]:
+        status, done = self._drop_advance(self._gas(), self._drops, self._reservoir, until, _CHUNK)
+        return Status(status), int(done)
 
     def _find_kernels(self) -> None:
         super()._find_kernels()

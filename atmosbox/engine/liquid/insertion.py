@@ -1,4 +1,4 @@
-"""Where a molecule may be inserted without overlap, and the rows of cells in which it then stands."""
+"""Where a molecule may be inserted without overlap."""
 
 import math
 from enum import IntEnum
@@ -8,10 +8,11 @@ import numpy as np
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.random import uniform
-from atmosbox.engine.exact.cells import append, overlapped, remove, slot_at
-from atmosbox.engine.exact.prediction import size_and_radius
+from atmosbox.engine.exact.cells import overlapped, slot_at
+from atmosbox.engine.exact.encounter import size_and_radius, slots_of
+from atmosbox.engine.exact.membership import Change, change, listed, places, row_of
 
-__all__ = ["Place", "Rows", "find_place", "has_room", "in_rows", "move_to", "place_at"]
+__all__ = ["Place", "find_place", "has_room", "move_to", "place_at"]
 
 
 class Place(IntEnum):
@@ -23,14 +24,6 @@ class Place(IntEnum):
     FREE = 0
     TAKEN = 1
     ROW_FULL = 2
-
-
-class Rows(IntEnum):
-    """What `in_rows` does: ``TEST`` whether the rows have room, ``REMOVE`` a molecule from them, or ``ADD`` it."""
-
-    TEST = 0
-    REMOVE = 1
-    ADD = 2
 
 
 @kernel
@@ -55,69 +48,44 @@ def place_at(i, t, x, y, z, gas, modes):
     cells.slot[i, 2] = slot_at(z, size, 2, cells.last_slot_z, cells, modes)
     if not modes.contacts:
         return Place.FREE
-    full = False
-    row = cells.row
-    first_x, span_x = overlapped(np.int64(cells.slot[i, 0]), size, 0, cells, modes)
-    first_y, span_y = overlapped(np.int64(cells.slot[i, 1]), size, 1, cells, modes)
-    first_z, span_z = overlapped(np.int64(cells.slot[i, 2]), size, 2, cells, modes)
+    slots = slots_of(i, gas)
+    first_x, span_x = overlapped(slots[0], size, 0, cells, modes)
+    first_y, span_y = overlapped(slots[1], size, 1, cells, modes)
+    first_z, span_z = overlapped(slots[2], size, 2, cells, modes)
     for a in range(first_x, first_x + span_x):
         for b in range(first_y, first_y + span_y):
             for c in range(first_z, first_z + span_z):
-                cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
-                start = (cell + c % cells.number_z) * cells.stride
-                members = np.int64(row[start])
-                full |= members + 1 >= cells.stride
-                for q in range(members):
-                    j = np.int64(row[start + 1 + q])
-                    _, other_radius = size_and_radius(j, gas, modes)
-                    if _is_near(j, t, x, y, z, reach(radius, other_radius), gas, modes):
-                        return Place.TAKEN
-    return Place.ROW_FULL if full else Place.FREE
+                start = row_of(a, b, c, cells)
+                for place in range(places(start, cells, modes)):
+                    j = listed(start, place, cells, modes)
+                    if j >= 0:
+                        _, other_radius = size_and_radius(j, gas, modes)
+                        if _is_near(j, t, x, y, z, reach(radius, other_radius), gas, modes):
+                            return Place.TAKEN
+    return Place.ROW_FULL if change(Change.TEST, i, size, slots, cells, modes) else Place.FREE
 
 
 @kernel
 def has_room(i, j, t, at, radius, gas, modes):
     """Tell whether drop j, which is where ``at`` says, would overlap no molecule but i if it had another radius."""
-    cells = gas.cells
-    row = cells.row
-    table = gas.kinds.table
+    cells, table = gas.cells, gas.kinds.table
     size = np.int64(table[gas.molecules[j].kind].size_class)
-    first_x, span_x = overlapped(np.int64(gas.events[j].slot_x), size, 0, cells, modes)
-    first_y, span_y = overlapped(np.int64(gas.events[j].slot_y), size, 1, cells, modes)
-    first_z, span_z = overlapped(np.int64(gas.events[j].slot_z), size, 2, cells, modes)
+    slots = slots_of(j, gas)
+    first_x, span_x = overlapped(slots[0], size, 0, cells, modes)
+    first_y, span_y = overlapped(slots[1], size, 1, cells, modes)
+    first_z, span_z = overlapped(slots[2], size, 2, cells, modes)
     for a in range(first_x, first_x + span_x):
         for b in range(first_y, first_y + span_y):
             for c in range(first_z, first_z + span_z):
-                cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
-                start = (cell + c % cells.number_z) * cells.stride
-                for q in range(np.int64(row[start])):
-                    other = np.int64(row[start + 1 + q])
-                    if other in (i, j):
+                start = row_of(a, b, c, cells)
+                for place in range(places(start, cells, modes)):
+                    other = listed(start, place, cells, modes)
+                    if other < 0 or other in (i, j):
                         continue
                     distance = reach(radius, table[gas.molecules[other].kind].radius)
                     if _is_near(other, t, at.x, at.y, at.z, distance, gas, modes):
                         return False
     return True
-
-
-@kernel
-def in_rows(what, i, size, slots, cells, modes):
-    """Do one of `Rows` with molecule i in all cells of three slots; tell whether one of them is full."""
-    first_x, span_x = overlapped(np.int64(slots[0]), size, 0, cells, modes)
-    first_y, span_y = overlapped(np.int64(slots[1]), size, 1, cells, modes)
-    first_z, span_z = overlapped(np.int64(slots[2]), size, 2, cells, modes)
-    full = False
-    for a in range(first_x, first_x + span_x):
-        for b in range(first_y, first_y + span_y):
-            for c in range(first_z, first_z + span_z):
-                cell = ((a % cells.number_x) * cells.number_y + b % cells.number_y) * cells.number_z
-                start = (cell + c % cells.number_z) * cells.stride
-                if what == Rows.REMOVE:
-                    remove(cells.row, start, i)
-                elif what == Rows.ADD:
-                    append(cells.row, start, i)
-                full |= np.int64(cells.row[start]) + 1 >= cells.stride
-    return full
 
 
 @kernel
@@ -131,17 +99,16 @@ def move_to(i, x, y, z, gas, modes):
         y -= math.floor((y - cells.boundary[size, 1, 0]) / box.length_y) * box.length_y
     if box.inverse_z != 0.0:
         z -= math.floor((z - cells.boundary[size, 2, 0]) / box.length_z) * box.length_z
-    event = gas.events[i]
-    old = np.int64(event.slot_x), np.int64(event.slot_y), np.int64(event.slot_z)
+    old = slots_of(i, gas)
     new = (
         slot_at(x, size, 0, cells.last_slot_x, cells, modes),
         slot_at(y, size, 1, cells.last_slot_y, cells, modes),
         slot_at(z, size, 2, cells.last_slot_z, cells, modes),
     )
-    if in_rows(Rows.TEST, i, size, new, cells, modes):
+    if change(Change.TEST, i, size, new, cells, modes):
         return x, y, z, False
-    in_rows(Rows.REMOVE, i, size, old, cells, modes)
-    in_rows(Rows.ADD, i, size, new, cells, modes)
+    change(Change.REMOVE, i, size, old, cells, modes)
+    change(Change.ADD, i, size, new, cells, modes)
     cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = new
     return x, y, z, True
 

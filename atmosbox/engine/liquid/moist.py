@@ -20,7 +20,7 @@ from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
-from atmosbox.engine.exact.prediction import plan
+from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.turning import Ascent, Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, find_place
 from atmosbox.engine.liquid.phase import enter, withdraw
@@ -141,7 +141,7 @@ def _touch(i, t, at, flow, gas, reservoir, modes):
         z = radius
     after = Motion(at.x, at.y, z, vx, vy, vz)
     write(i, t, after, gas)
-    plan(i, t, after, gas, modes)
+    call(i, t, gas)
 
 
 @kernel

@@ -100,10 +100,10 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         """Return the bytes that molecules, events, cells, calendar and reservoir take."""
         return super().memory() + self._reservoir_memory()
 
-    def _proceed(self, until: float) -> Status:
+    def _proceed(self, until: float) -> tuple[Status, int]:
         ascent = [MoistAscent(dry, self._vapours, self._rotations) for dry in self._ascent()]
-        status, _ = self._moist_advance(self._gas(), self._reservoir, *ascent, until, _CHUNK)
-        return Status(status)
+        status, done = self._moist_advance(self._gas(), self._reservoir, *ascent, until, _CHUNK)
+        return Status(status), int(done)
 
     def _find_kernels(self) -> None:
         super()._find_kernels()

@@ -8,9 +8,9 @@ import math
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.exact.calendar import schedule
-from atmosbox.engine.exact.encounter import write
-from atmosbox.engine.exact.prediction import plan, size_and_radius
-from atmosbox.engine.liquid.insertion import Rows, in_rows
+from atmosbox.engine.exact.encounter import size_and_radius, slots_of, write
+from atmosbox.engine.exact.membership import Change, change
+from atmosbox.engine.exact.prediction import call
 
 __all__ = ["enter", "take_out", "withdraw"]
 
@@ -21,7 +21,7 @@ def take_out(i, gas, modes):
     event = gas.events[i]
     if modes.contacts:
         size, _ = size_and_radius(i, gas, modes)
-        in_rows(Rows.REMOVE, i, size, (event.slot_x, event.slot_y, event.slot_z), gas.cells, modes)
+        change(Change.REMOVE, i, size, slots_of(i, gas), gas.cells, modes)
     molecule = gas.molecules[i]
     molecule.clock = math.inf
     molecule.vx = 0.0
@@ -47,10 +47,9 @@ def enter(i, t, at, spin, gas, reservoir, modes):
     """Put molecule i, the last that is absent, where `find_place` has found a place for it."""
     reservoir.top[0] -= 1
     if modes.contacts:
-        event = gas.events[i]
         size, _ = size_and_radius(i, gas, modes)
-        in_rows(Rows.ADD, i, size, (event.slot_x, event.slot_y, event.slot_z), gas.cells, modes)
+        change(Change.ADD, i, size, slots_of(i, gas), gas.cells, modes)
     write(i, t, at, gas)
     if modes.rotation:
         gas.kinds.rotational_energy[i] = spin
-    plan(i, t, at, gas, modes)
+    call(i, t, gas)

@@ -8,9 +8,9 @@ time in each of these rows, in single precision.
 
 import numpy as np
 
-from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.jit import kernel, lowest_bit
 from atmosbox.engine.core.pair import nearest_image
-from atmosbox.engine.stepped.window import LANES, lowest_bit, within
+from atmosbox.engine.stepped.window import LANES, within
 
 __all__ = ["find_pairs"]
 

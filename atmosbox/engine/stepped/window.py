@@ -11,7 +11,7 @@ from numba.extending import intrinsic
 
 from atmosbox.engine.core.jit import COMPILED
 
-__all__ = ["LANES", "lowest_bit", "within"]
+__all__ = ["LANES", "within"]
 
 LANES = 8
 """How many neighbours are looked at together; arrays must be readable so far beyond their last molecule."""
@@ -70,16 +70,6 @@ if COMPILED:
 
         return signature, generate
 
-    @intrinsic
-    def lowest_bit(typing_context, bits):
-        """Return the number of the lowest bit that is set; there must be one."""
-        signature = types.int64(types.int64)
-
-        def generate(context, builder, signature, arguments):
-            return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 1))
-
-        return signature, generate
-
 else:
 
     def within(x, y, z, radius, first, at_x, at_y, at_z, reach):
@@ -88,7 +78,3 @@ else:
         total = reach if radius is None else reach + radius[some]
         squared = (x[some] - at_x) ** 2 + (y[some] - at_y) ** 2 + (z[some] - at_z) ** 2
         return sum(1 << lane for lane in np.flatnonzero(squared < total * total).tolist())
-
-    def lowest_bit(bits):
-        """Return the number of the lowest bit that is set; there must be one."""
-        return (int(bits) & -int(bits)).bit_length() - 1

@@ -1,0 +1,337 @@
+"""The rows of cells, where they hold copies of trajectories: who stands in which place of which row.
+
+Beside the names of its members the row of a cell holds a copy of the trajectory of each in single precision, relative
+to the centre of the cell and to a common time, the start of the epoch. So all that a `glance` asks about sixteen
+members lies in one piece of memory. The row of a cell is ``stride`` words of four bytes::
+
+    | occupied . . . | names | x | y | z | vx | vy | vz | extent | names | x | ...
+      one line of      16     16  16  16   16   16   16     16
+      64 bytes       |<---------------- a block --------------->|<-- the next --
+
+The first 64 bits of a row tell which of its places are occupied, at most `MOST`. Extents are there only if molecules
+differ in size. In gravity the copies are in the frame that falls from the start of the epoch, where all paths are
+straight.
+
+Along each axis a molecule stands in one cell, or in two neighbours: that is its slot (`cells`). But here it keeps a
+cell that it has left until its next event, because to leave a cell is no event. Of its cells, eight at most, no two
+have the same parity of their three numbers. So eight bits tell which they are (`members_of`), and eight bytes of its
+event its place in the row of each::
+
+    cell numbers (x, y, z)   even even even   even even odd   ...   odd odd odd
+    bit, and byte of place         0                1                    7
+
+On a periodic axis the number of cells is even, so that parities go on across the border, and at least four: then the
+image of a member that belongs to a row is the one nearest to the centre of its cell, from which no member is further
+than one and a half cells.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine.core.jit import POSITIVE, kernel, lowest_bit
+from atmosbox.engine.core.pair import extent
+from atmosbox.engine.core.state import PLACE_OFFSET, Copies, Motion
+from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
+from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, PATH, SLACK, SPEEDS, SQUARE
+
+__all__ = [
+    "MOST", "START", "STOP", "TOP_SPEED", "copies_of", "enter", "fill", "first_of_block", "has_place", "leave",
+    "members_of", "name_in", "number_of", "number_of_places", "relative", "row_stride", "start_of", "write_copy",
+]  # fmt: skip
+
+_HEAD = 16
+MOST = 64
+"""As many places as a row may have: one word of 64 bits tells which are occupied."""
+START, STOP, TOP_SPEED, LONGEST = range(4)
+"""What is known of an epoch: its start and its end [time], V [length/time], and how long it may be at most [time]."""
+_PLACE, _SPEED, _EXTENT = LANES, 4 * LANES, 7 * LANES
+_DILUTE, _DENSE = 0.05, 0.2
+"""Below the first packing fraction a horizon gains nothing (measured); above the second it may be nearer."""
+
+
+def row_stride(places: int, *, mixed: bool) -> int:
+    """Return how many words the row of a cell takes that has so many places.
+
+    Examples
+    --------
+    >>> row_stride(16, mixed=False), row_stride(32, mixed=True)
+    (128, 272)
+    """
+    return _HEAD + (8 if mixed else 7) * places
+
+
+def copies_of(
+    row: NDArray[np.uint32], events: NDArray[np.void], edges: tuple[NDArray[np.float64], ...],
+    periodic: tuple[bool, bool, bool], radius: float, longest: float, *, planar: bool,
+) -> Copies:  # fmt: skip
+    """Return what the kernels know of the copies in rows.
+
+    Parameters
+    ----------
+    row, events
+        The memory of both.
+    edges
+        Of the cells along each axis [length].
+    periodic
+        Which axes are.
+    radius
+        The usual radius of a molecule [length].
+    longest
+        How long an epoch may be [time].
+    planar
+        Whether all centres lie in one plane y = constant.
+    """
+    cells = max(len(edge) for edge in edges)
+    centre = np.zeros((3, cells))
+    width = [0.0, 0.0]
+    for axis, edge in enumerate(edges):
+        n = len(edge) - 1
+        centre[axis, :n] = 0.5 * (edge[1:] + edge[:-1])
+        if periodic[axis]:  # beyond the last cell stands the first again
+            centre[axis, n] = centre[axis, 0] + edge[-1]
+        if axis < 2 and not (planar and axis == 1):
+            width[axis] = _farthest(edge, wraps=periodic[axis]).max()
+    layer = np.maximum(_farthest(edges[2], wraps=periodic[2]), max(width))
+    slack = np.zeros((len(layer), 3))
+    slack[:, DISTANCE] = SLACK * layer
+    slack[:, SQUARE] = SLACK * layer**2
+    slack[:, CLOSING] = 4.0 * SLACK * layer  # times V
+    area = float(edges[0][-1]) * (1.0 if planar else float(edges[1][-1]))
+    return Copies(
+        value=row.view(np.float32),
+        occupied=row.view(np.int64),
+        place=events.view(np.uint8),
+        centre=centre,
+        horizon=np.full(len(layer), math.inf),
+        slack=slack,
+        epoch=np.array([0.0, math.inf, 0.0, longest]),
+        room=area * np.diff(edges[2]),
+        radius=radius,
+    )
+
+
+def _farthest(edge: NDArray[np.float64], *, wraps: bool) -> NDArray[np.float64]:
+    """Return how far a member of each cell along an axis can be from its centre: W of `glance` [length].
+
+    It may stand in a neighbour of the cell too, anywhere.
+    """
+    width = np.diff(edge)
+    around = np.concatenate([width[-1:], width, width[:1]]) if wraps else np.concatenate([[0.0], width, [0.0]])
+    farthest: NDArray[np.float64] = 0.5 * width + np.maximum(around[:-2], around[2:])
+    return farthest
+
+
+@kernel
+def members_of(slots):
+    """Return the cells of three slots as eight bits, by the parity of their numbers."""
+    x = 0xFF if slots[0] & 1 else (0xF0 if slots[0] & 2 else 0x0F)
+    y = 0xFF if slots[1] & 1 else (0xCC if slots[1] & 2 else 0x33)
+    z = 0xFF if slots[2] & 1 else (0xAA if slots[2] & 2 else 0x55)
+    return x & y & z
+
+
+@kernel
+def number_of(bit, axis, slots):
+    """Return the number along an axis of that cell of three slots that has the parity of a bit."""
+    lower = slots[axis] >> 1
+    return lower + ((bit >> (2 - axis) ^ lower) & 1)
+
+
+@kernel
+def _turned(cell, number, modes):
+    """Return the number of a cell along an axis of so many; beyond the last of a periodic axis comes the first."""
+    if modes.periodic:
+        cell -= number if cell >= number else 0
+    return cell
+
+
+@kernel
+def start_of(bit, slots, cells, modes):
+    """Return where in memory the row begins of that cell of three slots that has the parity of a bit."""
+    x = _turned(number_of(bit, 0, slots), cells.number_x, modes)
+    y = _turned(number_of(bit, 1, slots), cells.number_y, modes)
+    z = _turned(number_of(bit, 2, slots), cells.number_z, modes)
+    return (((x * cells.number_y + y) * cells.number_z + z) * cells.stride) & POSITIVE
+
+
+@kernel
+def _block(place, modes):
+    """Return where in a row the block of a place begins, plus its lane."""
+    return _HEAD + (place >> 4) * (8 * LANES if modes.mixed else 7 * LANES) + (place & (LANES - 1))
+
+
+@kernel
+def first_of_block(start, block, modes):
+    """Return where the copies of a block of a row begin."""
+    return start + _HEAD + block * (8 * LANES if modes.mixed else 7 * LANES) + _PLACE
+
+
+@kernel
+def number_of_places(cells, modes):
+    """Return how many places a row has."""
+    return (cells.stride - _HEAD) // (8 if modes.mixed else 7)
+
+
+@kernel
+def name_in(start, place, cells, modes):
+    """Return the molecule in a place of a row, -1 if the place is free."""
+    if (cells.copies.occupied[start >> 1] >> place) & 1 == 0:
+        return -1
+    return np.int64(cells.row[start + _block(place, modes)])
+
+
+@kernel
+def _free_place(start, cells):
+    """Return the lowest place of a row that is not occupied."""
+    taken = cells.copies.occupied[start >> 1]
+    return lowest_bit(~taken) if taken != -1 else MOST
+
+
+@kernel
+def has_place(start, cells, modes):
+    """Tell whether a row has a place left."""
+    return _block(_free_place(start, cells), modes) < cells.stride
+
+
+@kernel
+def enter(i, bit, start, cells, modes):
+    """Give molecule i a place in a row, whose copy is nowhere until it is written; tell whether there was none."""
+    place = _free_place(start, cells)
+    if _block(place, modes) >= cells.stride:
+        return True
+    cells.copies.occupied[start >> 1] |= np.int64(1) << place
+    cells.copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE] = place
+    at = start + _block(place, modes)
+    cells.row[at] = i
+    cells.copies.value[at + _PLACE] = np.nan
+    return False
+
+
+@kernel
+def leave(i, bit, start, cells):
+    """Strike molecule i from a row."""
+    place = np.int64(cells.copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
+    cells.copies.occupied[start >> 1] &= ~(np.int64(1) << place)
+
+
+@kernel
+def write_copy(i, bit, start, at, radius, since, gas, modes):
+    """Write the copy of molecule i, which is ``since`` after the start of the epoch where ``at`` says: see `Motion`.
+
+    ``at`` is relative to the centre of the cell.
+    """
+    copies = gas.cells.copies
+    place = np.int64(copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
+    first = start + _block(place, modes)
+    value = copies.value
+    vz, fall = at.vz, 0.0
+    if modes.gravity:
+        vz += gas.box.gravity * since
+        fall = 0.5 * gas.box.gravity * since * since
+    speed_squared = at.vx * at.vx + at.vy * at.vy + vz * vz
+    x = at.x - at.vx * since
+    value[first + _PLACE] = x if speed_squared <= copies.epoch[TOP_SPEED] * copies.epoch[TOP_SPEED] else math.nan
+    value[first + _PLACE + LANES] = at.y - at.vy * since
+    value[first + _PLACE + 2 * LANES] = at.z + fall - vz * since
+    value[first + _SPEED] = at.vx
+    value[first + _SPEED + LANES] = at.vy
+    value[first + _SPEED + 2 * LANES] = vz
+    if modes.mixed:
+        value[first + _EXTENT] = extent(radius)
+
+
+@kernel
+def fill(now, gas, modes):
+    """Write the copies of all molecules anew, as the members that they are; tell whether a row is too short for them.
+
+    This begins an epoch.
+    """
+    cells, copies, molecules = gas.cells, gas.cells.copies, gas.molecules
+    for cell in range(cells.number_x * cells.number_y * cells.number_z):
+        copies.occupied[((cell * cells.stride) & POSITIVE) >> 1] = 0
+    # how fast they are, and how many in each layer
+    number = 0
+    squares = 0.0
+    fastest = 0.0
+    copies.horizon[:] = 0.0
+    for i in range(molecules.size):
+        if modes.phases and math.isinf(molecules[i].clock):
+            continue
+        at = motion_at(i, now, gas, modes)
+        square = at.vx * at.vx + at.vy * at.vy + at.vz * at.vz
+        number += 1
+        squares += square
+        fastest = max(fastest, square)
+        copies.horizon[slots_of(i, gas)[2] >> 1] += 1.0
+    mean_square = squares / max(number, 1)
+    _new_epoch(now, math.sqrt(fastest), math.sqrt(mean_square), copies, gas.box.gravity)
+    # how far ahead contacts are looked for depends on how dense a layer is
+    for layer in range(copies.horizon.size):
+        copies.horizon[layer] = _horizon(copies.horizon[layer] / copies.room[layer], mean_square, gas)
+    for i in range(molecules.size):
+        if modes.phases and math.isinf(molecules[i].clock):
+            continue
+        at = motion_at(i, now, gas, modes)
+        slots = slots_of(i, gas)
+        _, radius = size_and_radius(i, gas, modes)
+        members = members_of(slots)
+        while members != 0:
+            bit = lowest_bit(members)
+            members &= members - 1
+            start = start_of(bit, slots, cells, modes)
+            if enter(i, bit, start, cells, modes):
+                return True
+            write_copy(i, bit, start, relative(at, bit, slots, copies), radius, 0.0, gas, modes)
+    return False
+
+
+@kernel
+def relative(at, bit, slots, copies):
+    """Return a `Motion` relative to the centre of that cell of three slots that has the parity of a bit."""
+    x = at.x - copies.centre[0, number_of(bit, 0, slots)]
+    y = at.y - copies.centre[1, number_of(bit, 1, slots)]
+    z = at.z - copies.centre[2, number_of(bit, 2, slots)]
+    return Motion(x, y, z, at.vx, at.vy, at.vz)
+
+
+@kernel
+def _new_epoch(now, fastest, usual, copies, gravity):
+    """Begin an epoch for molecules of this greatest speed and root mean square of speed: see `glance` for its bounds.
+
+    A few that are much faster than most are not waited for: their copies are nowhere.
+    """
+    epoch = copies.epoch
+    width = math.inf
+    for layer in range(copies.slack.shape[0]):
+        width = min(width, copies.slack[layer, DISTANCE] / SLACK)
+    speed = 1.25 * min(fastest, 6.0 * usual)
+    if gravity > 0.0:
+        # with 128 g W <= V^2, V H = 64 W means g H <= V / 2
+        speed = max(2.0 * speed, math.sqrt(2.0 * PATH * gravity * width))
+    speed = min(speed, SPEEDS)
+    epoch[START] = now
+    epoch[STOP] = now + (min(epoch[LONGEST], PATH * width / speed) if speed > 0.0 else epoch[LONGEST])
+    epoch[TOP_SPEED] = speed
+
+
+@kernel
+def _horizon(density, mean_square, gas):
+    """Return how far ahead to look for contacts where there are so many molecules [time]: some mean free times.
+
+    Where a gas is dense, hardly anyone flies further. The rate of collisions is that of Enskog's theory; it need not be
+    accurate, since whoever finds nobody until then plans anew.
+    """
+    diameter = 2.0 * gas.cells.copies.radius
+    if gas.box.planar:
+        filled = min(0.25 * math.pi * density * diameter * diameter, 0.7)
+        excess = (1.0 - 0.4375 * filled) / (1.0 - filled) ** 2
+        rate = 2.0 * density * diameter * math.sqrt(0.5 * math.pi * mean_square) * excess
+    else:
+        filled = min(math.pi / 6.0 * density * diameter * diameter * diameter, 0.6)
+        excess = (1.0 - 0.5 * filled) / (1.0 - filled) ** 3
+        rate = 4.0 * density * diameter * diameter * math.sqrt(math.pi / 3.0 * mean_square) * excess
+    if filled < _DILUTE or not rate > 0.0:
+        return math.inf
+    return (3.0 if filled > _DENSE else 4.0) / rate

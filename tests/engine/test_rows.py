@@ -1,0 +1,240 @@
+"""No contact is missed: the glance leaves out nobody who is met, and the engine meets next whom all pairs say it must.
+
+The oracle of whole boxes is not another run, which chaos would part from it: it is the first contact of all pairs, in
+double precision, from the state in which the engine itself stands.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from atmosbox.engine import HeatBath, ParcelSet, Piston, Specular
+from atmosbox.engine.core.jit import COMPILED, kernel
+from atmosbox.engine.exact.glance import CLOSING, LANES, PATH, SLACK, glance
+
+many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
+SMOOTH = (Specular(),) * 6
+
+
+@kernel(entry=True)
+def glance_at(values, place, velocity, since, slack, within, seen):
+    """Note which of the copies are named, each looked at by a molecule of its own."""
+    for row in range(values.shape[0]):
+        seen[row] = glance(
+            values.reshape(-1), row * 7 * LANES, False, (place[row, 0], place[row, 1], place[row, 2]),
+            (velocity[row, 0], velocity[row, 1], velocity[row, 2]), since[row], (slack[0], slack[1], slack[2]),
+            within[row],
+        )  # fmt: skip
+
+
+def unit(random, number):
+    vector = random.normal(size=(number, 3))
+    return vector / np.sqrt((vector**2).sum(axis=1, keepdims=True))
+
+
+@settings(max_examples=60)
+@given(
+    st.integers(0, 2**32),
+    st.sampled_from([1.6, 10.0, 150.0, 3000.0]),
+    st.sampled_from([1.0, 1e-2, 1e-7, 0.0]),
+    st.sampled_from([0.0, 1e-3, 1.0]),
+    st.sampled_from([1.0, 1e-6, 1e-25]),
+)
+def test_a_glance_leaves_out_nobody_who_is_met(seed, width, head_on, fall, slow):
+    """Pairs are made at the moment when they meet, and taken back to one at which they share a cell."""
+    random = np.random.default_rng(seed)
+    number = 40 * LANES
+    top = 2.0
+    duration = PATH * width / top
+    gravity = fall * 0.5 * top / duration
+    # the pair in contact, with a normal component of approach as small as wanted
+    normal = unit(random, number)
+    along = np.cross(normal, unit(random, number))
+    relative = along + head_on * random.random((number, 1)) * np.sign(head_on) * -normal
+    relative *= slow * random.random((number, 1)) / np.sqrt((relative**2).sum(axis=1, keepdims=True))
+    common = 0.6 * unit(random, number) * random.random((number, 1)) * random.choice([1.0, slow], (number, 1))
+    one = common + 0.5 * relative
+    two = common - 0.5 * relative
+    middle = random.uniform(-width + 1.0, width - 1.0, (number, 3))
+    r_one, r_two = middle + 0.5 * normal, middle - 0.5 * normal
+    # back in time as far as both stay within the width, in the frame of the box
+    g = np.array([0.0, 0.0, gravity])
+    back = (
+        random.random(number)
+        * random.choice([1e-3, 0.1, 1.0], number)
+        * 2.0
+        * width
+        / np.maximum(np.abs(np.stack([one, two])).max(axis=(0, 2)), 1e-300)
+    )
+    if gravity:
+        back = np.minimum(back, math.sqrt(16.0 * width / gravity))
+    now, then = [], random.uniform(0.0, duration, number)
+    for r, v in ((r_one, one), (r_two, two)):
+        before = r - back[:, None] * v - 0.5 * g * back[:, None] ** 2
+        now.append((before, v + g * back[:, None]))
+    (x, v), (y, w) = now
+    fits = (np.abs(x).max(axis=1) <= width) & (np.abs(y).max(axis=1) <= width)
+    fall_now = 0.5 * g * then[:, None] ** 2, g * then[:, None]
+    fits &= (np.sum((v + fall_now[1]) ** 2, axis=1) <= top**2) & (np.sum((w + fall_now[1]) ** 2, axis=1) <= top**2)
+    values = np.full((number, 7, LANES), 1e9, np.float32)
+    lane = random.integers(LANES, size=number)
+    frame = w + fall_now[1]
+    copy = np.concatenate([y + fall_now[0] - frame * then[:, None], frame], axis=1)
+    values[np.arange(number)[:, None], np.arange(6), lane[:, None]] = copy
+    seen = np.zeros(number, np.int64)
+    slack = [1.0 + SLACK * width, SLACK * width**2, 4.0 * SLACK * width * top]
+    assert CLOSING == 2
+    glance_at(
+        values, (x + fall_now[0]).astype(np.float32), (v + fall_now[1]).astype(np.float32), then.astype(np.float32),
+        np.array(slack, np.float32), (back * (1.0 + 1e-9)).astype(np.float32), seen,
+    )  # fmt: skip
+    assert fits.any() or slow < 1.0 or fall == 1.0
+    assert ((seen >> lane) & 1 == 1)[fits].all()
+
+
+def test_a_glance_passes_over_most_who_are_not_met():
+    random = np.random.default_rng(1)
+    number, width = 4000, 9.0
+    values = np.zeros((number, 7, LANES), np.float32)
+    values[:, :3] = random.uniform(-width, width, (number, 3, LANES))
+    values[:, 3:6] = random.normal(size=(number, 3, LANES))
+    seen = np.zeros(number, np.int64)
+    slack = np.array([1.0 + SLACK * width, SLACK * width**2, 4.0 * SLACK * width * 4.0], np.float32)
+    place, velocity = (random.normal(size=(number, 3)).astype(np.float32) for _ in range(2))
+    glance_at(values, place, velocity, np.zeros(number, np.float32), slack, np.full(number, np.inf, np.float32), seen)
+    r, v = values[:, :3] - place[..., None], values[:, 3:6] - velocity[..., None]
+    b, u, c = (r * v).sum(axis=1), (v * v).sum(axis=1), (r * r).sum(axis=1) - 1.0
+    met = (b < 0.0) & (b * b >= u * c)
+    named = (seen[:, None] >> np.arange(LANES)) & 1 == 1
+    assert named[met].all()
+    assert named.sum() < 1.02 * met.sum()
+    assert met.mean() < 0.05
+
+
+# ------------------------------------------------------------------ whole boxes
+
+
+def next_pair(parcel):
+    """Return which two molecules touch soonest, of those that reach no wall before, and when [time from now]."""
+    _, x, v, _ = parcel.snapshot()
+    radius = 0.5 * parcel.diameter
+    speed = np.abs(v)
+    speed[:, 2] += abs(parcel.piston_velocity)
+    if parcel.gravity:
+        speed[:, 2] += np.sqrt(v[:, 2] ** 2 + 2.0 * parcel.gravity * parcel.ceiling)
+    gap = np.minimum(x - radius[:, None], parcel.length - radius[:, None] - x)
+    with np.errstate(divide="ignore"):
+        free = (np.maximum(gap, 0.0) / speed).min(axis=1)
+    i, j = np.triu_indices(len(x), 1)
+    r, u = x[i] - x[j], v[i] - v[j]
+    b, a, c = (r * u).sum(axis=1), (u * u).sum(axis=1), (r * r).sum(axis=1) - (radius[i] + radius[j]) ** 2
+    square = b * b - a * c
+    meets = (square > 0.0) & (b < 0.0)
+    time = np.full(len(i), math.inf)
+    time[meets] = np.maximum(c[meets] / (np.sqrt(square[meets]) - b[meets]), 0.0)
+    time[time > np.minimum(free[i], free[j])] = math.inf
+    first = int(np.argmin(time))
+    return [i[first], j[first]], float(time[first])
+
+
+def misses_none(parcel, looks, step):
+    """Assert that the two who must touch next do so, unless one is met by another before; return how often they did."""
+    seen = 0
+    for _ in range(looks):
+        parcel.advance(parcel.time + step)
+        pair, due = next_pair(parcel)
+        if not math.isfinite(due):
+            continue
+        now, velocity = parcel.time, parcel.snapshot().velocity[pair]
+
+        def on_their_way(velocity=velocity, now=now, pair=pair):
+            fallen = parcel.gravity * (parcel.time - now) * np.array([0.0, 0.0, 1.0])
+            return np.isclose(parcel.snapshot().velocity[pair], velocity - fallen, rtol=1e-9, atol=1e-12).all(axis=1)
+
+        parcel.advance(now + due * (1.0 - 1e-6))
+        if on_their_way().all():
+            parcel.advance(now + due * (1.0 + 1e-6) + 1e-12)
+            assert not on_their_way().any()
+            seen += 1
+    return seen
+
+
+def gas(number, sides, *, seed=3, diameter=1.0, **options):
+    """Return molecules of unit temperature at random places of a lattice."""
+    random = np.random.default_rng(seed)
+    sides = np.array(sides, float)
+    many = np.maximum((sides / (1.05 * np.max(diameter))).astype(int), 1)
+    sites = random.choice(math.prod(many.tolist()), number, replace=False)
+    x = (np.stack(np.unravel_index(sites, many), axis=1) + 0.5) * sides / many
+    return {"position": x, "velocity": random.normal(size=(number, 3)), "length": tuple(sides), "diameter": diameter,
+            "seed": seed, **options}  # fmt: skip
+
+
+@many_events
+def test_the_next_contact_is_that_of_all_pairs_in_cells_a_hundred_diameters_wide():
+    parcel = ParcelSet(**gas(300, (400.0,) * 3))
+    assert parcel._modes.rows
+    assert np.diff(parcel._grid.edges[0]).max() > 100.0
+    assert misses_none(parcel, 600, 8.0) > 20
+
+
+@many_events
+def test_no_contact_of_a_molecule_at_a_thousand_thermal_speeds_is_missed():
+    made = gas(900, (30.0,) * 3)
+    made["velocity"][450] = 1000.0 * np.array([0.6, 0.48, 0.64])
+    parcel = ParcelSet(**made)
+    assert parcel._modes.rows
+    speeds = np.sqrt((parcel.snapshot().velocity ** 2).sum(axis=1))
+    assert np.sort(speeds)[-2] < parcel._cells.copies.epoch[2] < speeds.max()
+    assert misses_none(parcel, 300, 2e-5) > 60
+    # and so until its energy is shared by all
+    assert misses_none(parcel, 100, 1e-3) > 20
+    assert parcel.ledger() < 1e-12
+
+
+@many_events
+def test_none_is_missed_while_walls_heat_a_gas_a_thousandfold():
+    walls = (HeatBath(1000.0),) * 2 + (Specular(),) * 4
+    parcel = ParcelSet(**gas(900, (30.0,) * 3, walls=walls))
+    assert parcel._modes.rows
+    seen = misses_none(parcel, 250, 0.02)
+    assert seen > 50
+    assert parcel.energy()[0] > 100.0 * 900
+
+
+@many_events
+def test_none_is_missed_under_strong_gravity_and_a_piston_that_crushes():
+    # a hundred scale heights from floor to ceiling, then a tenth of the height
+    parcel = ParcelSet(**gas(500, (16.0, 16.0, 60.0), walls=(*SMOOTH[:5], Piston()), gravity=1.5))
+    assert parcel._modes.rows
+    assert misses_none(parcel, 100, 0.05) > 10
+    parcel.set_piston_velocity(-2.0)
+    while parcel.ceiling > 7.0:
+        misses_none(parcel, 3, 0.01)
+        parcel.advance(parcel.time + 0.5)
+    parcel.set_piston_velocity(3.0)  # and above the cells that there are
+    assert misses_none(parcel, 100, 0.3) > 10
+    assert parcel.ceiling > 60.0
+    assert parcel.ledger() < 1e-10
+
+
+@many_events
+def test_sizes_that_fit_the_cells_are_met_as_all_pairs_say():
+    random = np.random.default_rng(5)
+    sizes = random.choice([0.3, 0.8, 1.0], 600)
+    parcel = ParcelSet(**gas(600, (40.0,) * 3, diameter=sizes, mass=sizes**3))
+    assert parcel._modes.rows
+    assert parcel._modes.mixed
+    assert misses_none(parcel, 150, 0.2) > 40
+
+
+@many_events
+def test_those_who_follow_a_ceiling_up_do_not_plan_anew_without_end():
+    # the first to come into the cells above the old ceiling are few: a layer is as dense as what is in all of it
+    parcel = ParcelSet(**gas(500, (16.0, 16.0, 30.0), walls=(*SMOOTH[:5], Piston(0.5)), gravity=1e-9))
+    parcel.advance(20.0)
+    assert parcel.contacts > 1000
+    assert parcel.events["stale"] < 2 * parcel.contacts
