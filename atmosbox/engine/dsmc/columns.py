@@ -21,9 +21,13 @@ from atmosbox.engine.core.jit import kernel
 
 __all__ = [
     "BLOCK",
+    "Air",
     "Columns",
+    "Features",
     "Grid",
+    "March",
     "MoleculeKinds",
+    "Step",
     "Workspace",
     "cells_per_length",
     "count_by_cell",
@@ -114,6 +118,59 @@ class Workspace(NamedTuple):
     met: Any
     cut: Any
     left: Any
+
+
+class Features(NamedTuple):
+    """What a box of many molecules requires: see `atmosbox.engine.dsmc.dsmc.specialise`."""
+
+    rotates: bool
+    wet: bool
+    pool: bool
+
+
+class Step(NamedTuple):
+    """One step: when it begins and how long it is [time], how high the ceiling is before and after it [length].
+
+    ``key`` is a random word of this step.
+    """
+
+    start: float
+    length: float
+    ceiling: float
+    top: float
+    key: Any
+
+
+class Air(NamedTuple):
+    """The molecules in their box, as kernels receive them; the types say what is what.
+
+    ``water`` is the liquid (`moist_columns.Water`), None if there is none, or where none is asked for.
+    """
+
+    columns: Columns
+    grid: Grid
+    gas: MoleculeKinds
+    box: Any
+    walls: Any
+    workspace: Workspace
+    tries: Any
+    water: Any
+
+
+class March(NamedTuple):
+    """So many steps after the first ones, their length [time], and what is asked for between the parallel loops.
+
+    ``ceilings : (step + 1,)`` is how high the ceiling is before and after each [length]; ``cross_section`` that of a
+    pair [length^2]; ``tallies`` what is counted, ``water`` the liquid, None if there is none.
+    """
+
+    first: int
+    steps: int
+    length: float
+    ceilings: Any
+    cross_section: float
+    tallies: Any
+    water: Any
 
 
 def new_columns(number: int, many: int) -> list[Any]:

@@ -35,9 +35,12 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.compiler import prange
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.core.walls import SPECULAR
+from atmosbox.engine.core.walls import PISTON, SPECULAR
 from atmosbox.engine.dsmc.columns import (
     BLOCK,
+    Air,
+    Features,
+    Step,
     cells_per_length,
     count_by_cell,
     find_cell,
@@ -50,7 +53,7 @@ from atmosbox.engine.dsmc.columns import (
 from atmosbox.engine.dsmc.moist_columns import mist_step
 from atmosbox.engine.dsmc.moist_pool import pool_step
 from atmosbox.engine.dsmc.pairing import collide, scramble
-from atmosbox.engine.dsmc.streaming import WAITS, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
+from atmosbox.engine.dsmc.streaming import WAITS, Axis, bounce, fall, fold, glide, mirror, turn_round, wait_at_walls
 
 __all__ = ["Resolution", "densest_layer", "numbers_of_cells", "specialise"]
 
@@ -104,35 +107,23 @@ def densest_layer(x: NDArray[np.float64], low: float, side: float, layers: int) 
 
 
 @kernel
-def _move(
-    first,
-    last,
-    count,
-    start,
-    dt,
-    ceiling,
-    top,
-    key,
-    columns,
-    grid,
-    gas,
-    box,
-    walls,
-    thread,
-    workspace,
-    rotates,
-    mixed,
-    pool,
-):
+def _move(thread, first, last, count, step, air, features):
     """Move a share of the molecules, block by block, and count them by cell."""
     count[:] = 0
+    columns, grid, gas, box, workspace = air.columns, air.grid, air.gas, air.box, air.workspace
+    law, dt = air.walls.law, step.length
     queue, state = workspace.queue[thread], workspace.random[thread]
     r = gas.radius
     nx, ny, nz = grid.number_x, grid.number_y, grid.number_z
-    high_x, high_y, high_z = box.length_x - r, box.length_y - r, top - r
-    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
-    smooth_x = walls.law[0] == SPECULAR and walls.law[1] == SPECULAR
-    smooth_y = walls.law[2] == SPECULAR and walls.law[3] == SPECULAR
+    per_x, per_y, per_z = cells_per_length(step.top, grid, gas, box)
+    along_x = Axis(r, box.length_x - r, per_x, nx - 1, 1)
+    along_y = Axis(r, box.length_y - r, per_y, ny - 1, nx)
+    along_z = Axis(r, step.top - r, per_z, nz - 1, nx * ny)
+    round_x = Axis(0.0, box.length_x, per_x, nx - 1, 1)
+    round_y = Axis(0.0, box.length_y, per_y, ny - 1, nx)
+    round_z = Axis(0.0, box.length_z, per_z, nz - 1, nx * ny)
+    smooth_x = law[0] == SPECULAR and law[1] == SPECULAR
+    smooth_y = law[2] == SPECULAR and law[3] == SPECULAR
     for b in range(first, last, BLOCK):
         e = min(b + BLOCK, last)
         x, y, z, cell = columns.x[b:e], columns.y[b:e], columns.z[b:e], columns.cell[b:e]
@@ -142,25 +133,25 @@ def _move(
         cell[:] = 0
         # who waits must be known before anybody moves: floor and ceiling come last of what makes wait
         if box.inverse_x == 0.0 and not smooth_x:
-            wait_at_walls(x, vx, r, high_x, dt, mark)
+            wait_at_walls(x, vx, along_x.low, along_x.high, dt, mark)
         if box.inverse_y == 0.0 and not smooth_y:
-            wait_at_walls(y, vy, r, high_y, dt, mark)
+            wait_at_walls(y, vy, along_y.low, along_y.high, dt, mark)
         if box.inverse_z == 0.0:
-            fall(z, vz, dt, mark, r, high_z, box.gravity, per_z, nz - 1, nx * ny, cell)
+            fall(z, vz, dt, mark, box.gravity, along_z, cell)
         else:
-            turn_round(z, vz, dt, mark, box.length_z, per_z, nz - 1, nx * ny, cell)
+            turn_round(z, vz, dt, mark, round_z, cell)
         if smooth_x:
-            fold(x, vx, dt, mark, 1, r, high_x, per_x, nx - 1, 1, cell)
+            fold(x, vx, dt, mark, 1, along_x, cell)
         elif box.inverse_x == 0.0:
-            glide(x, vx, dt, mark, r, high_x, per_x, nx - 1, 1, cell)
+            glide(x, vx, dt, mark, along_x, cell)
         else:
-            turn_round(x, vx, dt, mark, box.length_x, per_x, nx - 1, 1, cell)
+            turn_round(x, vx, dt, mark, round_x, cell)
         if smooth_y:
-            fold(y, vy, dt, mark, 2, r, high_y, per_y, ny - 1, nx, cell)
+            fold(y, vy, dt, mark, 2, along_y, cell)
         elif box.inverse_y == 0.0:
-            glide(y, vy, dt, mark, r, high_y, per_y, ny - 1, nx, cell)
+            glide(y, vy, dt, mark, along_y, cell)
         else:
-            turn_round(y, vy, dt, mark, box.length_y, per_y, ny - 1, nx, cell)
+            turn_round(y, vy, dt, mark, round_y, cell)
         marked = np.uint32(0)
         for q in range(e - b):  # a list, without a branch
             queue[marked] = q
@@ -171,28 +162,13 @@ def _move(
             q = np.int64(queue[k])
             p = b + q
             if mark[q] >= WAITS:
-                state[0] = scramble(key ^ (np.uint64(p) * _MIX_1))
-                bounce(
-                    p,
-                    start,
-                    dt,
-                    ceiling,
-                    columns,
-                    gas,
-                    box,
-                    walls,
-                    state,
-                    counters,
-                    workspace.left,
-                    rotates,
-                    mixed,
-                    pool,
-                )
-            mass = gas.masses[columns.kind[p]] if mixed else gas.mass
+                state[0] = scramble(step.key ^ (np.uint64(p) * _MIX_1))
+                bounce(p, step, air, state, counters, features)
+            mass = gas.masses[columns.kind[p]] if features.wet else gas.mass
             if mark[q] & 1:
-                mirror(p, columns.x, columns.vx, 0, r, high_x, mass, counters)
+                mirror(p, columns.x, columns.vx, 0, along_x.low, along_x.high, mass, counters)
             if mark[q] & 2:
-                mirror(p, columns.y, columns.vy, 2, r, high_y, mass, counters)
+                mirror(p, columns.y, columns.vy, 2, along_y.low, along_y.high, mass, counters)
             find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
         for q in range(e - b):
             count[np.uint32(cell[q])] += np.uint32(1)
@@ -230,40 +206,41 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
         Whether there is liquid, so that molecules are of several kinds and come and go, and whether the floor is its
         surface.
     """
+    features = Features(rotates, wet, pool)
 
     @kernel(entry=True, allocates=parallel, parallel=parallel)
-    def march(
-        first_step, steps, dt, ceilings, columns, grid, gas, cross_section, box, walls, tallies, workspace, tries, water
-    ):  # fmt: skip
-        """Advance by so many steps; ``ceilings : (step + 1,)`` is how high the ceiling is before and after each."""
+    def march(columns, grid, gas, box, walls, workspace, tries, run):
+        """Advance by some steps: ``run`` is a `March`.
+
+        A parallel loop knows a tuple only if it is an argument, and not part of another: they are put together inside.
+        """
+        tallies, water, dt, ceilings = run.tallies, run.water, run.length, run.ceilings
         threads = grid.place.shape[0] if parallel else 1
         number = columns.x.size
         cells = grid.number_x * grid.number_y * grid.number_z
         r = gas.radius
         wide_x = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
         wide_y = box.length_y - (2.0 * r if box.inverse_y == 0.0 else 0.0)
-        for k in range(steps):
-            start = (first_step + k) * dt
-            ceiling = ceilings[k]
+        for k in range(run.steps):
+            start = (run.first + k) * dt
             top = ceilings[k + 1]
-            wall_key = scramble(tallies.random[0] + np.uint64(first_step + k) * _MIX_1)
+            wall_key = scramble(tallies.random[0] + np.uint64(run.first + k) * _MIX_1)
             cell_key = scramble(wall_key)
             if wet:
                 number = number_present(columns, water)
                 workspace.counters[(number + BLOCK - 1) // BLOCK :] = 0.0
+            step = Step(start, dt, ceilings[k], top, wall_key)
             for t in prange(threads):
                 first, last = share_of(t, threads, number)
-                _move(
-                    first, last, grid.place[t], start, dt, ceiling, top, wall_key, columns, grid, gas, box, walls,
-                    t, workspace, rotates, wet, pool,
-                )  # fmt: skip
+                here = Air(columns, grid, gas, box, walls, workspace, tries, None)
+                _move(t, first, last, grid.place[t], step, here, features)
             if wet:
+                air = Air(columns, grid, gas, box, walls, workspace, tries, water)
+                among = Step(start, dt, ceilings[k], top, cell_key)
                 if pool:
-                    pool_step(
-                        start, dt, ceiling, top, cell_key, columns, grid, gas, box, walls, workspace, water, rotates
-                    )
+                    pool_step(among, air, features)
                 else:
-                    mist_step(dt, ceiling, top, cell_key, columns, grid, gas, box, water, rotates)
+                    mist_step(among, air, features)
                 number = number_present(columns, water)
                 for t in prange(threads):
                     first, last = share_of(t, threads, number)
@@ -275,9 +252,10 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
                 first, last = share_of(t, threads, number)
                 index_by_cell(columns.cell, columns.order, grid.place[t], first, last)
             volume = wide_x * wide_y * (top - (2.0 * r if box.inverse_z == 0.0 else 0.0)) / cells
-            sweep = 0.5 * cross_section * dt / volume
+            sweep = 0.5 * run.cross_section * dt / volume
             for t in prange(threads):
-                collide(t, sweep, cell_key, columns, grid, gas, box.exchange, workspace, tries, rotates, wet)
-            _settle(workspace, tallies, threads, walls.law[5] == 3)
+                here = Air(columns, grid, gas, box, walls, workspace, tries, None)
+                collide(t, sweep, cell_key, here, features)
+            _settle(workspace, tallies, threads, walls.law[5] == PISTON)
 
     return march

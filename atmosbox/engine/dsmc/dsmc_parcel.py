@@ -13,7 +13,7 @@ from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.parcel import Arrangement, Array, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError, shown
-from atmosbox.engine.dsmc.columns import Columns, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
+from atmosbox.engine.dsmc.columns import Columns, March, MoleculeKinds, new_columns, new_gather, new_grid, new_workspace
 from atmosbox.engine.dsmc.dsmc import Resolution, densest_layer, numbers_of_cells, specialise
 from atmosbox.engine.dsmc.pairing import new_tries
 
@@ -254,9 +254,9 @@ class DsmcParcel(MarchingParcel):
     def _resolve(self, first: int, many: int, ceilings: Array) -> None:
         if self._workers > 1:
             use_threads(self._workers)
+        run = March(first, many, self._time_step, ceilings, self._cross_section, self._tallies, self._water)
         self._march_kernel(
-            first, many, self._time_step, ceilings, self._columns, self._grid, self._gas, self._cross_section,
-            self._box, self._walls, self._tallies, self._workspace, self._tries, self._water,
+            self._columns, self._grid, self._gas, self._box, self._walls, self._workspace, self._tries, run
         )  # fmt: skip
 
     def _regroup(self) -> None:

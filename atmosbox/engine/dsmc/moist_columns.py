@@ -80,22 +80,23 @@ def strike(p, columns, reservoir):
 
 
 @kernel
-def touch(p, flow, columns, gas, reservoir, state, rotates, pool):
+def touch(p, flow, air, features):
     """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
 
     Otherwise it leaves with another energy.
     """
+    columns, gas, reservoir, state = air.columns, air.gas, air.water.reservoir, air.water.random
     kind = np.int64(columns.kind[p])
     mass = gas.masses[kind]
     vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
-    spin = columns.spin[p] if rotates else 0.0
+    spin = columns.spin[p] if features.rotates else 0.0
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if kind == reservoir.kind and (reservoir.sticking >= 1.0 or uniform(state) < reservoir.sticking):
         condense(reservoir, energy)
         return True
     relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))
     flight, new_spin = exchange(reservoir, relative, gas.rotations[kind], state)
-    ex, ey, ez = direction(pool, state)
+    ex, ey, ez = direction(features.pool, state)
     speed = math.sqrt(2.0 * flight / mass)
     wx, wy, wz = speed * ex, speed * ey, speed * ez + flow
     given = 0.5 * mass * (wx * wx + wy * wy + wz * wz) + new_spin - energy
@@ -103,20 +104,21 @@ def touch(p, flow, columns, gas, reservoir, state, rotates, pool):
         reservoir.energy[THERMAL] -= given
         reservoir.count[AIR_MET] += 1
         columns.vx[p], columns.vy[p], columns.vz[p] = wx, wy, wz
-        if rotates:
+        if features.rotates:
             columns.spin[p] = new_spin
-    elif pool:
+    elif features.pool:
         columns.vz[p] = -vz
     return False
 
 
 @kernel
-def emit(p, x, y, z, flow, columns, gas, reservoir, state, rotates, pool):
-    """Let a molecule leave the liquid, into a slot that is free."""
+def emit(p, where, flow, air, features):
+    """Let a molecule leave the liquid to a place (x, y, z) [length], into a slot that is free."""
+    columns, gas, reservoir, state = air.columns, air.gas, air.water.reservoir, air.water.random
     mass = gas.masses[reservoir.kind]
     flight, spin = evaporate(reservoir, state)
     speed = math.sqrt(2.0 * flight / mass)
-    ex, ey, ez = direction(pool, state)
+    ex, ey, ez = direction(features.pool, state)
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
@@ -124,9 +126,9 @@ def emit(p, x, y, z, flow, columns, gas, reservoir, state, rotates, pool):
         vz = speed * ez
         energy = flight + spin
     leave(reservoir, energy)
-    columns.x[p], columns.y[p], columns.z[p] = x, y, z
+    columns.x[p], columns.y[p], columns.z[p] = where
     columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
-    if rotates:
+    if features.rotates:
         columns.spin[p] = spin
     columns.kind[p] = reservoir.kind
     reservoir.top[0] -= 1
@@ -163,13 +165,15 @@ def next_rain(t, reservoir, state):
 
 
 @kernel(entry=True)
-def mist_step(dt, ceiling, top, key, columns, grid, gas, box, water, rotates):
+def mist_step(step, air, features):
     """Let a mist, carried along by the air, do what it does in a step."""
+    columns, gas, box, water = air.columns, air.gas, air.box, air.water
     reservoir, state = water.reservoir, water.random
-    state[0] = scramble(~key)
+    dt, ceiling, top = step.length, step.ceiling, step.top
+    state[0] = scramble(~step.key)
     number = number_present(columns, water)
     r = gas.radius
-    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
+    per_x, per_y, per_z = cells_per_length(top, air.grid, gas, box)
     volume = box.length_x - (2.0 * r if box.inverse_x == 0.0 else 0.0)
     volume *= box.length_y - (2.0 * r if box.inverse_y == 0.0 else 0.0)
     volume *= 0.5 * (ceiling + top) - (2.0 * r if box.inverse_z == 0.0 else 0.0)
@@ -191,10 +195,10 @@ def mist_step(dt, ceiling, top, key, columns, grid, gas, box, water, rotates):
             if enough * enough >= vx * vx + vy * vy + vz * vz:
                 meets = t + wait(number * often * bound, state)
                 continue
-            if touch(p, flow, columns, gas, reservoir, state, rotates, False):
+            if touch(p, flow, air, features):
                 number -= 1
                 strike(p, columns, reservoir)
-                copy_slot(number, p, columns, rotates)
+                copy_slot(number, p, columns, features.rotates)
             else:
                 vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
                 bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))
@@ -204,8 +208,8 @@ def mist_step(dt, ceiling, top, key, columns, grid, gas, box, water, rotates):
             y = place(r, box.length_y, box.inverse_y, state)
             z = place(r, top, box.inverse_z, state)
             flow = rise * z / top
-            emit(p, x, y, z, flow, columns, gas, reservoir, state, rotates, False)
-            find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
+            emit(p, (x, y, z), flow, air, features)
+            find_cell(p, per_x, per_y, per_z, columns, air.grid, gas, box)
             number += 1
             vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p] - flow
             bound = max(bound, math.sqrt(vx * vx + vy * vy + vz * vz))

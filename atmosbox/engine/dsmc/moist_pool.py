@@ -8,7 +8,7 @@ molecules would be too few above it, and the gas too hot.
 import math
 
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.dsmc.columns import cells_per_length, find_cell, number_present
+from atmosbox.engine.dsmc.columns import Step, cells_per_length, find_cell, number_present
 from atmosbox.engine.dsmc.moist_columns import copy_slot, emit, next_rain, place, strike, touch
 from atmosbox.engine.dsmc.pairing import scramble
 from atmosbox.engine.dsmc.streaming import bounce
@@ -50,14 +50,16 @@ def fill_holes(last, columns, left, water, rotates):
 
 
 @kernel(entry=True)
-def pool_step(start, dt, ceiling, top, key, columns, grid, gas, box, walls, workspace, water, rotates):
+def pool_step(step, air, features):
     """Let a pool on the floor do what it does in a step, with those that wait on it."""
-    reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, workspace.left
-    state[0] = scramble(~key)
+    columns, gas, box, water = air.columns, air.gas, air.box, air.water
+    reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, air.workspace.left
+    dt, ceiling, top = step.length, step.ceiling, step.top
+    state[0] = scramble(~step.key)
     number = number_present(columns, water)
-    counters = workspace.counters[workspace.counters.shape[0] - 1]
+    counters = air.workspace.counters[air.workspace.counters.shape[0] - 1]
     rise = (top - ceiling) / dt
-    per_x, per_y, per_z = cells_per_length(top, grid, gas, box)
+    per_x, per_y, per_z = cells_per_length(top, air.grid, gas, box)
     for p in range(number):
         if left[p] > 0.0:
             schedule(calendar, p, dt - left[p])
@@ -75,7 +77,7 @@ def pool_step(start, dt, ceiling, top, key, columns, grid, gas, box, walls, work
             mass = gas.masses[columns.kind[p]]
             counters[0, 4] -= mass * columns.vz[p]
             counters[2, 4] += 1.0
-            flies = not touch(p, 0.0, columns, gas, reservoir, state, rotates, True)
+            flies = not touch(p, 0.0, air, features)
             if not flies:
                 strike(p, columns, reservoir)
                 left[p] = _GONE
@@ -92,16 +94,16 @@ def pool_step(start, dt, ceiling, top, key, columns, grid, gas, box, walls, work
             left[p] = 0.0
             x = place(gas.radius, box.length_x, box.inverse_x, state)
             y = place(gas.radius, box.length_y, box.inverse_y, state)
-            emit(p, x, y, gas.radius, 0.0, columns, gas, reservoir, state, rotates, True)
+            emit(p, (x, y, gas.radius), 0.0, air, features)
         else:
             rain_out(reservoir)
         if flies:
             counters[0, 4] += gas.masses[columns.kind[p]] * columns.vz[p]
-            here = ceiling + rise * t
-            bounce(p, start + t, dt - t, here, columns, gas, box, walls, state, counters, left, rotates, True, True)
-            find_cell(p, per_x, per_y, per_z, columns, grid, gas, box)
+            rest = Step(step.start + t, dt - t, ceiling + rise * t, top, step.key)
+            bounce(p, rest, air, state, counters, features)
+            find_cell(p, per_x, per_y, per_z, columns, air.grid, gas, box)
             if left[p] > 0.0:
                 schedule(calendar, p, dt - left[p])
         leaves = t + wait(evaporation_rate(reservoir), state)
         rains = next_rain(t, reservoir, state)
-    fill_holes(number, columns, left, water, rotates)
+    fill_holes(number, columns, left, water, features.rotates)

@@ -119,8 +119,10 @@ def _weigh(i, j, columns, gas, mixed):
 
 
 @kernel
-def _meet(number, thread, tries, state, columns, fastest, gas, exchange, rotates, mixed):
+def _meet(number, thread, air, features):
     """Let pairs collide that are fast enough; return how many did."""
+    columns, gas, fastest, exchange = air.columns, air.gas, air.grid.fastest, air.box.exchange
+    tries, state = air.tries, air.workspace.random[thread]
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
     one, other = tries.one[thread], tries.other[thread]
     collisions = 0
@@ -143,13 +145,13 @@ def _meet(number, thread, tries, state, columns, fastest, gas, exchange, rotates
         collisions += 1
         after = speed
         draw = word[k]
-        weight, share, other_share = _weigh(i, j, columns, gas, mixed)
-        if rotates:
+        weight, share, other_share = _weigh(i, j, columns, gas, features.wet)
+        if features.rotates:
             state[0] = draw
             if exchange >= 1.0 or uniform(state) < exchange:
                 energy = weight * speed * speed + columns.spin[i] + columns.spin[j]
-                turns_i = gas.rotations[columns.kind[i]] if mixed else gas.rotation
-                turns_j = gas.rotations[columns.kind[j]] if mixed else gas.rotation
+                turns_i = gas.rotations[columns.kind[i]] if features.wet else gas.rotation
+                turns_j = gas.rotations[columns.kind[j]] if features.wet else gas.rotation
                 shared, columns.spin[i], columns.spin[j] = share_energy(energy, 3.0, turns_i, turns_j, state)
                 after = math.sqrt(shared / weight)
                 draw = state[0]
@@ -175,14 +177,14 @@ def _meet(number, thread, tries, state, columns, fastest, gas, exchange, rotates
 
 
 @kernel
-def collide(thread, sweep, key, columns, grid, gas, exchange, workspace, tries, rotates, mixed):
+def collide(thread, sweep, key, air, features):
     """Let a thread's share of the cells collide; count collisions on the workspace.
 
     ``sweep`` is half the cross section times the step over the volume of a cell [time/length], ``key`` a random word
     of this step.
     """
     collisions = 0
-    state = workspace.random[thread]
+    grid, workspace, tries, order = air.grid, air.workspace, air.tries, air.columns.order
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
     written = 0
     for c in range(workspace.cut[thread], workspace.cut[thread + 1]):
@@ -201,13 +203,13 @@ def collide(thread, sweep, key, columns, grid, gas, exchange, workspace, tries, 
                 cell[at + k] = c
             written += min(left, _WIDE)
             if written >= _BATCH:
-                _draw(written, thread, tries, grid.first, columns.order)
-                collisions += _meet(written, thread, tries, state, columns, grid.fastest, gas, exchange, rotates, mixed)
+                _draw(written, thread, tries, grid.first, order)
+                collisions += _meet(written, thread, air, features)
                 written = 0
             if left <= _WIDE:
                 break
             left -= _WIDE
             seed += np.uint64(_WIDE) * _STEP
-    _draw(written, thread, tries, grid.first, columns.order)
-    collisions += _meet(written, thread, tries, state, columns, grid.fastest, gas, exchange, rotates, mixed)
+    _draw(written, thread, tries, grid.first, order)
+    collisions += _meet(written, thread, air, features)
     workspace.met[thread, 0] = collisions

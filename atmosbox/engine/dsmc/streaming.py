@@ -9,6 +9,7 @@ emitted at the end of the step instead, slow molecules would be too few near the
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,26 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.walls import PISTON, bounce_off
 
-__all__ = ["WAITS", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
+__all__ = ["WAITS", "Axis", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
 
 WAITS = 4
 """The mark of a molecule that waits. Smaller marks, 1 and 2, tell along which axis one is folded, x, y or both."""
 
 _MOST_HITS = 1000
+
+
+class Axis(NamedTuple):
+    """An axis along which molecules move: the lowest and highest place of a centre [length], and the cells.
+
+    ``per_length`` is how many cells there are to a length [1/length], ``last`` the index of the last one, ``stride`` by
+    how much the number of a cell grows from one to the next.
+    """
+
+    low: float
+    high: float
+    per_length: float
+    last: int
+    stride: int
 
 
 @kernel
@@ -52,17 +67,18 @@ def wait_at_walls(x, v, low, high, dt, mark):
 
 
 @kernel
-def fall(z, v, dt, mark, low, high, gravity, per_length, last, stride, cell):
+def fall(z, v, dt, mark, gravity, axis, cell):
     """Move molecules up and down their exact parabola, but let those wait that would reach floor or ceiling.
 
     A parabola is highest above its chord, so it meets the ceiling, if at all, where the straight line without
-    gravity does, too; and it is lowest at its ends. ``high`` is where the ceiling is at the end of the step. To each
-    ``cell`` is added its index along this axis, times the ``stride``; for one that waits it means nothing.
+    gravity does, too; and it is lowest at its ends. ``axis.high`` is where the ceiling is at the end of the step. To
+    each ``cell`` is added its index along this axis, times the stride; for one that waits it means nothing.
     """
     gain = gravity * dt
     drop = 0.5 * gain * dt
-    most = np.int32(last)
-    step = np.int32(stride)
+    low, high, per_length = axis.low, axis.high, axis.per_length
+    most = np.int32(axis.last)
+    step = np.int32(axis.stride)
     for p in range(z.size):
         ahead = z[p] + v[p] * dt
         there = ahead - drop
@@ -74,7 +90,7 @@ def fall(z, v, dt, mark, low, high, gravity, per_length, last, stride, cell):
 
 
 @kernel
-def fold(x, v, dt, mark, sign, low, high, per_length, last, stride, cell):
+def fold(x, v, dt, mark, sign, axis, cell):
     """Move those that do not wait evenly between two smooth walls; one that hits a wall gets the mark ``sign``.
 
     Whoever comes so fast that folding once leaves it beyond the other wall is left there, for `mirror`.
@@ -84,12 +100,13 @@ def fold(x, v, dt, mark, sign, low, high, per_length, last, stride, cell):
     The second molecule flies 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
 
     >>> x, v, mark, cell = np.array([0.5, 1.5]), np.ones(2), np.zeros(2, np.int32), np.zeros(2, np.uint32)
-    >>> fold(x, v, 1.0, mark, 1, 0.0, 2.0, 2.0, 3, 1, cell)
+    >>> fold(x, v, 1.0, mark, 1, Axis(0.0, 2.0, 2.0, 3, 1), cell)
     >>> x, v, mark, cell
     (array([1.5, 1.5]), array([ 1., -1.]), array([0, 1], dtype=int32), array([3, 3], dtype=uint32))
     """
-    most = np.int32(last)
-    step = np.int32(stride)
+    low, high, per_length = axis.low, axis.high, axis.per_length
+    most = np.int32(axis.last)
+    step = np.int32(axis.stride)
     for p in range(x.size):
         there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
         below = there < low
@@ -129,10 +146,11 @@ def mirror(p, x, v, wall, low, high, mass, counters):
 
 
 @kernel
-def glide(x, v, dt, mark, low, high, per_length, last, stride, cell):
+def glide(x, v, dt, mark, axis, cell):
     """Move those that do not wait evenly between walls: see `fold`."""
-    most = np.int32(last)
-    step = np.int32(stride)
+    low, high, per_length = axis.low, axis.high, axis.per_length
+    most = np.int32(axis.last)
+    step = np.int32(axis.stride)
     for p in range(x.size):
         there = min(max(x[p] + (v[p] * dt if mark[p] < WAITS else 0.0), low), high)
         x[p] = there
@@ -140,10 +158,11 @@ def glide(x, v, dt, mark, low, high, per_length, last, stride, cell):
 
 
 @kernel
-def turn_round(x, v, dt, mark, length, per_length, last, stride, cell):
+def turn_round(x, v, dt, mark, axis, cell):
     """Move those that do not wait evenly along a periodic axis: see `fold`."""
-    most = np.int32(last)
-    step = np.int32(stride)
+    most = np.int32(axis.last)
+    step = np.int32(axis.stride)
+    length, per_length = axis.high, axis.per_length
     inverse = 1.0 / length
     for p in range(x.size):
         there = x[p] + (v[p] * dt if mark[p] < WAITS else 0.0)
@@ -153,38 +172,35 @@ def turn_round(x, v, dt, mark, length, per_length, last, stride, cell):
 
 
 @kernel
-def bounce(p, start, dt, ceiling, columns, gas, box, walls, state, counters, left_over, rotates, mixed, pool):
+def bounce(p, step, air, state, counters, features):
     """Fly one molecule through a step from wall to wall, or as far as a pool.
 
     Parameters
     ----------
     p
         Its slot.
-    start, dt
-        Beginning and length of the step [time].
-    ceiling
-        Height of the ceiling at the beginning [length].
-    columns, gas, box, walls
-        The molecules, what they are, their box.
+    step, air
+        The step, or what is left of it, and all that it works on; ``air.workspace.left`` is told how much of the step
+        is left to one that has come to a pool [time].
     state
         State of the random numbers, moved on.
     counters : (3, wall)
         Outward impulse, energy given, hits: added to.
-    left_over : (slot,)
-        How much of the step is left to one that has come to a pool [time].
-    rotates, mixed, pool
-        Whether molecules rotate, whether there are several kinds, whether the floor is a pool.
+    features
+        What the box requires.
 
     Notes
     -----
     A molecule that hits walls a thousand times in one step, as on a floor near absolute zero, loses the rest of
     that flight, and no energy.
     """
+    columns, gas, box, walls = air.columns, air.gas, air.box, air.walls
+    dt, ceiling = step.length, step.ceiling
     x, y, z = columns.x[p], columns.y[p], columns.z[p]
     vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
-    spin = columns.spin[p] if rotates else 0.0
-    mass = gas.masses[columns.kind[p]] if mixed else gas.mass
-    rotation = gas.rotations[columns.kind[p]] if mixed else gas.rotation
+    spin = columns.spin[p] if features.rotates else 0.0
+    mass = gas.masses[columns.kind[p]] if features.wet else gas.mass
+    rotation = gas.rotations[columns.kind[p]] if features.wet else gas.rotation
     radius = gas.radius
     high_x, high_y = box.length_x - radius, box.length_y - radius
     piston = walls.piston[1] if walls.law[5] == PISTON else 0.0
@@ -225,13 +241,13 @@ def bounce(p, start, dt, ceiling, columns, gas, box, walls, state, counters, lef
         left -= soonest
         if wall < 0:
             break
-        if pool and wall == 4:
-            left_over[p] = left
+        if features.pool and wall == 4:
+            air.workspace.left[p] = left
             break
         before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
         high = wall & 1 == 1
         velocity, spin, change = bounce_off(
-            wall, start + (dt - left), (vx, vy, vz), spin, (mass, rotation), walls, False, state
+            wall, step.start + (dt - left), (vx, vy, vz), spin, (mass, rotation), walls, False, state
         )
         vx, vy, vz = velocity
         if wall < 2:
@@ -247,7 +263,7 @@ def bounce(p, start, dt, ceiling, columns, gas, box, walls, state, counters, lef
     columns.y[p] = _back_inside(y, radius, high_y, box.length_y, box.inverse_y)
     columns.z[p] = _back_inside(z, radius, top, box.length_z, box.inverse_z)
     columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
-    if rotates:
+    if features.rotates:
         columns.spin[p] = spin
 
 

@@ -33,8 +33,10 @@ _BOUNCES = 200
 
 
 @kernel
-def _next_wall(x, y, z, vx, vy, vz, left, gravity, radius, step, box, walls, modes):
+def _next_wall(at, left, gravity, radius, step, gas, modes):
     """Return when the next wall that turns molecules at the moment of the hit is hit, and which; -1 for none."""
+    x, y, z, vx, vy, vz = at
+    box, walls = gas.box, gas.walls
     crude = step.rule != MIRROR
     soonest = left
     wall = -1
@@ -78,8 +80,14 @@ def _book(wall, impulse, gained, tallies, modes):
 
 
 @kernel
-def _end_along(x, v, old_x, old_v, axis, low, high, side, inverse, step, walls):
-    """Return place and velocity along one axis at the end of the step, and the smooth wall that turned it, or -1."""
+def _end_along(now, before, axis, low, high, turn, step, walls):
+    """Return place and velocity along one axis at the end of the step, and the smooth wall that turned it, or -1.
+
+    ``now``, ``before`` are place and velocity, ``turn`` the side of the box and its inverse if it is periodic, else 0.
+    """
+    x, v = now
+    old_x, old_v = before
+    side, inverse = turn
     if inverse > 0.0:
         x -= side * np.floor(x * inverse)
         return (0.0 if x >= side else x), v, -1
@@ -103,25 +111,22 @@ def _end_along(x, v, old_x, old_v, axis, low, high, side, inverse, step, walls):
 
 
 @kernel
-def bounce(p, state, kinds, step, box, walls, tallies, modes):
+def bounce(p, step, gas, modes):
     """Move a molecule through a step in which it comes near walls, and keep their books.
 
     Parameters
     ----------
     p
         Its slot.
-    state, kinds
-        The molecules: see `atmosbox.engine.stepped.stepped.State`.
-    step
-        The step: see `atmosbox.engine.stepped.stepped.Step`.
-    box, walls, tallies, modes
-        The box, its walls, what is counted, what the scene requires.
+    step, gas, modes
+        The step, all that the engine works on, what the scene requires: see `atmosbox.engine.stepped.stepped`.
 
     Returns
     -------
     float
         The energy that the scheme itself has made [energy]: what the molecule gained beyond what walls gave.
     """
+    state, kinds, box, walls, tallies = gas.state, gas.kinds, gas.box, gas.walls, gas.tallies
     i = np.int64(state.name[p])
     kind = kinds.table[i if modes.mixed else 0]
     mass = kind.mass
@@ -138,7 +143,7 @@ def bounce(p, state, kinds, step, box, walls, tallies, modes):
         vz -= box.gravity * step.length
     left = step.length
     for _ in range(_BOUNCES):
-        t, wall = _next_wall(x, y, z, vx, vy, vz, left, gravity, radius, step, box, walls, modes)
+        t, wall = _next_wall((x, y, z, vx, vy, vz), left, gravity, radius, step, gas, modes)
         x += t * vx
         y += t * vy
         z += t * (vz - 0.5 * gravity * t)
@@ -166,13 +171,15 @@ def bounce(p, state, kinds, step, box, walls, tallies, modes):
         vz -= box.gravity * step.length
     came_x, came_y, came_z = vx, vy, vz
     x, vx, wall_x = _end_along(
-        x, vx, old_x, old_vx, 0, radius, box.length_x - radius, box.length_x, box.inverse_x, step, walls
+        (x, vx), (old_x, old_vx), 0, radius, box.length_x - radius, (box.length_x, box.inverse_x), step, walls
     )  # fmt: skip
     y, vy, wall_y = _end_along(
-        y, vy, old_y, old_vy, 1, radius, box.length_y - radius, box.length_y, box.inverse_y, step, walls
+        (y, vy), (old_y, old_vy), 1, radius, box.length_y - radius, (box.length_y, box.inverse_y), step, walls
     )  # fmt: skip
     top = step.ceiling + step.ceiling_velocity * step.length - radius
-    z, vz, wall_z = _end_along(z, vz, old_z, old_vz, 2, radius, top, box.length_z, box.inverse_z, step, walls)
+    z, vz, wall_z = _end_along(
+        (z, vz), (old_z, old_vz), 2, radius, top, (box.length_z, box.inverse_z), step, walls
+    )  # fmt: skip
     if wall_x >= 0:
         _book(wall_x, mass * (vx - came_x), 0.0, tallies, modes)
     if wall_y >= 0:

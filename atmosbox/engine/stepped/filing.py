@@ -95,14 +95,15 @@ def count_up(records, cells, number_x, molecules):
 
 
 @kernel
-def file_molecules(position, cell, size, records, radius, part, first, last):
+def file_molecules(state, records, radius, part, first, last):
     """File the molecules of one part, slots ``first`` to ``last - 1``, into their cells.
 
-    ``size : (slot,)`` is their radius, to be written to ``radius``, which is that of the records or None.
+    ``state`` are the molecules (`atmosbox.engine.stepped.stepped.State`), ``radius`` is that of the records or None.
     """
-    x = position[0]
-    y = position[1]
-    z = position[2]
+    x = state.position[0]
+    y = state.position[1]
+    z = state.position[2]
+    cell = state.cell
     for i in range(np.uint32(first), np.uint32(last)):
         p = np.uint32(i)
         c = np.uint32(cell[p])
@@ -112,6 +113,6 @@ def file_molecules(position, cell, size, records, radius, part, first, last):
         records.y[q] = y[p]
         records.z[q] = z[p]
         if radius is not None:
-            radius[q] = size[p]
+            radius[q] = state.size[p]
         records.slot[q] = p
         records.cell[q] = c

@@ -15,6 +15,7 @@ How molecules fall is a choice, because simple programs choose differently:
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,43 +30,57 @@ BLOCK = 512
 """How many molecules are moved together: so many that what is known of them fits into the nearest cache."""
 
 
+class Axis(NamedTuple):
+    """An axis along which molecules move.
+
+    The side of the box, and its inverse if the axis is periodic, else 0; between ``low`` and ``high`` no wall is near
+    [length]; how many cells there are to a length [1/length], and in all; by how much the number of a cell grows from
+    one to the next; whether the box is periodic at all.
+    """
+
+    side: float
+    inverse: float
+    low: float
+    high: float
+    per_length: float
+    number: int
+    stride: int
+    periodic: bool
+
+
 @kernel
-def _ahead(x, v, dt, fall, side, inverse, periodic):
+def _ahead(x, v, dt, fall, axis):
     """Return where a coordinate is a step later; on a periodic axis back in the box."""
     x = x + v * dt - fall
-    if periodic:
-        x = x - side * np.floor(x * inverse)
-        x = 0.0 if inverse > 0.0 and x >= side else x
+    if axis.periodic:
+        x = x - axis.side * np.floor(x * axis.inverse)
+        x = 0.0 if axis.inverse > 0.0 and x >= axis.side else x
     return x
 
 
 @kernel
-def _along(at, low, high, per_length, last, stride):
+def _along(at, axis):
     """Return what a coordinate adds to the number of a cell; a very negative number near a wall."""
-    here = min(np.int32(at * per_length), last) * stride
-    return _AWAY if (at < low) | (at > high) else here
+    here = min(np.int32(at * axis.per_length), np.int32(axis.number - 1)) * np.int32(axis.stride)
+    return _AWAY if (at < axis.low) | (at > axis.high) else here
 
 
 @kernel
-def _glide(x, v, old, cell, dt, side, inverse, low, high, per_length, number, stride, periodic):
+def _glide(x, v, old, cell, dt, axis):
     """Move molecules along a level axis, keep where they were, and add the axis to their cells."""
-    last = np.int32(number - 1)
-    stride = np.int32(stride)
     for p in range(x.size):
-        at = _ahead(x[p], v[p], dt, 0.0, side, inverse, periodic)
+        at = _ahead(x[p], v[p], dt, 0.0, axis)
         old[p] = x[p]
         x[p] = at
-        cell[p] += _along(at, low, high, per_length, last, stride)
+        cell[p] += _along(at, axis)
 
 
 @kernel
-def _fall(z, v, cell, dt, fall, gain, side, inverse, low, high, per_length, number, stride, periodic):
+def _fall(z, v, cell, dt, fall, gain, axis):
     """Add the upright axis to the cells of molecules, and move along it those that come near no wall at all."""
-    last = np.int32(number - 1)
-    stride = np.int32(stride)
     for p in range(z.size):
-        at = _ahead(z[p], v[p], dt, fall, side, inverse, periodic)
-        cell[p] += _along(at, low, high, per_length, last, stride)
+        at = _ahead(z[p], v[p], dt, fall, axis)
+        cell[p] += _along(at, axis)
         stays = cell[p] >= 0
         z[p] = at if stays else z[p]
         if gain is not None:
@@ -73,32 +88,30 @@ def _fall(z, v, cell, dt, fall, gain, side, inverse, low, high, per_length, numb
 
 
 @kernel
-def drift(state, before, histogram, first, last, step, layers, grid, box, modes):
+def drift(part, first, last, step, layers, gas, modes):
     """Move the molecules of one part that meet no wall, and count them into their cells.
 
     Parameters
     ----------
-    state
-        The molecules: see `atmosbox.engine.stepped.stepped.State`. Its ``cell`` is filled with the cell that each will
-        be in, a negative number for one that comes near a wall; its ``hitting``, from ``first`` on, with those.
-    before : (2, `BLOCK`)
-        Room for where some of them were.
-    histogram : (cell,)
-        Filled with how many of the others will stand in each cell.
-    first, last
-        The part: slots ``first`` to ``last - 1``.
+    part, first, last
+        The part, and its slots ``first`` to ``last - 1``. Its row of the histogram is filled with how many will stand
+        in each cell, without those that come near a wall.
     step
         The step: see `atmosbox.engine.stepped.stepped.Step`.
     layers
         Number of layers of cells now.
-    grid, box, modes
-        The cells, the box, what the scene requires.
+    gas, modes
+        All that the engine works on: see `atmosbox.engine.stepped.stepped.Filed`; what the scene requires. Of the
+        molecules ``cell`` is filled with the cell that each will be in, a negative number for one that comes near a
+        wall; ``hitting``, from ``first`` on, with those.
 
     Returns
     -------
     int
         How many come near a wall.
     """
+    state, grid, box = gas.state, gas.grid, gas.box
+    before, histogram = state.before[part], gas.records.histogram[part]
     dt = step.length
     gain = box.gravity * dt if modes.gravity else 0.0
     share = 0.5 if step.motion == PARABOLA else (1.0 if step.motion == SEMI_IMPLICIT else 0.0)
@@ -109,6 +122,17 @@ def drift(state, before, histogram, first, last, step, layers, grid, box, modes)
     near_x = grid.margin if box.inverse_x == 0.0 else -math.inf
     near_y = grid.margin if box.inverse_y == 0.0 else -math.inf
     near_z = grid.margin if box.inverse_z == 0.0 else -math.inf
+    wide_x, wide_y = box.length_x, box.length_y
+    along_x = Axis(
+        wide_x, box.inverse_x, near_x, wide_x - near_x, grid.inverse_x, grid.number_x, 1, modes.periodic
+    )  # fmt: skip
+    along_y = Axis(
+        wide_y, box.inverse_y, near_y, wide_y - near_y, grid.inverse_y, grid.number_y, grid.number_x, modes.periodic
+    )  # fmt: skip
+    along_z = Axis(
+        box.length_z, box.inverse_z, near_z, low_top - near_z, layers / top, layers, grid.number_x * grid.number_y,
+        modes.periodic and not (modes.gravity or modes.piston),
+    )  # fmt: skip
     histogram[:] = 0
     many = 0
     for begin in range(first, last, BLOCK):
@@ -118,22 +142,10 @@ def drift(state, before, histogram, first, last, step, layers, grid, box, modes)
         vx, vy, vz = state.velocity[0, begin:end], state.velocity[1, begin:end], state.velocity[2, begin:end]
         old_x, old_y = before[0, : end - begin], before[1, : end - begin]
         c[:] = 0
-        side = box.length_x
-        _glide(
-            x, vx, old_x, c, dt, side, box.inverse_x, near_x, side - near_x,
-            grid.inverse_x, grid.number_x, 1, modes.periodic,
-        )  # fmt: skip
+        _glide(x, vx, old_x, c, dt, along_x)
         if not box.planar:
-            side = box.length_y
-            _glide(
-                y, vy, old_y, c, dt, side, box.inverse_y, near_y, side - near_y,
-                grid.inverse_y, grid.number_y, grid.number_x, modes.periodic,
-            )  # fmt: skip
-        _fall(
-            z, vz, c, dt, fall, gain if modes.gravity else None, box.length_z, box.inverse_z, near_z, low_top - near_z,
-            layers / top, layers, grid.number_x * grid.number_y,
-            modes.periodic and not (modes.gravity or modes.piston),
-        )  # fmt: skip
+            _glide(y, vy, old_y, c, dt, along_y)
+        _fall(z, vz, c, dt, fall, gain if modes.gravity else None, along_z)
         for p in range(c.size):
             if c[p] >= 0:
                 histogram[np.uint32(c[p])] += np.int32(1)

@@ -16,8 +16,13 @@ __all__ = ["find_pairs"]
 
 
 @kernel
-def _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes):
-    """Note every later neighbour of record q within reach; return how many pairs there are now."""
+def _search_closely(q, where, reach, radius, pairs, found, gas, modes):
+    """Note every later neighbour of record q within reach; return how many pairs there are now.
+
+    ``where`` is its cell along x, y and z, and the number of layers of cells.
+    """
+    ix, iy, iz, layers = where
+    records, grid, box = gas.records, gas.grid, gas.box
     at_x = records.x[q]
     at_y = records.y[q]
     at_z = records.z[q]
@@ -60,7 +65,7 @@ def _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pa
 
 
 @kernel
-def _row(records, grid, iy, iz, layers, cells, shift_y, shift_z):
+def _row(grid, iy, iz, layers, cells, shift_y, shift_z):
     """Return where a row of cells begins and by how much the searcher is to be moved to stand before it."""
     y = np.float32(0.0)
     z = np.float32(0.0)
@@ -78,41 +83,45 @@ def _row(records, grid, iy, iz, layers, cells, shift_y, shift_z):
 
 
 @kernel
-def _glance(records, radius, a, b, c, d, e, at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach):
-    """Tell who is within reach in five stretches of records; each stretch has its own `LANES` bits of the answer."""
-    x, y, z = records.x, records.y, records.z
+def _glance(records, radius, first, at_x, y, z, reach):
+    """Tell who is within reach in five stretches of records; each stretch has its own `LANES` bits of the answer.
+
+    ``first``, ``y``, ``z`` are five numbers each: where a stretch begins, and from where it is looked at.
+    """
+    xs, ys, zs = records.x, records.y, records.z
     return (
-        within(x, y, z, radius, a, at_x, at_y, at_z, reach)
-        | within(x, y, z, radius, b, at_x, b_y, at_z, reach) << LANES
-        | within(x, y, z, radius, c, at_x, c_y, c_z, reach) << 2 * LANES
-        | within(x, y, z, radius, d, at_x, at_y, d_z, reach) << 3 * LANES
-        | within(x, y, z, radius, e, at_x, e_y, e_z, reach) << 4 * LANES
+        within(xs, ys, zs, radius, first[0], at_x, y[0], z[0], reach)
+        | within(xs, ys, zs, radius, first[1], at_x, y[1], z[1], reach) << LANES
+        | within(xs, ys, zs, radius, first[2], at_x, y[2], z[2], reach) << 2 * LANES
+        | within(xs, ys, zs, radius, first[3], at_x, y[3], z[3], reach) << 3 * LANES
+        | within(xs, ys, zs, radius, first[4], at_x, y[4], z[4], reach) << 4 * LANES
     )
 
 
 @kernel
-def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, modes):
+def find_pairs(part, first, last, layers, slack, radius, gas, modes):
     """Find all pairs nearer than their mean diameter plus a slack, whose earlier record is in a part of all.
 
     Parameters
     ----------
-    first, last
-        The part: records ``first`` to ``last - 1``.
+    part, first, last
+        The part, and its records ``first`` to ``last - 1``. Its row of ``gas.pairs`` is filled with slots, in the order
+        of the records.
     layers
         Number of layers of cells now.
     slack
         By how much single precision may misjudge a distance, more than enough [length].
-    records, radius, grid, box, modes
-        The molecules in the order of their cells, their radius (None where equal), the cells, the box and what the
-        scene requires.
-    pairs : (pair, 2)
-        Filled with slots, in the order of the records.
+    radius
+        That of the records; None where all are equal.
+    gas, modes
+        All that the engine works on: see `atmosbox.engine.stepped.stepped.Filed`; what the scene requires.
 
     Returns
     -------
     int
         How many pairs there are; more than ``pairs`` holds if it is too short.
     """
+    records, grid, box, pairs = gas.records, gas.grid, gas.box, gas.pairs[part]
     found = 0
     if first >= last:
         return found
@@ -131,10 +140,10 @@ def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, mo
         iz = row // grid.number_y
         iy = row - iz * grid.number_y
         own = row * number_x
-        behind, behind_y, _ = _row(records, grid, iy + 1, iz, layers, cells, shift_y, shift_z)
-        low, low_y, low_z = _row(records, grid, iy - 1, iz + 1, layers, cells, shift_y, shift_z)
-        above, _, above_z = _row(records, grid, iy, iz + 1, layers, cells, shift_y, shift_z)
-        high, high_y, high_z = _row(records, grid, iy + 1, iz + 1, layers, cells, shift_y, shift_z)
+        behind, behind_y, _ = _row(grid, iy + 1, iz, layers, cells, shift_y, shift_z)
+        low, low_y, low_z = _row(grid, iy - 1, iz + 1, layers, cells, shift_y, shift_z)
+        above, _, above_z = _row(grid, iy, iz + 1, layers, cells, shift_y, shift_z)
+        high, high_y, high_z = _row(grid, iy + 1, iz + 1, layers, cells, shift_y, shift_z)
         for r in range(max(np.int64(start[own]), first), min(np.int64(start[own + number_x]), last)):
             q = r & 0x7FFFFFFF
             ix = np.int64(records.cell[q]) - own
@@ -158,15 +167,15 @@ def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, mo
             e_end = np.int64(start[np.uint32(high + right)])
             longest = max(max(a_end - a, b_end - b), max(c_end - c, d_end - d), e_end - e)
             if modes.periodic and (not grid.simple or (grid.wraps_x and (ix == 0 or ix == end_x))):
-                found = _search_closely(q, ix, iy, iz, layers, reach, records, radius, grid, box, pairs, found, modes)
+                found = _search_closely(q, (ix, iy, iz, layers), reach, radius, pairs, found, gas, modes)
                 continue
             b_y = at_y + behind_y if modes.periodic else at_y
             c_y, c_z = (at_y + low_y, at_z + low_z) if modes.periodic else (at_y, at_z)
             d_z = at_z + above_z if modes.periodic else at_z
             e_y, e_z = (at_y + high_y, at_z + high_z) if modes.periodic else (at_y, at_z)
-            bits = _glance(
-                records, radius, a, b, c, d, e, at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach
-            )  # fmt: skip
+            from_y = (at_y, b_y, c_y, at_y, e_y)
+            from_z = (at_z, at_z, c_z, d_z, e_z)
+            bits = _glance(records, radius, (a, b, c, d, e), at_x, from_y, from_z, reach)
             beyond = 0
             while True:
                 while bits != 0:
@@ -186,8 +195,7 @@ def find_pairs(first, last, layers, slack, records, radius, grid, box, pairs, mo
                 if beyond >= longest:
                     break
                 # beyond the end of a row, and of all rows, whatever is seen does not count
-                bits = _glance(
-                    records, radius, min(a + beyond, end), min(b + beyond, end), min(c + beyond, end),
-                    min(d + beyond, end), min(e + beyond, end), at_x, at_y, b_y, c_y, e_y, at_z, c_z, d_z, e_z, reach,
-                )  # fmt: skip
+                begin_a, begin_b, begin_c = min(a + beyond, end), min(b + beyond, end), min(c + beyond, end)
+                further = (begin_a, begin_b, begin_c, min(d + beyond, end), min(e + beyond, end))
+                bits = _glance(records, radius, further, at_x, from_y, from_z, reach)
     return found

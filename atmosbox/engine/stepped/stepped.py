@@ -43,7 +43,7 @@ from atmosbox.engine.stepped.filing import count_up, file_molecules
 from atmosbox.engine.stepped.flight import PARABOLA, SEMI_IMPLICIT, drift
 from atmosbox.engine.stepped.neighbourhood import find_pairs
 
-__all__ = ["State", "Step", "specialise"]
+__all__ = ["Filed", "Rules", "State", "Step", "SteppedGas", "specialise"]
 
 _SINGLE = 2.0**-23
 
@@ -79,17 +79,64 @@ class Step(NamedTuple):
     rule: int
 
 
+class Filed(NamedTuple):
+    """The molecules filed by cell.
+
+    ``pairs : (part, pair, 2)`` are slots of those that overlap, in the order of the records.
+    """
+
+    state: State
+    records: Any
+    grid: Any
+    box: Any
+    pairs: Any
+
+
+class SteppedGas(NamedTuple):
+    """What is done to molecules one after the other works on this; the types say what is what.
+
+    ``numbers : (part, 2)`` how many pairs were found, and how many molecules came near a wall; ``seen : (1,)`` counts
+    pairs that overlap and part; ``made : (1,)`` is the energy that the scheme makes of itself [energy]; ``total_mass``
+    that of all molecules [mass]; ``pairs`` see `Filed`.
+    """
+
+    state: State
+    kinds: Any
+    box: Any
+    walls: Any
+    tallies: Any
+    pairs: Any
+    numbers: Any
+    seen: Any
+    made: Any
+    total_mass: float
+
+
+class Rules(NamedTuple):
+    """How steps are made: their length [time], how molecules fall, what smooth walls do, who collides.
+
+    ``motion`` is how molecules fall (`flight`), ``rule`` what smooth walls do (`bounce`), ``approaching`` whether pairs
+    that part are left alone.
+    """
+
+    step_length: float
+    motion: int
+    rule: int
+    approaching: bool
+
+
 _MOST_TRIES = 1000
 """How often an outcome is drawn anew at most; only grazing pairs come near it."""
 
 
 @kernel
-def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, modes):
+def _meet(p, q, gas, rules, modes):
     """Let two molecules collide that overlap and approach; count those that overlap and part.
 
     A pair is seen if a step ends on the first half of its way through the overlap: with the chance of that half over
     its way in a step, if that is longer. With that chance for its reverse, an outcome with another speed is taken.
     """
+    state, kinds, box, tallies, seen = gas.state, gas.kinds, gas.box, gas.tallies, gas.seen
     x = state.position
     v = state.velocity
     rx, ry, rz = nearest_image(x[0, p] - x[0, q], x[1, p] - x[1, q], x[2, p] - x[2, q], box, modes)
@@ -106,7 +153,7 @@ def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, mode
     closing = rx * ux + ry * uy + rz * uz
     if closing >= 0.0:
         seen[0] += 1
-        if approaching or closing == 0.0:
+        if rules.approaching or closing == 0.0:
             return
     dx, dy, dz = resolve(rx, ry, rz, ux, uy, uz, kind.mass, other.mass)
     if modes.rotation and (box.exchange >= 1.0 or uniform(tallies.random) < box.exchange):
@@ -120,7 +167,7 @@ def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, mode
             shared, spin[i], spin[j] = share_energy(
                 energy, 2.0 if box.planar else 3.0, kind.rotation, other.rotation, tallies.random
             )
-            if uniform(tallies.random) * step_length * math.sqrt(shared / relative * square) < half:
+            if uniform(tallies.random) * rules.step_length * math.sqrt(shared / relative * square) < half:
                 break
         # the elastic contact turns the relative velocity u into u + d (1 + m_i / m_j); now its length is scaled
         share = 1.0 + kind.mass / other.mass
@@ -144,20 +191,21 @@ def _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, mode
 def specialise(modes: Modes, parallel: bool) -> Any:
     """Return the kernel that marches, for one set of modes, on one thread or on several.
 
-    It is called as ``march(state, records, radius, kinds, grid, box, walls, tallies, pairs, numbers, seen, made,
-    total_mass, step_length, motion, rule, approaching, first, steps, phase)`` and returns how many steps are complete.
-    It stops early if ``pairs : (part, pair, 2)`` is too short; ``numbers[:, 0]`` then tells how long it should be, and
-    the step that has begun is completed when it is called again with ``phase`` 1. With ``phase`` 2 nothing moves and
-    nothing collides: only the pairs are found. ``seen[0]`` counts pairs that overlap and part, ``made[0]`` the energy
-    [energy] that the scheme makes of itself.
+    It is called as ``march(state, records, radius, grid, box, gas, rules, span)``: the radius of the records once more,
+    by whose type None the compiler knows that all are equal; ``span`` is which step is the first, how many there are,
+    and a phase. It returns how many steps are complete, and stops early if ``gas.pairs`` is too short;
+    ``gas.numbers[:, 0]`` then tells how long it should be, and the step that has begun is completed when it is called
+    again with phase 1. With phase 2 nothing moves and nothing collides: only the pairs are found.
+
+    A parallel loop knows a tuple only if it is an argument, and not part of another: they are put together inside.
     """
 
     @kernel(entry=True, parallel=parallel)
-    def march(
-        state, records, radius, kinds, grid, box, walls, tallies, pairs, numbers, seen, made, total_mass,
-        step_length, motion, rule, approaching, first, steps, phase,
-    ):  # fmt: skip
+    def march(state, records, radius, grid, box, gas, rules, span):
         """Advance by so many steps: see `specialise`."""
+        kinds, walls, pairs, numbers, made = gas.kinds, gas.walls, gas.pairs, gas.numbers, gas.made
+        step_length, motion, rule = rules.step_length, rules.motion, rules.rule
+        first, steps, phase = span
         molecules = state.name.size
         parts = pairs.shape[0] if parallel else 1
         crude = motion != PARABOLA or rule != MIRROR
@@ -176,18 +224,17 @@ def specialise(modes: Modes, parallel: bool) -> Any:
             layers = max(1, min(grid.number_z, int(top / grid.thinnest)))
             if phase != 1:
                 if modes.gravity and phase == 0:
-                    made[0] += fall_heat * total_mass
+                    made[0] += fall_heat * gas.total_mass
                 for part in prange(parts):
-                    numbers[part, 1] = drift(
-                        state, state.before[part], records.histogram[part],
-                        molecules * part // parts, molecules * (part + 1) // parts, step, layers, grid, box, modes,
-                    )  # fmt: skip
+                    low, high = molecules * part // parts, molecules * (part + 1) // parts
+                    here = Filed(state, records, grid, box, pairs)
+                    numbers[part, 1] = drift(part, low, high, step, layers, here, modes)
                 for part in range(parts):
                     begin = molecules * part // parts
                     for k in range(begin, begin + numbers[part, 1]):
                         p = np.int64(state.hitting[k])
                         if phase == 0:
-                            extra = bounce(p, state, kinds, step, box, walls, tallies, modes)
+                            extra = bounce(p, step, gas, modes)
                             if crude:
                                 mass = kinds.table[np.int64(state.name[p]) if modes.mixed else 0].mass
                                 made[0] += extra - fall_heat * mass
@@ -202,17 +249,15 @@ def specialise(modes: Modes, parallel: bool) -> Any:
                     count_up(records, grid.number_x * grid.number_y * layers, grid.number_x, molecules)
                     for part in prange(parts):
                         file_molecules(
-                            state.position, state.cell, state.size, records, radius, part,
-                            molecules * part // parts, molecules * (part + 1) // parts,
-                        )  # fmt: skip
+                            state, records, radius, part, molecules * part // parts, molecules * (part + 1) // parts
+                        )
             if modes.contacts:
                 # single precision misplaces each coordinate by half a unit in its last digit
                 slack = 4.0 * _SINGLE * max(box.length_x, box.length_y, top)
                 for part in prange(parts):
-                    numbers[part, 0] = find_pairs(
-                        molecules * part // parts, molecules * (part + 1) // parts,
-                        layers, slack, records, radius, grid, box, pairs[part], modes,
-                    )  # fmt: skip
+                    low, high = molecules * part // parts, molecules * (part + 1) // parts
+                    here = Filed(state, records, grid, box, pairs)
+                    numbers[part, 0] = find_pairs(part, low, high, layers, slack, radius, here, modes)
                 for part in range(parts):
                     if numbers[part, 0] > pairs.shape[1]:
                         return it
@@ -221,7 +266,7 @@ def specialise(modes: Modes, parallel: bool) -> Any:
                         for k in range(numbers[part, 0]):
                             p = np.int64(pairs[part, k, 0])
                             q = np.int64(pairs[part, k, 1])
-                            _meet(p, q, state, kinds, box, tallies, seen, approaching, step_length, modes)
+                            _meet(p, q, gas, rules, modes)
             if phase == 1:
                 phase = 0
         return steps

@@ -18,7 +18,7 @@ from atmosbox.engine.stepped.bounce import CLAMP, FLIP, FOLD, MIRROR, REWIND
 from atmosbox.engine.stepped.filing import new_records
 from atmosbox.engine.stepped.flight import BLOCK, EULER, PARABOLA, SEMI_IMPLICIT
 from atmosbox.engine.stepped.gridding import choose_cells
-from atmosbox.engine.stepped.stepped import State, specialise
+from atmosbox.engine.stepped.stepped import Rules, State, SteppedGas, specialise
 from atmosbox.engine.stepped.stepped_start import judge_overlap, judge_step
 
 __all__ = ["SteppedParcel"]
@@ -249,11 +249,15 @@ class SteppedParcel(MarchingParcel):
         """Call the kernel, again and again with more room for pairs if it runs out of it."""
         if self._threads > 1:
             use_threads(self._threads)
+        rules = Rules(self._time_step, self._motion, self._rule, self._approaching)
         while True:
+            gas = SteppedGas(
+                self._state, self._kinds, self._box, self._walls, self._tallies, self._pairs, self._numbers,
+                self._seen, self._made, self._total_mass,
+            )  # fmt: skip
+            span = (first, steps, phase)
             done = self._kernel(
-                self._state, self._records, self._records.radius, self._kinds, self._grid, self._box, self._walls,
-                self._tallies, self._pairs, self._numbers, self._seen, self._made, self._total_mass,
-                self._time_step, self._motion, self._rule, self._approaching, first, steps, phase,
+                self._state, self._records, self._records.radius, self._grid, self._box, gas, rules, span
             )  # fmt: skip
             if done == steps:
                 return
