@@ -30,6 +30,7 @@ from atmosbox.scene import (
     Headline,
     Panel,
     SceneSettings,
+    Series,
     Setup,
     Water,
     block_average,
@@ -58,6 +59,14 @@ MOLECULE = 0.52
 """Radius of the ball that a molecule fills in liquid water, over the diameter of one of air: 0.193 nm to 0.37 nm."""
 CORE = 20.0
 """Mass of the nucleus of a drop, in molecules of air."""
+
+
+ladder = (
+    Series("exact", "molecules", (1000, 3000, 10_000)),
+    Series("exact", "duration", (20, 40, 80), {"molecules": 3000}),
+    Series("dsmc", "molecules", (3000, 10_000, 30_000)),
+)
+"""What is worth comparing: whatever lets molecules meet the droplets is right; they differ in scatter and in cost."""
 
 
 class Settings(SceneSettings):

@@ -32,6 +32,7 @@ from atmosbox.scene import (
     Line,
     Panel,
     SceneSettings,
+    Series,
     Setup,
     Water,
     block_average,
@@ -57,6 +58,13 @@ HOTTEST = 647.0
 LATE = "the piston moves a little late"
 FEW = 100
 """With fewer molecules than that to come or go, errors are those of chance events, and not read from their scatter."""
+
+
+ladder = (
+    Series("exact", "duration", (10, 20, 40)),
+    Series("dsmc", "duration", (10, 20, 40)),
+)
+"""What is worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
 
 
 class Settings(SceneSettings):

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Setup, setting
+from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene import sounding as air
 from atmosbox.scene.ascent import (
     MoistAscent,
@@ -38,6 +38,14 @@ title = "Lifting through a sounding"
 FRAMES = 80
 SAMPLES = 8
 BUILT_IN = "weisman-klemp"
+
+
+ladder = (
+    Series("exact", "ascent", (100, 200, 400, 800)),
+    Series("exact", "molecules", (2000, 6000)),
+    Series("dsmc", "ascent", (800, 2400)),
+)
+"""What is worth comparing: a fast ascent ends too warm, and few molecules scatter."""
 
 
 class Settings(SceneSettings):

@@ -18,7 +18,7 @@ import numpy as np
 
 from atmosbox import theory as law
 from atmosbox.errors import SettingError
-from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Setup, setting
+from atmosbox.scene import EngineChoice, Headline, Line, Panel, SceneSettings, Series, Setup, setting
 from atmosbox.scene.ascent import (
     MoistAscent,
     along_frames,
@@ -38,6 +38,14 @@ title = "Over the mountains"
 FRAMES = 96
 SAMPLES = 8
 BLOCK = 6
+
+
+ladder = (
+    Series("exact", "travel", (125, 250, 500)),
+    Series("exact", "molecules", (3000, 10_000)),
+    Series("dsmc", "travel", (500, 1500)),
+)
+"""What is worth comparing: a fast journey ends too warm, and few molecules scatter."""
 
 
 class Settings(SceneSettings):
