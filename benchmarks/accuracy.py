@@ -6,7 +6,8 @@
 Every scene that declares a ladder is measured by `atmosbox.trade.tradeoff`: each way of running it as often as the
 budget allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard
 error, and the standard deviation of a single run (noise), in K or as a share of the theory; and for each way the
-processor time of its engine as a ratio to that of the scene's default run, both from this measurement. Left out is
+processor time of its engine as a ratio to that of the scene's default run, both from this measurement; the seconds of
+that run are kept, too, which are those of the computer that measured. Left out is
 what ran less than four times, so that the scatter of the seeds says little, left the box, or did not close its ledger.
 Scenes that are not named keep what they have.
 """
@@ -44,8 +45,11 @@ def varies(module: Any) -> list[str]:
     return sorted({series.vary for series in module.ladder} & set(own))
 
 
-def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
-    """Return the ways of running a scene that can be relied on, each once, the cost relative to the default run."""
+def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
+    """Return the ways of running a scene that can be relied on, each once, their cost relative to the default run.
+
+    And the processor time that the engine took in that run [s].
+    """
     names = [name for name in dataset.quantity.values if name not in PROFILES]
     found: dict[str, dict[str, Any]] = {}
     for rung in range(dataset.sizes["rung"]):
@@ -69,7 +73,7 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
         way = {
             "engine": str(one.engine.values),
             "settings": settings,
-            "cost": float(one.cost),
+            "cost": float(one.engine_seconds),
             "members": members,
             "errors": errors,
         }
@@ -79,10 +83,10 @@ def ways(dataset: Any, module: Any) -> list[dict[str, Any]]:
     default = found.get(json.dumps([str(engines.EXACT), {}]))
     if default is None:
         raise AtmosboxError("The scene's default run did not run often enough: give a longer --budget.")
-    unit = default["cost"]  # the reference of the measurement may be a longer run
+    seconds = default["cost"]
     for way in found.values():
-        way["cost"] = float(f"{way['cost'] / unit:.3g}")
-    return list(found.values())
+        way["cost"] = float(f"{way['cost'] / seconds:.3g}")
+    return list(found.values()), seconds
 
 
 def measured(scene: str, budget: float, seed: int, command: str) -> Any:
@@ -105,11 +109,13 @@ def entry_of(dataset: Any) -> tuple[str, dict[str, Any]]:
     module = scenarios.load(scene)
     names = [str(name) for name in dataset.quantity.values if name not in PROFILES]
     about = dataset.sel(quantity=names)
+    measured_ways, seconds = ways(dataset, module)
     return scene, {
         "measured": {
             "version": dataset.attrs["product_version"],
             "budget": made["tradeoff"]["budget"],
             "command": dataset.attrs["history"].partition(": ")[2],
+            "seconds": float(f"{seconds:.3g}"),
         },
         "varies": varies(module),
         "headlines": {
@@ -118,7 +124,7 @@ def entry_of(dataset: Any) -> tuple[str, dict[str, Any]]:
                 names, about.label.values, about.unit.values, about.theory.values, strict=True
             )
         },
-        "ways": ways(dataset, module),
+        "ways": measured_ways,
     }
 
 

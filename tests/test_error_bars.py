@@ -7,9 +7,9 @@ that errors are too large. Where the model states a known error, the mean may be
 of an F distribution of n and 12 n degrees.
 
 The cheap tier does so in small boxes, in a few seconds each. With ``--validate`` each scene runs 60 times as it comes:
-of one processor half a minute for temperature and discs, five to ten minutes for atmosphere, lifting-dry, condensation and
-evaporation, and half an hour for each moist ascent, two hours in all. Nothing slips through: a headline that states
-no error must be among those known to have none, and every headline that a scene names must be seen in a case.
+of one processor half a minute for temperature and discs, five to ten minutes for atmosphere, lifting-dry, condensation
+and evaporation, and half an hour for each moist ascent, two hours in all. Nothing slips through: a headline that
+states no error must be among those known to have none, and every headline that a scene names must be seen in a case.
 """
 
 import ast
@@ -31,9 +31,9 @@ def runs(scene, number, **settings):
     return [runner.execute(runner.prepare(scene, settings | {"seed": 1000 + seed})) for seed in range(number)]
 
 
-def range_of_ratio(number, independent=None):
+def range_of_ratio(number):
     """Return the 99.9 % range of a mean square over the stated one, of so many degrees of freedom."""
-    return stats.f.ppf([0.0005, 0.9995], number, 12 * (independent or number))
+    return stats.f.ppf([0.0005, 0.9995], number, 12 * number)
 
 
 def ratio_of(misfit, stated, known):
@@ -98,15 +98,20 @@ def profiles_of(outcome):
 
 
 def assert_profiles_are_covered(outcomes, names):
-    """Assert it of the scatter of profiles, on average over layers, of which a third or 20 know nothing of others."""
+    """Assert it of the scatter of profiles, on average over their layers.
+
+    Layers know of each other: the mean of k ratios of a covariance matrix C scatters as one of (tr C)^2 / tr C^2.
+    """
     wrong = {}
     for name in names:
         values, errors = (np.array([o.dataset[each].values for o in outcomes]) for each in (name, f"{name}_se"))
         known = np.isfinite(values).all(axis=0) & np.isfinite(errors).all(axis=0) & (errors > 0.0).any(axis=0)
         values, errors = values[:, known], errors[:, known]
-        ratio = float(np.mean(values.var(axis=0, ddof=1) / np.mean(errors**2, axis=0)))
-        free = (len(outcomes) - 1) * max(min(values.shape[1] // 3, 20), 1)
-        least, most = range_of_ratio(free)
+        apart = (values - values.mean(axis=0)) / np.sqrt(np.mean(errors**2, axis=0))
+        covariance = apart.T @ apart / (len(outcomes) - 1)
+        ratio = float(np.trace(covariance) / len(covariance))
+        alone = np.trace(covariance) ** 2 / np.sum(covariance**2)
+        least, most = range_of_ratio((len(outcomes) - 1) * alone)
         if not least <= ratio <= most:
             wrong[name] = Row(ratio, least, most)
     assert wrong == {}

@@ -12,6 +12,7 @@ from atmosbox.engine import Periodic, maxwell_velocities, random_positions
 from atmosbox.file.netcdf import read
 from atmosbox.plot import tradeoff_figure
 from atmosbox.scene import engines
+from atmosbox.simulation import accuracy
 
 FOLDER = ROOT / "benchmarks"
 SCENES = ("lifting-dry", "atmosphere", "temperature-large")
@@ -55,6 +56,28 @@ def trade(found: Findings) -> None:
         if scene == "atmosphere":
             found.number("drift", rounded(float(np.nanmax(np.abs(data.energy_drift.values)))))
         found.number(f"{scene}-escaped", int(np.nanmax(data.escaped.values)))
+
+
+@job("answer", quick=True)
+def answer(found: Findings) -> None:
+    """Make the table of what to type in class, for homework and for a paper."""
+    rows = []
+    for scene, table in accuracy.load().items():
+        for purpose, target in (("class", "sketch"), ("homework", "lecture"), ("paper", "reference")):
+            picked = accuracy.choose(scene, target)
+            seconds = picked.way.cost * float(table.how["seconds"])
+            worst = {
+                unit: max((one.total for one in picked.way.errors.values() if one.unit == unit), default=math.nan)
+                for unit in ("K", "1")
+            }
+            error = [f"{rounded(worst['K'])} K"] if worst["K"] > 0.0 else []
+            error += [f"{rounded(100.0 * worst['1'])} %"] if worst["1"] > 0.0 else []
+            short = "" if picked.met else " (the best there is)"
+            rows.append(
+                [scene if purpose == "class" else "", purpose, f"`atmosbox run {scene} --accuracy {target}`",
+                 f"`{picked.way.label}`", rounded(seconds), ", ".join(error) + short]
+            )  # fmt: skip
+    found.table(["scene", "for", "type", "what runs", "seconds", "error"], rows)
 
 
 @job("approaching")

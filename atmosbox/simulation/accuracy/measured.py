@@ -104,7 +104,7 @@ class Table:
     ways
         The ways of running it.
     how
-        How it was measured: the version, the budget [s], the command.
+        How it was measured: the version, the budget [s], the command, and the processor time of the default run [s].
     """
 
     varies: tuple[str, ...]

@@ -3,6 +3,7 @@
 `rung`             one way of running a scene
 `budgeted_runs`    which run comes next, so that all fit into a budget of time
 `timed_run`        what one run came to
+`warm_engine`      an engine compiled, but for no longer than the budget
 `measured_trade`   all the ways of a scene, within a budget of time
 """
 

@@ -32,7 +32,7 @@ class BudgetedRuns(Generic[Result]):
 
     Every way is compiled and run once, then those that were too long for their share if they still fit, the shortest
     first; then all again and again, those with the fewest runs first. All of it counts, compiling too: what has begun
-    when the budget ends is stopped, except for the compiler, which cannot be.
+    when the budget ends is stopped.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class BudgetedRuns(Generic[Result]):
     labels
         What each way is called.
     compile_way
-        Called with the number of a way before its first run.
+        Called with the number of a way before its first run, and how long that may take [s]; tells whether it is done.
     run_way
         Called with the number of a way, how often it has run, and a function to be called with the share that is
         done and "running" once it runs; returns the result.
@@ -53,7 +53,7 @@ class BudgetedRuns(Generic[Result]):
 
     budget: float
     labels: list[str]
-    compile_way: Callable[[int], None]
+    compile_way: Callable[[int, float], bool]
     run_way: Callable[[int, int, Progress], Result]
     tell: Progress
     clock: Callable[[], float] = time.perf_counter
@@ -74,15 +74,18 @@ class BudgetedRuns(Generic[Result]):
         """Run all ways; ``results`` and ``left_out`` tell what came of it, also after an interruption."""
         ways, compiling = range(len(self.labels)), 0.0
         for k in ways:
+            again = f"; compiling took {compiling:.0f} s of it, and takes none next time" if compiling > 1.0 else ""
             if self.left() <= 0.0:
-                again = f"; compiling took {compiling:.0f} s of it, and takes none next time" if compiling > 1.0 else ""
                 self.left_out[k] = f"left out: the budget was spent before its turn{again}"
                 continue
             before = self.clock()
             try:
-                self.compile_way(k)
+                done = self.compile_way(k, self.left())
             except AtmosboxError as error:
                 self.left_out[k] = str(error)
+                continue
+            if not done:
+                self.left_out[k] = f"left out: the budget ended while its engine was compiled{again}"
                 continue
             compiling += self.clock() - before
             self._attempt(k, min(FIRST_SHARE * self.budget, self.left()))

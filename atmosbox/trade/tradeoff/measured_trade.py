@@ -20,6 +20,7 @@ from atmosbox.trade.tradeoff import timed_run
 from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns, Progress
 from atmosbox.trade.tradeoff.rung import Rung, rungs
 from atmosbox.trade.tradeoff.timed_run import Quantity, Trial
+from atmosbox.trade.tradeoff.warm_engine import compile_within, kind
 
 __all__ = ["measure"]
 
@@ -81,12 +82,14 @@ def measure(
     own = sorted(set(first))
     compiled: set[str] = set()
 
-    def compile_way(k: int) -> None:
+    def compile_way(k: int, seconds: float) -> bool:
         way = ways[own[k]]
-        if (name := engines.choose(way.engine).name) not in compiled:
-            tell(0.0, f"trying the engine {name}")
-            timed_run.warm_up(scene, way)
-            compiled.add(name)
+        if (what := kind(way)) not in compiled:
+            tell(0.0, f"trying the engine {engines.choose(way.engine).name}")
+            if not compile_within(scene, way, seconds):
+                return False
+            compiled.add(what)
+        return True
 
     def run_way(k: int, done: int, watch: Progress) -> Trial:
         return timed_run.run(scene, ways[own[k]], seed + done, watch)
