@@ -8,8 +8,7 @@ budget allows, with other seeds. For each headline the table keeps the mean misf
 error, and the standard deviation of a single run (noise), in K or as a share of the theory; and for each way the
 processor time of its engine as a ratio to that of the scene's default run, both from this measurement; the seconds of
 that run are kept, too, which are those of the computer that measured. Left out is
-what ran only once, left the box, or did not close its ledger; of two or three runs the noise is that of their own
-error bars.
+what ran less than four times, so that the scatter of the seeds says little, left the box, or did not close its ledger.
 Scenes that are not named keep what they have.
 """
 
@@ -36,8 +35,8 @@ from atmosbox.trade import tradeoff  # noqa: E402
 from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
 
 TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
-FEWEST = 2
-"""Runs below which nothing is known of a bias."""
+FEWEST = 4
+"""Runs below which the noise is taken from the runs' own error bars and not from their scatter."""
 
 
 def varies(module: Any) -> list[str]:
