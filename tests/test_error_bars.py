@@ -166,7 +166,7 @@ CASES = [
     Case("atmosphere", {"molecules": 100, "duration": 100.0, "plane": True}, 24),
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
-    Case("lifting-dry", {"molecules": 200, "ascent": 200.0}, 24),
+    Case("lifting-dry", {"molecules": 200, "ascent": 400.0}, 24),
     Case("lifting-moist", {"molecules": 2000, "ascent": 60.0}, 12),
     Case("lifting-sounding", {"molecules": 2000, "ascent": 100.0}, 12, METPY),
     Case("mountains", {"molecules": 4000, "travel": 60.0, "cloud_water": 3.0}, 12),
