@@ -223,10 +223,10 @@ def test_a_compiler_that_takes_longer_than_the_budget_is_ended(monkeypatch, tmp_
     assert warm_engine.compile_within("elastic-collisions", asked, 0.5), "it is not compiled twice"
 
 
-@pytest.mark.parametrize("budget", [0.0, -1.0, math.nan, math.inf, 1e9])
-def test_an_impossible_budget_is_refused(budget):
-    with pytest.raises(SettingError, match="--budget 60s"):
-        measure("lifting-dry", budget=budget)
+def test_an_impossible_budget_is_refused():
+    for budget in [0.0, -1.0, math.nan, math.inf, 1e9]:
+        with pytest.raises(SettingError, match="--budget 60s"):
+            measure("lifting-dry", budget=budget)
 
 
 def test_ctrl_c_keeps_what_was_measured():
