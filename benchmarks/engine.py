@@ -140,6 +140,9 @@ def start_of(n: int, phi: float, *, walled: bool) -> tuple[np.ndarray, np.ndarra
         sites = np.array([[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]])
         x = (corner + sites).reshape(-1, 3) * side / cubes
         x = x[np.sort(rng.permutation(len(x))[:n])]
+        if walled:  # between floor and ceiling; so little nearer to each other that none overlap
+            low, high = x[:, 2].min(), x[:, 2].max()
+            x[:, 2] = 0.501 + (x[:, 2] - low) * (side - 1.002) / (high - low)
     return x, maxwell_velocities(1.0, np.ones(n), rng, exact=True), side
 
 
