@@ -192,7 +192,8 @@ def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
 
 
 def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not():
-    more = {"molecules": 6000, "cloud_water": 2.0}
+    # 3.6 K are expected, and with so many the error of the difference is .5 K
+    more = {"molecules": 12_000, "cloud_water": 2.0}
     ends = {rain: found(run("mountains", rain=rain, **more))["arrival_temperature"] for rain in (True, False)}
     assert ends[False].theory == pytest.approx(298.15, abs=0.01)
     assert ends[True].theory - ends[False].theory > 2.0
