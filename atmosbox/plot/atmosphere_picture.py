@@ -317,6 +317,10 @@ def _tower(axes: Axes, base: float, top: float, theme: Theme) -> None:
     radius = 1.2 + 0.5 * rng.random(share.size)
     up = base + np.clip(share, 0.0, 1.0) * (top - base)
     puffs = _puffs(axes, _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size)), up, radius, theme)
+    inside = float(half.min())  # where puffs may leave a gap
+    axes.add_patch(
+        Rectangle((_MIDDLE - inside, base), 2.0 * inside, top - base, color=_CLOUD, linewidth=0.0, zorder=1.95)
+    )
     above = Rectangle((0.0, base), 1.0, ceiling - base, transform=axes.transData)
     for each in puffs:
         each.set_clip_path(above)

@@ -21,7 +21,7 @@ run is the same for any number of threads.
 
 References
 ----------
-.. [1] Bird, G. A. (1994), Molecular MoleculeKinds Dynamics and the Direct Simulation of MoleculeKinds Flows, Oxford.
+.. [1] Bird, G. A. (1994), Molecular Gas Dynamics and the Direct Simulation of Gas Flows, Oxford.
 .. [2] Bird, G. A. (1989), Prog. Astronaut. Aeronaut. 118, 211, doi:10.2514/5.9781600865923.0211.0226.
 """
 

@@ -6,8 +6,8 @@ included. A molecule that comes in brings the binding energy :math:`\varphi` wit
 
 .. math:: U \to U + e + \varphi, \qquad n \to n + 1,
 
-and one that leaves takes it along. Nothing in this knows of a relative humidity: where the two counted rates
-meet is found, not put in.
+and one that leaves takes it along. Nothing in this knows of a relative humidity. The vapour pressure at which
+the two counted rates meet follows from the substance, whose volatility is put in.
 
 The rate of leaving is that of the *microcanonical* ensemble. With :math:`U' = U - \varphi`, :math:`C' = C -
 c_l` and :math:`g = 2 + \zeta/2` for a vapour of :math:`\zeta` rotational degrees of freedom,
