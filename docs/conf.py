@@ -32,6 +32,7 @@ extensions = [
     "extension.source",
     "extension.mathml",
     "extension.picture",
+    "extension.gallery",
 ]
 exclude_patterns = ["figures", "examples", "extension", "jobs"]
 nitpicky = True

@@ -82,7 +82,10 @@ def site(tmp_path_factory):
 @pytest.fixture(scope="module")
 def pages(site):
     """Return every page of the site by its path."""
-    read = {path.relative_to(site[0]).as_posix(): Page(path) for path in site[0].glob("**/*.html")}
+    found = [
+        path for path in site[0].glob("**/*.html") if path.parent.name != "gallery"
+    ]  # pages of runs, not of the site
+    read = {path.relative_to(site[0]).as_posix(): Page(path) for path in found}
     assert "index.html" in read, site[1]
     return read
 
@@ -90,6 +93,15 @@ def pages(site):
 def test_the_site_is_built_without_a_warning(site):
     _, said, status = site
     assert (status, said.strip()) == (0, "")
+
+
+def test_the_gallery_has_a_page_that_plays_and_a_worksheet_of_every_scene(site, pages):
+    made = {path.name: path.read_bytes()[:15] for path in (site[0] / "gallery").iterdir()}
+    for name in scenarios.names():
+        assert made.pop(f"{name}.html") == b"<!doctype html>"
+        assert made.pop(f"{name}-sheet.pdf").startswith(b"%PDF")
+        assert {f"gallery/{name}.html", f"gallery/{name}-sheet.pdf"} <= set(pages["gallery.html"].links)
+    assert made == {}
 
 
 def test_every_page_is_reached_from_the_navigation_of_the_first(pages):
