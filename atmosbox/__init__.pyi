@@ -197,7 +197,7 @@ def run(
     rain: bool = False,
     cloud_water: float | str = 1.0,
     ascent: float | str = 400.0,
-    area: float | str = 30.0,
+    area: float | str = 12.0,
     diameter: float | str = 1.3,
     seed: int | str = 1,
 ) -> RunDataset:
@@ -233,7 +233,7 @@ def run(
     rain: bool = False,
     cloud_water: float | str = 1.0,
     ascent: float | str = 800.0,
-    area: float | str = 30.0,
+    area: float | str = 12.0,
     diameter: float | str = 1.3,
     seed: int | str = 1,
 ) -> RunDataset:
@@ -271,7 +271,7 @@ def run(
     rain: bool = True,
     cloud_water: float | str = 1.0,
     travel: float | str = 500.0,
-    area: float | str = 30.0,
+    area: float | str = 12.0,
     diameter: float | str = 1.3,
     seed: int | str = 1,
 ) -> RunDataset:
