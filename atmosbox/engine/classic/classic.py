@@ -53,7 +53,7 @@ class ClassicParcel(MarchingParcel):
     epsilon
         How far the look ahead looks [time].
     closing_only
-        Whether spheres that are already parting are left alone; False is the mistake that is worth showing.
+        Whether spheres that are already parting are left alone; False shows a common mistake.
     **box
         What every engine's box is given: see `Parcel`.
 
@@ -153,7 +153,7 @@ class ClassicParcel(MarchingParcel):
         arrays: list[Any] = [*self._discs, self._strips.order, self._strips.first, self._strips.strip]
         return sum(int(array.nbytes) for array in arrays)
 
-    # ------------------------------------------------------------------ what only these schemes have to tell
+    # ------------------------------------------------------------------ what only these schemes report
 
     @property
     def scheme(self) -> Scheme:
@@ -164,14 +164,14 @@ class ClassicParcel(MarchingParcel):
     def numerical_heat(self) -> float:
         """Energy that the scheme itself has made since the start [energy], by its falls and at the walls.
 
-        It is neither heat of a wall nor work, but an error; without gravity there is none. That the books close says
+        It is neither heat of a wall nor work, but an error; without gravity there is none. That the ledger closes says
         only that nothing is unaccounted for.
         """
         return float(self._score.numerical_heat[0])
 
     @property
     def pair_tests(self) -> int:
-        """How many pairs have been looked at since the start."""
+        """How many pairs have been tested since the start."""
         return int(self._score.count[0])
 
     @property
@@ -187,7 +187,7 @@ class ClassicParcel(MarchingParcel):
     # ------------------------------------------------------------------ how
 
     def _choose(self) -> Scheme:
-        """Return the scheme asked for, or the one that suits the molecules; refuse what no scheme knows."""
+        """Return the scheme asked for, or the one that suits the molecules; refuse what no scheme can do."""
         if self._walls.law[5] == PISTON:
             raise RefusedError("the classic schemes have no piston, wall z_high: give that box to the exact engine")
         if self._rotates:

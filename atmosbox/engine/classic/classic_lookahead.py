@@ -2,15 +2,15 @@ r"""The second classic scheme: discs of unequal mass in a plane, which look ahea
 
 Each step is Euler's: :math:`z + v \Delta t` with the velocity as it was, then :math:`v - g \Delta t`. A disc that
 ends beyond a wall is put back onto it, and its velocity turned round. Then all pairs are tested, in the order of
-their indices. Those that overlap are moved on in thought by :math:`\epsilon`; if that brings them nearer they
-approach, and both velocities are made new from both old ones.
+their indices. For those that overlap the distance a time :math:`\epsilon` later is computed; if it is smaller, they
+approach, and both new velocities follow from both old ones.
 
 What that costs: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low by
 :math:`(3/\sqrt{\pi}) \delta` of itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`; and
 because relative motion is straight, the look ahead passes over pairs with
 :math:`-\epsilon v^2 / 2 < r \cdot v < 0`, which graze each other. Euler's fall heats each molecule by
 :math:`m g^2 \Delta t / 2` per unit of time, and discs put back onto a floor gain half as much again. Put back, they
-have also lost the rest of their way: the pressure on walls a length L apart is low by
+have also lost the rest of their step: the pressure on walls a length L apart is low by
 :math:`\sqrt{2/\pi} \Delta t \sqrt{kT/m} / L`. Without gravity energy is kept to rounding.
 """
 

@@ -8,9 +8,9 @@ contact, one pair is resolved after another.
 
 A pair that still overlaps because it is just parting must be left alone: only closing pairs exchange. An applet that
 forgets this (``closing_only=False``) turns parting pairs, those that passed their point of closest approach between
-two steps, back into each other. There they hang together, exchanging step by step, until they have slid apart or a
-third sets them free: it counts collisions that never happened, more and more of them the longer it runs, and energy
-does not tell, because every exchange keeps it.
+two steps, back into each other. They stay together, exchanging step by step, until they have moved apart or a third
+one parts them: it counts collisions that never happened, more and more of them the longer it runs, and the
+energy does not show it, because every exchange conserves it.
 
 What the scheme costs: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low
 by :math:`(4/\sqrt{\pi}) \delta` of itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`;

@@ -1,4 +1,4 @@
-"""What the three classic schemes share: the molecules as plain arrays, their meeting with a wall, and the books."""
+"""What the three classic schemes share: the molecules as plain arrays, their walls, and what is counted."""
 
 from typing import Any, NamedTuple
 
@@ -42,7 +42,7 @@ class Frame(NamedTuple):
 
 
 class Score(NamedTuple):
-    """What only an approximate scheme has to tell.
+    """What only an approximate scheme counts.
 
     ``numerical_heat : (1,)`` [energy]: what the scheme itself has made. ``count : (3,)``: pairs looked at, contacts
     of a pair that had one in the step before, contacts of pairs that were already parting.

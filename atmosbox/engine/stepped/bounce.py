@@ -69,7 +69,7 @@ def _next_wall(at, left, gravity, radius, step, gas, modes):
 
 @kernel
 def _book(wall, impulse, gained, tallies, modes):
-    """Write a hit into the books: the change of momentum along the wall's axis, and the energy gained."""
+    """Tally a hit: the change of momentum along the wall's axis, and the energy gained."""
     tallies.hits[wall] += 1
     tallies.count[4] += 1
     tallies.impulse[wall] += impulse if wall & 1 == 0 else -impulse
@@ -112,7 +112,7 @@ def _end_along(now, before, axis, low, high, turn, step, walls):
 
 @kernel
 def bounce(p, step, gas, modes):
-    """Move a molecule through a step in which it comes near walls, and keep their books.
+    """Move a molecule through a step in which it comes near walls, and tally its hits.
 
     Parameters
     ----------

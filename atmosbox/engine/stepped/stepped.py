@@ -1,8 +1,8 @@
 r"""The time-stepped engine: all move, then those that overlap and approach collide.
 
-This is how simple programs do it. A step of length :math:`\Delta t` has three parts: everybody moves as if alone
-(`flight`, `bounce`); who now overlaps whom is found (`neighbourhood`); every pair that overlaps and still
-approaches gets the impulse of a collision (`contact`). Each collision comes late by up to one step, deeper than it
+This is how simple programs do it. A step of length :math:`\Delta t` has three parts: every molecule moves as if alone
+(`flight`, `bounce`); the pairs that now overlap are found (`neighbourhood`); every pair that overlaps and still
+approaches gets the impulse of a collision (`pair`). Each collision comes late by up to one step, deeper than it
 should, and a pair that grazes may part before it is seen. With :math:`\delta = \Delta t \sqrt{kT/m} / \sigma` that
 makes, in a dilute gas,
 
@@ -10,7 +10,7 @@ makes, in a dilute gas,
           \frac{\nu}{\nu_{exact}} = 1 - \frac{8}{3} \delta^2
 
 (in a plane :math:`3/\sqrt{\pi}` and 1). In a denser one both are low by another :math:`6.6\, \phi\, \delta` (in a plane
-2.8), because molecules that overlap leave each other more room. Energy is kept to rounding by each impulse, however
+2.8), because molecules that overlap have more space. Energy is kept to rounding by each impulse, however
 wrong the rest: it says nothing about accuracy.
 
 The virial takes r as it is, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls aside, between

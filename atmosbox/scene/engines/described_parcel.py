@@ -53,6 +53,9 @@ class DescribedParcel(Parcel):
         """Return the bytes that the molecules take."""
         return sum(int(np.asarray(part).nbytes) for part in self._molecules)
 
+    def _drive(self) -> None:
+        """Leave the piston at rest: its driver would compile what it computes."""
+
     def _piston_turned(self) -> None:
         """Need nothing: no event was predicted."""
 
