@@ -25,6 +25,8 @@ CLOSING = 5.0
 AIR_HEAT = 3.5
 """Heat capacity of a molecule of air at constant pressure, in k."""
 
+_stiffness = getattr(stiffness, "py_func", stiffness)  # asked once: not worth compiling
+
 
 @dataclass
 class AirOverPool:
@@ -133,7 +135,7 @@ class AirOverPool:
         all_of_it = self.heat_capacity - later
         gas = (AIR_HEAT - 1.0) * self.air + (law.VAPOR_HEAT_CAPACITY - 1.0) * rest.vapor
         noise = 1.0 / gas - 1.0 / all_of_it + rest.variance * (self.latent / all_of_it) ** 2
-        lost = (0.5 * change**2 + noise * time / self.closing) / stiffness(1.0, 2.0 * gas / later)
+        lost = (0.5 * change**2 + noise * time / self.closing) / _stiffness(1.0, 2.0 * gas / later)
         kelvin: float = self.temperature * later / self.heat_capacity * lost
         return kelvin
 
