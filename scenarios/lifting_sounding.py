@@ -136,8 +136,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     found = _read(settings.sounding)
     facts = {"sounding": f"{found.name}: {len(found)} levels"}
-    facts |= {f"remark {number}": remark for number, remark in enumerate(found.remarks, 1)}
-    return Setup(**(vars(setup) | {"facts": facts | dict(setup.facts) | {"verdict": _verdict(settings)}}))
+    facts |= {f"remark {number}": remark for number, remark in enumerate([*found.remarks, *found.doubts], 1)}
+    return Setup(
+        **(vars(setup) | {"facts": facts | dict(setup.facts) | {"verdict": _verdict(settings)}, "doubts": found.doubts})
+    )
 
 
 def _convection(settings: Settings, *, weight: bool = True) -> law.Convection:

@@ -70,6 +70,9 @@ def run(
     keep_state: Annotated[
         bool, typer.Option("--keep-state", help="Keep the last state in the file, so that --extend can go on from it.")
     ] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Refuse a sounding that is doubtful, instead of a warning.")
+    ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show what would run, compute nothing and write nothing.")
     ] = False,
@@ -124,6 +127,7 @@ def run(
                 restart=restart,
                 longer=extend,
                 keep_state=keep_state,
+                strict=strict,
             )
     except runner.Interrupted as stop:
         _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)

@@ -44,6 +44,8 @@ class Setup:
         What may be changed while the box runs, in ``atmosbox live``.
     ends
         Whether the run has an end of its own, as an ascent at its top; others could go on for ever.
+    doubts
+        What is doubtful about what was given, a sentence each: said when the run begins, and in its file.
 
     Raises
     ------
@@ -69,6 +71,7 @@ class Setup:
     facts: Mapping[str, str] = field(default_factory=dict)
     knobs: tuple[Knob, ...] = ()
     ends: bool = False
+    doubts: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.frames < 1 or self.samples < 1 or not 0 <= self.settle < self.frames or not self.duration > 0.0:

@@ -11,9 +11,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from atmosbox.engine import StalledError
-from atmosbox.errors import EngineError, FileError, SettingError
+from atmosbox.errors import EngineError, FileError, SettingError, SoundingError
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
+from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
@@ -82,6 +83,7 @@ def execute(
     restart: Restart | None = None,
     longer: int = 1,
     keep_state: bool = False,
+    strict: bool = False,
 ) -> Outcome:
     """Run a prepared scenario.
 
@@ -101,6 +103,8 @@ def execute(
         How many times as long as the scene says the run lasts, in frames of the same length.
     keep_state
         Whether the finished file holds its last state, so that the run can go on for longer.
+    strict
+        Whether a sounding that is doubtful is refused, not only warned of.
 
     Returns
     -------
@@ -126,10 +130,10 @@ def execute(
         check_alike(restart, prepared)
         longer = max(longer, restart.longer)
     if checkpoint is None:
-        return _execute(prepared, None, progress, command, restart, longer, keep_state)
+        return _execute(prepared, None, progress, command, restart, longer, keep_state, strict)
     checkpoint.begin()
     try:
-        return _execute(prepared, checkpoint, progress, command, restart, longer, keep_state)
+        return _execute(prepared, checkpoint, progress, command, restart, longer, keep_state, strict)
     finally:
         checkpoint.release()
 
@@ -142,6 +146,7 @@ def _execute(
     restart: Restart | None,
     longer: int,
     keep_state: bool,
+    strict: bool,
 ) -> Outcome:
     """Run a prepared scenario, whose file nobody else writes."""
     tell = progress or (lambda share, word: None)
@@ -152,7 +157,12 @@ def _execute(
         if setup.ends:
             raise SettingError("extend", longer, f"is not for {prepared.scene}, whose run has an end", "leave it out")
         setup = replace(setup, duration=longer * setup.duration, frames=longer * setup.frames)
-    recording = Recording(prepared, setup, _attributes(prepared, command, restart, longer))
+    for sentence in setup.doubts:
+        if strict:
+            raise SoundingError(f"{sentence[:-1]}: correct it, or leave --strict out.")
+        if restart is None:
+            warnings.warn(sentence, stacklevel=3)
+    recording = Recording(prepared, setup, _attributes(prepared, setup, command, restart, longer))
     last = spent = 0.0
     if restart is not None:
         spent = put_back(restart, recording)
@@ -210,7 +220,7 @@ def _execute(
     return done
 
 
-def _attributes(prepared: Prepared, command: str, restart: Restart | None, longer: int) -> dict[str, Any]:
+def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart | None, longer: int) -> dict[str, Any]:
     """Return what the file says of the run as a whole; one that goes on says what it said when it began."""
     from atmosbox.file.provenance import global_attributes, history_line
 
@@ -225,7 +235,7 @@ def _attributes(prepared: Prepared, command: str, restart: Restart | None, longe
         prepared.parameters,
         title=getattr(prepared.module, "title", prepared.scene),
         command=command or f"atmosbox run {prepared.scene}",
-        comment=" ".join((prepared.module.__doc__ or "").split()),
+        comment=" ".join([*(prepared.module.__doc__ or "").split(), *(f"Doubtful: {each}" for each in setup.doubts)]),
         references=prepared.engine.engine.reference,
         panels=to_json(panels(prepared.settings) if callable(panels) else panels),
         status="partial",

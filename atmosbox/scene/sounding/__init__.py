@@ -5,10 +5,12 @@ file           what is in it
 ============== =========================================================================
 profile        the sounding itself: pressure, temperature, dewpoint from the ground up
 column         the names and units of its columns
-plausibility   what no sounding can be
+plausibility   what no sounding can be, and what is doubtful
 tabulated      from the columns of a file to a sounding: units, missing values, order
 reading        opens a file and recognises its format
 wyoming        the University of Wyoming's tables, as text or as a web page
+igra           the Integrated Global Radiosonde Archive, version 2
+bufkit         the soundings of a forecast
 sharppy        SHARPpy's text
 delimited      CSV and the like
 profile_netcdf profiles as xarray and MetPy write them

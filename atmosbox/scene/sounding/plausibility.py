@@ -22,6 +22,7 @@ __all__ = [
     "ROUNDING",
     "check_levels",
     "check_plausible",
+    "doubts",
     "in_si",
     "widest_gap",
 ]
@@ -34,6 +35,19 @@ GAP_CEILING = 300e2
 """Pressure above whose surface gaps do not matter [Pa]."""
 ROUNDING = 0.05
 """How far the dewpoint may lie above the temperature by rounding [K]."""
+STEEPEST = 2.0
+"""How much colder than along the dry adiabat a level may be than the one below it [K]; what is more, mixes at once."""
+STEEPEST_AT_GROUND = 6.0
+"""The same within 50 hPa of the ground, where the sun heats it faster than the air can mix [K]."""
+STRONGEST_INVERSION = 15.0
+"""How much warmer a level may be than the one below it, above the lowest 150 hPa and below the 100 hPa surface [K]."""
+DOUBTFUL_GAP = 200e2
+"""Pressure between two levels, below the 300 hPa surface, over which much may be missed [Pa]."""
+LOWEST_TOP = 300e2
+"""Pressure at which an ascent should have ended at the lowest; storms reach higher [Pa]."""
+_GROUND_LAYER = 50e2
+_LOWEST_LAYER = 150e2
+_STRATOSPHERE = 100e2
 _HIGHEST_GROUND = 450e2  # Pa; the highest stations, in Tibet, report some 550 hPa
 _HEIGHT_ERROR = 0.1  # of the thickness between lowest and highest level; moisture and rounding make up 2 %
 
@@ -138,6 +152,55 @@ def widest_gap(pressure: Floats) -> tuple[float, int]:
     gap = np.where(pressure[:-1] > GAP_CEILING, pressure[:-1] - pressure[1:], 0.0)
     below = int(np.argmax(gap))
     return float(gap[below]), below
+
+
+def doubts(pressure: Floats, temperature: Floats) -> list[str]:
+    """Return what makes an ascent doubtful, though it could be, a sentence each.
+
+    Parameters
+    ----------
+    pressure, temperature : (level,)
+        The levels from the ground up [Pa, K].
+
+    Returns
+    -------
+    list of str
+        Layers that are steeper than the dry adiabat by more than `STEEPEST`, inversions above `STRONGEST_INVERSION`, a
+        gap above `DOUBTFUL_GAP`, and a top below the 300 hPa surface.
+
+    Examples
+    --------
+    A level of 300 hPa with 0 degC, where -43.5 degC was meant:
+
+    >>> p = np.array([1000e2, 850e2, 700e2, 500e2, 400e2, 300e2, 250e2])
+    >>> for sentence in doubts(p, 273.15 + np.array([20.0, 12.0, 3.0, -17.0, -29.0, 0.0, -52.0])):
+    ...     print(sentence)
+    From 400 to 300 hPa the temperature rises by 29 K, more than 15 K.
+    From 300 to 250 hPa the air is 38.1 K colder than along the dry adiabat, more than 2 K.
+    """
+    found = []
+    lifted = temperature[:-1] * (pressure[1:] / pressure[:-1]) ** (2.0 / 7.0)
+    steep = lifted - temperature[1:]
+    warmer = np.diff(temperature)
+    for i in range(len(steep)):
+        ends = f"From {pressure[i] / 100:.6g} to {pressure[i + 1] / 100:.6g} hPa"
+        limit = STEEPEST_AT_GROUND if pressure[i + 1] >= pressure[0] - _GROUND_LAYER else STEEPEST
+        if steep[i] > limit:
+            found.append(
+                f"{ends} the air is {steep[i]:.3g} K colder than along the dry adiabat, more than {limit:.3g} K."
+            )
+        aloft = _STRATOSPHERE <= pressure[i + 1] < pressure[0] - _LOWEST_LAYER
+        if aloft and warmer[i] > STRONGEST_INVERSION:
+            found.append(f"{ends} the temperature rises by {warmer[i]:.3g} K, more than {STRONGEST_INVERSION:.3g} K.")
+    gap, below = widest_gap(pressure)
+    if gap > DOUBTFUL_GAP:
+        ends = f"{pressure[below] / 100:.6g} and {pressure[below + 1] / 100:.6g} hPa"
+        found.append(f"Between {ends} there is no level: {gap / 100:.4g} hPa, more than {DOUBTFUL_GAP / 100:.3g} hPa.")
+    if pressure[-1] > LOWEST_TOP:
+        found.append(
+            f"The sounding ends at {pressure[-1] / 100:.6g} hPa, below the {LOWEST_TOP / 100:.3g} hPa surface."
+        )
+    return found
 
 
 def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, height: Floats | None, place: Place) -> None:

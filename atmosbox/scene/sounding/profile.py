@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.sounding.column import QUANTITIES, REQUIRED
-from atmosbox.scene.sounding.plausibility import check_levels, check_plausible
+from atmosbox.scene.sounding.plausibility import check_levels, check_plausible, doubts
 
 __all__ = ["Sounding"]
 
@@ -79,6 +79,11 @@ class Sounding:
         for name, column in columns.items():
             column.setflags(write=False)
             object.__setattr__(self, name, column)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What makes the ascent doubtful, though it could be, a sentence each."""
+        return tuple(doubts(self.pressure, self.temperature))
 
     def _place(self, level: int) -> str:
         return f"{shown(self.name)}, level {level + 1}"

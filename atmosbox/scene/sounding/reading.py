@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from atmosbox.errors import FileError, SoundingError, shown
-from atmosbox.scene.sounding import delimited, profile_netcdf, sharppy, wyoming
+from atmosbox.scene.sounding import bufkit, delimited, igra, profile_netcdf, sharppy, wyoming
 from atmosbox.scene.sounding.column import asked_units
 from atmosbox.scene.sounding.profile import Sounding
 from atmosbox.scene.sounding.tabulated import Table, sounding_of
@@ -22,7 +22,7 @@ LARGEST_FILE = 16 * 2**20
 MOST_LINES = 100_000
 """Lines above which a text is not looked at; a report every second makes some 6000."""
 
-_FIX = "give a sounding as Wyoming or SHARPpy text, CSV or netCDF"
+_FIX = "give a sounding as Wyoming, IGRA, BUFKIT or SHARPpy text, CSV or netCDF"
 _BINARY = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 _MARKS = {
     b"PK\x03\x04": "is a zip file or a workbook: save it as CSV",
@@ -35,7 +35,8 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
     r"""Return the sounding in a file, from the ground up.
 
     The format is recognised by the content: a table of the University of Wyoming, as text or as the page of the
-    web; SHARPpy's text; a table with named columns (CSV); netCDF with the variables that MetPy's users have.
+    web; a file of IGRA, version 2, or of BUFKIT, of which the first sounding is taken; SHARPpy's text; a table with
+    named columns (CSV); netCDF with the variables that MetPy's users have.
 
     Parameters
     ----------
@@ -125,6 +126,10 @@ def _parsed(lines: list[str], file: str, name: str) -> Table:
     """Return the columns of a text in whichever format it is."""
     if len(lines) > MOST_LINES:
         raise SoundingError(f"{file} has {len(lines)} lines, far more than a sounding: {_FIX}.")
+    if igra.recognised(lines):
+        return igra.parse(lines, file, name)
+    if bufkit.recognised(lines):
+        return bufkit.parse(lines, file, name)
     if sharppy.recognised(lines):
         return sharppy.parse(lines, file, name)
     if wyoming.recognised(lines):

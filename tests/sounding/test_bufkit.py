@@ -1,0 +1,79 @@
+"""The forecasts that BUFKIT draws."""
+
+import pytest
+
+from atmosbox.errors import SoundingError
+from atmosbox.scene.sounding import read
+
+NAMES = ["PRES", "TMPC", "TMWC", "DWPC", "THTE", "DRCT", "SKNT", "OMEG", "CFRL", "HGHT"]
+LEVELS = [  # PRES, TMPC, DWPC, HGHT
+    (965.80, 22.24, 18.84, 357.2),
+    (900.00, 18.94, 16.10, 970.0),
+    (850.00, 16.00, 12.50, 1490.0),
+    (700.00, 7.00, -2.00, 3120.0),
+    (500.00, -9.00, -24.00, 5810.0),
+    (300.00, -35.00, -50.00, 9520.0),
+    (200.00, -53.00, -9999.00, 12200.0),
+]
+
+
+def block(time, levels=LEVELS):
+    """Return the forecast of one hour as NAMSND writes it: eight values a line, then the others of the level."""
+    lines = [
+        f"STID = KOUN STNM = 723570 TIME = {time}",
+        "SLAT = 35.23 SLON = -97.47 SELV = 357.0",
+        "STIM = 0",
+        "",
+        "SHOW = -2.47 LIFT = -3.72 SWET = 330.26 KINX = 33.07",
+        "LCLP = 905.12 PWAT = 41.75 TOTL = 48.60 CAPE = 1534.00",
+        "",
+        " ".join(NAMES[:8]),
+        " ".join(NAMES[8:]),
+    ]
+    for pressure, temperature, dewpoint, height in levels:
+        lines.append(f"{pressure:.2f} {temperature:.2f} 0.00 {dewpoint:.2f} 340.00 180.00 12.00 -0.10")
+        lines.append(f"0.00 {height:.2f}")
+    return [*lines, ""]
+
+
+@pytest.fixture
+def lines():
+    return [
+        f"SNPARM = {';'.join(NAMES)}",
+        "STNPRM = SHOW;LIFT;SWET;KINX;LCLP;PWAT;TOTL;CAPE",
+        "",
+        *block("140910/0000"),
+        *block("140910/0100", [(p, t + 1.0, d, z) for p, t, d, z in LEVELS]),
+        "STN YYMMDD/HHMM PMSL PRES SKTC",
+        "723570 140910/0000 1010.90 965.80 22.24",
+    ]
+
+
+def test_the_first_hour_of_a_forecast_is_read(written, lines):
+    sounding = read(written(lines))
+    assert sounding.name == "KOUN 140910/0000"
+    assert [round(p / 100, 1) for p in sounding.pressure] == [level[0] for level in LEVELS]
+    assert sounding.temperature[1] - 273.15 == pytest.approx(18.94)
+    assert sounding.dewpoint[1] - 273.15 == pytest.approx(16.10)
+    assert list(sounding.height) == [level[3] for level in LEVELS]
+    assert sounding.source.endswith("BUFKIT")
+    assert sounding.remarks[0] == "The first of 2 soundings in the file taken."
+
+
+def test_values_may_be_laid_out_in_other_lines(written, lines):
+    laid = read(written(lines))
+    start = lines.index("PRES TMPC TMWC DWPC THTE DRCT SKNT OMEG")
+    end = start + 2 + 2 * len(LEVELS)
+    joined = [" ".join(lines[k : k + 2]) for k in range(start, end, 2)]
+    again = read(written([*lines[:start], *joined, *lines[end:]]))
+    assert again.temperature.tobytes() == laid.temperature.tobytes()
+
+
+def test_a_forecast_that_is_cut_off_or_lacks_a_column_is_refused(written, lines):
+    start = lines.index("PRES TMPC TMWC DWPC THTE DRCT SKNT OMEG")
+    with pytest.raises(SoundingError, match="8 of 10 values of a level are there, so the sounding is cut off"):
+        read(written(lines[: start + 2 + 5]))
+    with pytest.raises(SoundingError, match="SNPARM has no DWPC"):
+        read(written([line.replace("DWPC", "XXXX") for line in lines]))
+    with pytest.raises(SoundingError, match="no table has the columns"):
+        read(written(lines[:start]))
