@@ -7,6 +7,10 @@ unmarked
     Long statistical tests that narrow the error bars further. They are left out unless asked for:
     ``--validate`` runs them with the rest, ``-m validate`` alone, and a test named by its node id
     (``file.py::test_name``) runs in any case.
+``@pytest.mark.soak``
+    Runs of an hour and faults of the system, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long.
+
+``--fuzz 100`` tries a hundred times as many examples of whatever hypothesis makes up, other ones each time.
 
 Timings are never tests; they live in ``benchmarks/``. Every warning is an error.
 """
@@ -26,13 +30,25 @@ settings.load_profile("atmosbox")
 
 def pytest_addoption(parser):
     parser.addoption("--validate", action="store_true", help="also run the long statistical tests")
+    parser.addoption("--soak", type=float, default=1.0, help="length of the soak tests, as a share of the full one")
+    parser.addoption("--fuzz", type=int, default=1, help="how many times as many examples hypothesis tries")
 
 
 def pytest_collection_modifyitems(config, items):
     named = any("::" in argument for argument in config.args)
-    if config.getoption("--validate") or config.getoption("-m") or named:
+    more = config.getoption("--fuzz")
+    if more > 1:
+        for item in items:
+            test = getattr(item, "obj", None)
+            stated = getattr(test, "_hypothesis_internal_use_settings", None)
+            if stated is not None:
+                test._hypothesis_internal_use_settings = settings(
+                    stated, max_examples=more * stated.max_examples, derandomize=False
+                )
+    if config.getoption("-m") or named:
         return
-    left_out = [item for item in items if item.get_closest_marker("validate")]
+    wanted = {"soak"} if config.getoption("--validate") else {"soak", "validate"}
+    left_out = [item for item in items if any(item.get_closest_marker(tier) for tier in wanted)]
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in left_out]
