@@ -8,7 +8,7 @@ unmarked
     ``--validate`` runs them with the rest, ``-m validate`` alone, and a test named by its node id
     (``file.py::test_name``) runs in any case.
 ``@pytest.mark.soak``
-    Runs of an hour and faults of the system, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long.
+    Runs of an hour, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long.
 
 ``--fuzz 100`` tries a hundred times as many examples of whatever hypothesis makes up, other ones each time.
 

@@ -1,9 +1,6 @@
-"""Runs of an hour, and faults of the system around a run: by hand and in a workflow, ``pytest -m soak``."""
+"""Runs of an hour, by hand: ``pytest -m soak``."""
 
-import os
 import resource
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -11,7 +8,6 @@ import pytest
 from atmosbox.engine import FollowPressure, HeatBath, Mist, ParcelSet, Periodic, Piston, Specular, Substance
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
-from atmosbox.file.netcdf import read
 
 pytestmark = pytest.mark.soak
 
@@ -83,98 +79,3 @@ def test_many_molecules_of_dsmc_stay_lawful(request):
     assert box.contacts > 0
     assert box.escaped() == 0
     assert box.ledger() < 1e-10
-
-
-def command(folder, *options, **environment):
-    """Run a short scene by the command line, and return what became of it."""
-    known = {"PATH": os.environ["PATH"], "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    own = ("HOME", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME")
-    kept = {name: os.environ[name] for name in own if name in os.environ}
-    settings = {name: value for name, value in (known | kept | environment).items() if value is not None}
-    words = [
-        "-m",
-        "atmosbox",
-        "run",
-        "elastic-collisions",
-        "--set",
-        "duration=2",
-        "--quiet",
-        "--force",
-        "--out",
-        "x.nc",
-    ]
-    return subprocess.Popen(
-        [sys.executable, *options, *words], cwd=folder, env=settings, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True,
-    )  # fmt: skip
-
-
-def numbers(folder):
-    return read(folder / "x.nc").kinetic_energy_light.values.tobytes()
-
-
-FAULTS = {
-    "no home": ((), {"HOME": None}),
-    "a home that is not there": ((), {"HOME": "/nowhere", "XDG_CACHE_HOME": "/nowhere/cache"}),
-    "a file for a home": ((), {"HOME": "/etc/hostname", "XDG_CACHE_HOME": None}),
-    "no assertions": (("-O",), {}),
-    "every warning an error": (("-W", "error"), {}),
-    "German": ((), {"LC_ALL": "de_DE.UTF-8"}),
-    "Turkish": ((), {"LC_ALL": "tr_TR.UTF-8"}),
-    "ASCII": ((), {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}),
-    "a clock before 1970": ((), {"SOURCE_DATE_EPOCH": "-86400"}),
-    "another time zone": ((), {"TZ": "Pacific/Kiritimati"}),
-}
-
-
-@pytest.mark.parametrize("name", FAULTS)
-def test_a_run_does_not_depend_on_what_is_around_it(name, tmp_path):
-    options, environment = FAULTS[name]
-    usual, odd = tmp_path / "usual", tmp_path / "odd"
-    for folder, given in ((usual, ((), {})), (odd, (options, environment))):
-        folder.mkdir()
-        with command(folder, *given[0], **given[1]) as process:
-            out, said = process.communicate()
-        assert process.returncode == 0, said
-        assert out == "x.nc\n"
-    assert numbers(odd) == numbers(usual)
-
-
-def test_cold_caches_may_be_shared_and_broken_ones_are_made_anew(tmp_path):
-    cache = tmp_path / "cache"
-    cache.mkdir(mode=0o700)
-    folders = [tmp_path / str(k) for k in range(3)]
-    for folder in folders:
-        folder.mkdir()
-    together = [command(folder, NUMBA_CACHE_DIR=str(cache)) for folder in folders]
-    for process in together:
-        _, said = process.communicate()
-        assert process.returncode == 0, said
-    kept = [path for path in cache.rglob("*") if path.suffix in (".nbi", ".nbc")]
-    assert kept
-    for path in kept:
-        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    with command(folders[0], NUMBA_CACHE_DIR=str(cache)) as process:
-        _, said = process.communicate()
-    assert process.returncode == 0, said
-    assert len({numbers(folder) for folder in folders}) == 1
-
-
-@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root may mount a small disk")
-def test_a_full_disk_is_one_sentence_and_leaves_the_file_before(tmp_path):
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", str(disk)], check=False)
-    if mounted.returncode:
-        pytest.skip("no small disk can be mounted here")
-    try:
-        (disk / "x.nc").write_text("before")
-        with command(disk) as process:
-            _, said = process.communicate()
-        assert process.returncode == 1
-        assert "The disk has no room" in said
-        assert "Traceback" not in said
-        assert (disk / "x.nc").read_text() == "before"
-        assert not list(disk.glob("*.tmp"))
-    finally:
-        subprocess.run(["umount", str(disk)], check=False)
