@@ -89,6 +89,19 @@ def test_an_edit_in_another_file_is_seen_at_once(tree, tmp_path):
 
 
 @needs_numba
+@pytest.mark.parametrize("kind", ["*.nbi", "*.nbc"])
+def test_a_damaged_cache_is_compiled_anew_and_mended(tree, tmp_path, kind):
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    assert ask(tree, **cache) == (8.0, 0)
+    kept = list((tmp_path / "kept").rglob(kind))
+    assert kept
+    for path in kept:
+        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    assert ask(tree, **cache) == (8.0, 0)
+    assert ask(tree, **cache) == (8.0, 1)
+
+
+@needs_numba
 def test_the_folder_that_numba_is_told_is_the_one_used(tree, tmp_path):
     ask(tree, NUMBA_CACHE_DIR=str(tmp_path / "asked"), XDG_CACHE_HOME=str(tmp_path / "not asked"))
     digest = jit.source_digest(tree / "atmosbox" / "engine")

@@ -63,14 +63,22 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the machine code for some types, or None if it must be compiled, which others are told."""
-        found = super().load_overload(sig, target_context)
+        found = self._kept(sig, target_context)
         if found is None and self._wait_for_others(sig, target_context):
-            found = super().load_overload(sig, target_context)
+            found = self._kept(sig, target_context)
         if found is None:
             announce(self._py_func.__qualname__, True)
         else:
             self._let_others_go_on()
         return found
+
+    def _kept(self, sig: Any, target_context: Any) -> Any:
+        """Return what is on disk; a damaged file, whose reading may end in any error, is as good as none, and goes."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:
+            self.flush()
+            return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the machine code for some types."""
