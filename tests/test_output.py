@@ -18,6 +18,7 @@ from atmosbox.file import netcdf as output
 from atmosbox.file import output_path, provenance, validity
 from atmosbox.file.dataset import VARIABLES, dataset
 from atmosbox.file.output_path import check_writable, clear, part_path, whole_file
+from atmosbox.scene.headline import Headline
 
 CHECKER = """
 import sys
@@ -47,14 +48,8 @@ def attributes(**extra):
 
 
 def headline(name, value, unit, **fields):
-    stated = {
-        "standard_error": 0.1,
-        "theory": 9.8,
-        "tolerance": 0.4,
-        "label": "a number",
-        "reason": "finite speed",
-    }
-    return SimpleNamespace(**{"name": name, "value": value, "unit": unit, "display_unit": unit, **stated, **fields})
+    stated = {"standard_error": 0.1, "theory": 9.8, "tolerance": 0.4, "reason": "finite speed", "label": "a number"}
+    return Headline(**{"name": name, "value": value, "unit": unit, "display_unit": unit, **stated, **fields})
 
 
 def times(count, step=0.001):

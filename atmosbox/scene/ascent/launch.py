@@ -94,7 +94,7 @@ def rise(
         scale,
         duration,
         frames,
-        (Air(), Water(), MoistLift(driver, environment, curve, scatter)),
+        (Air(), Water(rains=ascent.rains), MoistLift(driver, environment, curve, scatter)),
         samples=samples,
         facts={
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)

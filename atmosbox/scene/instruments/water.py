@@ -46,9 +46,15 @@ class Water:
     """Vapour pressure and relative humidity, the liquid and its temperature, and the two rates.
 
     All are means over the samples within a frame; the numbers of molecules are those at its end.
+
+    Parameters
+    ----------
+    rains
+        Whether water may leave the box as rain, which is then measured, too.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, rains: bool = False) -> None:
+        self._rains = rains
         self._looks: list[tuple[float, ...]] = []
         self._rows: list[tuple[float, ...]] = []
         self._energy: list[float] = []
@@ -98,6 +104,6 @@ class Water:
             rained_molecule_count=counts[:, 2],
             condensed_energy=np.array(self._energy) * scale.total_energy,
         )
-        if counts[-1, 2]:
+        if self._rains:
             found["rain_mixing_ratio"] = rain * law.WATER_MASS_RATIO
         return found
