@@ -47,7 +47,7 @@ def measure(scene: str, molecules: int, seconds: float, pace: float) -> dict[str
         assert program.stdout is not None
         address = program.stdout.readline().strip()
         try:
-            with connect(address.replace("http", "ws") + "socket", max_size=2**26) as page:
+            with connect(address.replace("http", "ws", 1).replace("/?", "/socket?"), max_size=2**26) as page:
                 page.send(json.dumps({"type": "pace", "value": pace}))
                 page.send(json.dumps({"type": "play"}))
                 listen(page, min(_WARM_UP, seconds))

@@ -94,7 +94,7 @@ def test_a_run_that_was_stopped_goes_on_bit_for_bit(name, tmp_path, monkeypatch)
 
 def test_the_command_killed_at_random_moments_goes_on_bit_for_bit(tmp_path):
     """kill -9, as a computer that is switched off: what was saved last is where it goes on."""
-    words = ["run", "temperature", "--set", "molecules=100", "--quiet", "--out", "x.nc"]
+    words = ["run", "temperature", "--set", "molecules=20000", "--quiet", "--out", "x.nc"]
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
 
