@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from atmosbox.callable_room import CallableRoom
 from atmosbox.version import __version__
 
 __all__ = ["__version__", "compare", "open", "plot", "resume", "run", "scenes", "show", "sweep"]
@@ -41,10 +42,18 @@ def __getattr__(name: str) -> Any:
 
         return sweep
     if name in __all__:
-        from atmosbox import interface
-
-        return getattr(interface, name)
+        return _function(name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def _function(name: str) -> Any:
+    """Return a function of the public face."""
+    from atmosbox import interface
+
+    return getattr(interface, name)
+
+
+CallableRoom.function_of = _function
 
 
 def __dir__() -> list[str]:

@@ -1,13 +1,14 @@
 """A room of the package that is also the function of its name: `atmosbox.plot` and `atmosbox.sweep`.
 
 Python binds ``atmosbox.plot`` to the package of that name as soon as anything in it is imported, so a function of the
-same name would vanish. The package is therefore callable itself.
+same name would vanish. The package is therefore callable itself; which function it stands for, the package above says.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import ModuleType
-from typing import Any
+from typing import Any, ClassVar
 
 __all__ = ["CallableRoom"]
 
@@ -22,8 +23,9 @@ class CallableRoom(ModuleType):
     (True, ('png', 'svg', 'pdf'))
     """
 
-    def __call__(self, *args: Any, **options: Any) -> Any:
-        """Call the function of the public face that has this room's name; `atmosbox.interface` documents it."""
-        from atmosbox import interface
+    function_of: ClassVar[Callable[[str], Callable[..., Any]]]
+    """Returns the function of a room by its name; `atmosbox` sets it when it is imported."""
 
-        return getattr(interface, self.__name__.rpartition(".")[2])(*args, **options)
+    def __call__(self, *args: Any, **options: Any) -> Any:
+        """Call the function of this room's name."""
+        return CallableRoom.function_of(self.__name__.rpartition(".")[2])(*args, **options)

@@ -8,8 +8,9 @@ import pytest
 from typer.testing import CliRunner
 
 from atmosbox.cli import app
-from atmosbox.engine.core import jit
-from atmosbox.engine.core.jit import COMPILED, compilations, kernel
+from atmosbox.engine.core import kernel_cache
+from atmosbox.engine.core.jit import COMPILED, kernel
+from atmosbox.engine.core.kernel_cache import compilations
 from atmosbox.simulation import compilation
 from atmosbox.simulation.preparation import prepare
 from atmosbox.simulation.runner import execute
@@ -49,12 +50,12 @@ def test_compilation_is_told_with_the_time_that_it_took_before(tmp_path, monkeyp
     told = []
     with compilation.told(prepared, lambda share, words: told.append((share, words))):
         assert told == []
-        jit.announce("outer", True)
-        jit.announce("inner", True)
-        jit.announce("inner", False)
+        kernel_cache.announce("outer", True)
+        kernel_cache.announce("inner", True)
+        kernel_cache.announce("inner", False)
         while len(told) < 5:
             pass
-        jit.announce("outer", False)
+        kernel_cache.announce("outer", False)
     shares, words = zip(*told, strict=True)
     assert set(words) == {"compiling the engine, once on this computer: about 15 s"}
     assert list(shares) == sorted(shares)

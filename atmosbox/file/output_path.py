@@ -183,7 +183,7 @@ def clear(path: Path, *, everything: bool = False) -> None:
     path
         The file.
     everything
-        Whether all of them are such, because nobody else can be writing the file.
+        Whether all of them are such, because no other program can be writing the file.
 
     Examples
     --------

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from atmosbox.engine.core.jit import cache_folder, compilations
+from atmosbox.engine.core.kernel_cache import cache_folder, compilations
 from atmosbox.simulation.preparation import Prepared, build
 
 __all__ = ["cache_home", "compile_kernels", "compiled_here", "expected_seconds", "told"]

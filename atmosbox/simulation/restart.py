@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import RefusedError
-from atmosbox.engine.core.jit import source_digest
+from atmosbox.engine.core.kernel_cache import source_digest
 from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.errors import FileError
 from atmosbox.simulation.preparation import Prepared

@@ -148,7 +148,7 @@ def _execute(
     keep_state: bool,
     strict: bool,
 ) -> Outcome:
-    """Run a prepared scenario, whose file nobody else writes."""
+    """Run a prepared scenario, whose file no other program writes."""
     tell = progress or (lambda share, word: None)
     with told(prepared, tell):
         setup = build(prepared)

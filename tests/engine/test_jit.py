@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import atmosbox.engine
-from atmosbox.engine.core import compiler, jit
+from atmosbox.engine.core import compiler, jit, kernel_cache
 
 ENGINE = Path(atmosbox.engine.__file__).parent
 
@@ -104,7 +104,7 @@ def test_a_damaged_cache_is_compiled_anew_and_mended(tree, tmp_path, kind):
 @needs_numba
 def test_the_folder_that_numba_is_told_is_the_one_used(tree, tmp_path):
     ask(tree, NUMBA_CACHE_DIR=str(tmp_path / "asked"), XDG_CACHE_HOME=str(tmp_path / "not asked"))
-    digest = jit.source_digest(tree / "atmosbox" / "engine")
+    digest = kernel_cache.source_digest(tree / "atmosbox" / "engine")
     assert list((tmp_path / "asked" / digest).rglob("*.nbi"))
     assert not (tmp_path / "not asked").exists()
     assert not list(tree.rglob("*.nbi"))
@@ -126,7 +126,7 @@ def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
     blocked = tmp_path / "a file, not a folder"
     blocked.write_text("", encoding="utf-8")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
-    assert jit.cache_folder() is None
+    assert kernel_cache.cache_folder() is None
     monkeypatch.setattr(compiler, "_CACHE", None)
 
     @jit.kernel(entry=True)
@@ -140,12 +140,12 @@ def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
 def test_the_home_of_caches_is_tried_before_the_temporary_folder(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    folder = jit.cache_folder()
+    folder = kernel_cache.cache_folder()
     assert folder is not None
     assert folder.parent == tmp_path / "atmosbox"
-    assert folder.name == jit.source_digest()
+    assert folder.name == kernel_cache.source_digest()
     assert not list(folder.iterdir())
-    tried = [str(home) for home in jit._homes_of_caches()]
+    tried = [str(home) for home in kernel_cache._homes_of_caches()]
     assert tried[0].startswith(str(tmp_path))
     assert tried[1].startswith(tempfile.gettempdir())
 
@@ -153,17 +153,17 @@ def test_the_home_of_caches_is_tried_before_the_temporary_folder(tmp_path, monke
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
 def test_a_folder_that_others_may_write_to_is_not_trusted(tmp_path, monkeypatch):
     ours, theirs = tmp_path / "ours", tmp_path / "theirs"
-    monkeypatch.setattr(jit, "_homes_of_caches", lambda: [theirs, ours])
+    monkeypatch.setattr(kernel_cache, "_homes_of_caches", lambda: [theirs, ours])
     theirs.mkdir(mode=0o700)
-    assert jit.cache_folder().parent == theirs
+    assert kernel_cache.cache_folder().parent == theirs
     theirs.chmod(0o777)
-    assert jit.cache_folder().parent == ours
+    assert kernel_cache.cache_folder().parent == ours
     assert ours.stat().st_mode & 0o077 == 0
     ours.chmod(0o770)
-    assert jit.cache_folder() is None
+    assert kernel_cache.cache_folder() is None
     theirs.chmod(0o700)
     monkeypatch.setattr(os, "getuid", lambda: theirs.stat().st_uid + 1)
-    assert jit.cache_folder() is None
+    assert kernel_cache.cache_folder() is None
 
 
 @needs_numba
@@ -184,22 +184,22 @@ def test_the_digest_covers_code_alone(tmp_path):
     digests = []
     for text in texts:
         file.write_text(text, encoding="utf-8")
-        memory = jit.source_digest(tmp_path / "deep", memory=tmp_path)
-        digests.append(jit.source_digest(tmp_path / "deep"))
-        assert jit.source_digest(tmp_path / "deep", memory=tmp_path) == memory == digests[-1]
+        memory = kernel_cache.source_digest(tmp_path / "deep", memory=tmp_path)
+        digests.append(kernel_cache.source_digest(tmp_path / "deep"))
+        assert kernel_cache.source_digest(tmp_path / "deep", memory=tmp_path) == memory == digests[-1]
     assert len(set(digests[:3])) == 1
     assert digests[2] != digests[3]
 
 
 def test_the_digest_depends_on_every_source_and_on_its_name(tmp_path):
     (tmp_path / "one.py").write_text("1", encoding="utf-8")
-    first = jit.source_digest(tmp_path)
+    first = kernel_cache.source_digest(tmp_path)
     (tmp_path / "notes.txt").write_text("1", encoding="utf-8")
-    assert jit.source_digest(tmp_path) == first
+    assert kernel_cache.source_digest(tmp_path) == first
     (tmp_path / "two.py").write_text("", encoding="utf-8")
-    second = jit.source_digest(tmp_path)
+    second = kernel_cache.source_digest(tmp_path)
     (tmp_path / "two.py").rename(tmp_path / "three.py")
-    third = jit.source_digest(tmp_path)
+    third = kernel_cache.source_digest(tmp_path)
     (tmp_path / "one.py").write_text("2", encoding="utf-8")
-    assert len({first, second, third, jit.source_digest(tmp_path)}) == 4
-    assert jit.source_digest() == jit.source_digest(ENGINE)
+    assert len({first, second, third, kernel_cache.source_digest(tmp_path)}) == 4
+    assert kernel_cache.source_digest() == kernel_cache.source_digest(ENGINE)

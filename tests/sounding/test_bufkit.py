@@ -74,6 +74,6 @@ def test_a_forecast_that_is_cut_off_or_lacks_a_column_is_refused(written, lines)
     with pytest.raises(SoundingError, match="8 of 10 values of a level are there, so the sounding is cut off"):
         read(written(lines[: start + 2 + 5]))
     with pytest.raises(SoundingError, match="SNPARM has no DWPC"):
-        read(written([line.replace("DWPC", "XXXX") for line in lines]))
+        read(written([line.replace("DWPC", "DEWP") for line in lines]))
     with pytest.raises(SoundingError, match="no table has the columns"):
         read(written(lines[:start]))

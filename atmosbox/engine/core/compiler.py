@@ -17,7 +17,7 @@ from numba.core import caching, cgutils, config, types
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
-from atmosbox.engine.core.jit import announce, cache_folder
+from atmosbox.engine.core.kernel_cache import announce, cache_folder
 
 if sys.platform != "win32":
     import fcntl

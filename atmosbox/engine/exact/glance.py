@@ -106,6 +106,6 @@ if COMPILED:
     def _lanes() -> Any:
         from atmosbox.engine.exact import lanes
 
-        return lanes.glance
+        return lanes.glance_of(LANES, TINY)
 
     glance = Kernel(glance, _lanes)

@@ -151,7 +151,7 @@ def plan(i, t, at, boundary, gas, modes):
         at, slots, full = found.at, found.slots, found.full
         after, partner = found.after, found.partner
         if partner < 0 and boundary >= CONTACT:
-            partner = i  # nobody within the horizon: it plans anew when that is reached
+            partner = i  # no contact within the horizon: it plans anew when that is reached
     else:
         slots = slots_of(i, gas)
         after, partner = _soonest_in_lists(i, t, at, slots, gas, modes)

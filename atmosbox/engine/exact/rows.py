@@ -320,8 +320,8 @@ def _new_epoch(now, fastest, usual, copies, gravity):
 def _horizon(density, mean_square, gas):
     """Return how far ahead to look for contacts where there are so many molecules [time]: some mean free times.
 
-    Where a gas is dense, hardly anyone flies further. The rate of collisions is that of Enskog's theory; it need not be
-    accurate, since whoever finds nobody until then plans anew.
+    In a dense gas few molecules fly further. The rate of collisions is that of Enskog's theory; it need not be exact,
+    since a molecule that finds no contact until then plans anew.
     """
     diameter = 2.0 * gas.cells.copies.radius
     if gas.box.planar:

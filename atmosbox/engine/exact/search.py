@@ -46,7 +46,7 @@ class Found(NamedTuple):
     """What a search has found.
 
     Where the molecule is, brought back into a periodic box; its slots; how long until its soonest contact [time] and
-    with whom, -1 if with whom it was known before or with nobody; whether a row had no place for it.
+    with which molecule, -1 if that contact was known before or there is none; whether a row had no place for it.
     """
 
     at: Any

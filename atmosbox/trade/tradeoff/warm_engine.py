@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from atmosbox.engine.core.jit import COMPILED, cache_folder
+from atmosbox.engine.core.jit import COMPILED
+from atmosbox.engine.core.kernel_cache import cache_folder
 from atmosbox.trade.tradeoff import timed_run
 from atmosbox.trade.tradeoff.rung import Rung
 

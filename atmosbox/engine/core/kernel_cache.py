@@ -1,0 +1,137 @@
+"""Where the machine code of kernels is kept, and who is told when some is made.
+
+numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel
+calls *in another file*, or a constant imported from one, and the old machine code is served. Here the
+cache is kept under a digest of all the engine's code, so that any edit of it, or a newly installed version,
+starts a fresh one, and an edited comment does not. That is right only because the engine imports nothing of
+atmosbox from outside its folder, which a test enforces.
+"""
+
+import ast
+import contextlib
+import hashlib
+import os
+import stat
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+__all__ = ["announce", "cache_folder", "compilations", "source_digest"]
+
+
+def _code_of(source: str) -> str:
+    """Return what a source says to the compiler: its syntax tree without docstrings, comments and line numbers."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list):
+            # a text that stands alone is a docstring, or the description of a constant
+            node.body = [part for part in body if not _is_text(part)]  # type: ignore[attr-defined]
+    return ast.dump(tree)
+
+
+def _is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+
+
+def source_digest(folder: Path | None = None, memory: Path | None = None) -> str:
+    """Return a short digest of the code in the engine's folders, of numba and of Python.
+
+    Only code counts: an edited docstring or comment leaves the digest as it is.
+
+    Parameters
+    ----------
+    folder
+        The folder of the sources, by default the engine's.
+    memory
+        A folder that remembers the digests of sources seen before: to parse them all takes a tenth of a second.
+    """
+    from importlib.metadata import version as version_of
+
+    folder = folder or Path(__file__).parents[1]
+    sources = {file.relative_to(folder).as_posix(): file.read_bytes() for file in sorted(folder.rglob("*.py"))}
+    version = f"{version_of('numba')} {sys.version}"
+    written = _digest([version, *(f"{name} {hashlib.sha256(text).hexdigest()}" for name, text in sources.items())])
+    known = memory / f"{written}.digest" if memory else None
+    if known and known.is_file():
+        return known.read_text(encoding="ascii")
+    digest = _digest([version, *(f"{name} {_code_of(text.decode())}" for name, text in sources.items())])
+    if known:
+        new = known.with_suffix(f".{os.getpid()}")
+        new.write_text(digest, encoding="ascii")
+        new.replace(known)
+    return digest
+
+
+def _digest(lines: list[str]) -> str:
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
+
+
+def _homes_of_caches() -> list[Path]:
+    """Return the folders to try, best first."""
+    asked = os.environ.get("NUMBA_CACHE_DIR")
+    if asked:
+        return [Path(asked)]
+    if sys.platform == "win32":
+        home = Path(os.environ.get("LOCALAPPDATA", tempfile.gettempdir()))
+    elif sys.platform == "darwin":
+        home = Path("~/Library/Caches").expanduser()
+    else:
+        home = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser()
+    owner = str(os.getuid()) if hasattr(os, "getuid") else os.environ.get("USERNAME", "cache")
+    return [home / "atmosbox", Path(tempfile.gettempdir()) / f"atmosbox-{owner}"]
+
+
+def _is_ours(folder: Path) -> bool:
+    """Tell whether no other user can put a file into a folder: what is kept there is loaded and run."""
+    if not hasattr(os, "getuid"):
+        return True
+    about = folder.lstat()
+    return stat.S_ISDIR(about.st_mode) and about.st_uid == os.getuid() and not about.st_mode & 0o022
+
+
+def cache_folder() -> Path | None:
+    """Return the folder of this engine's machine code, made if need be, or None where nothing can be kept.
+
+    ``NUMBA_CACHE_DIR`` is respected; a read-only home falls back to a folder of the user's own among the temporary
+    files. A folder that belongs to somebody else, or that others may write to, is not used: what is kept is run.
+    """
+    for home in _homes_of_caches():
+        try:
+            home.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if not _is_ours(home):
+                continue
+            folder = home / source_digest(memory=home)
+            folder.mkdir(exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                pass
+        except OSError:
+            continue
+        return folder
+    return None
+
+
+_WATCHES: list[Callable[[str, bool], None]] = []
+
+
+@contextlib.contextmanager
+def compilations(watch: Callable[[str, bool], None]) -> Iterator[None]:
+    """Be told of every kernel that is really compiled while a block runs, and not found among what is kept.
+
+    Parameters
+    ----------
+    watch
+        Called with the name of the kernel and True when its compilation begins, and with False when it has ended.
+    """
+    _WATCHES.append(watch)
+    try:
+        yield
+    finally:
+        _WATCHES.remove(watch)
+
+
+def announce(name: str, begins: bool) -> None:
+    """Tell all who wait for it that the compilation of a kernel begins, or has ended."""
+    for watch in tuple(_WATCHES):
+        watch(name, begins)
