@@ -8,7 +8,8 @@ unmarked
     ``--validate`` runs them with the rest, ``-m validate`` alone, and a test named by its node id
     (``file.py::test_name``) runs in any case.
 ``@pytest.mark.soak``
-    Runs of an hour, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long.
+    Runs of an hour, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long, ``--soak-report FILE``
+    writes their figures down, line by line.
 
 ``--fuzz 100`` tries a hundred times as many examples of whatever hypothesis makes up, other ones each time.
 
@@ -31,6 +32,7 @@ settings.load_profile("atmosbox")
 def pytest_addoption(parser):
     parser.addoption("--validate", action="store_true", help="also run the long statistical tests")
     parser.addoption("--soak", type=float, default=1.0, help="length of the soak tests, as a share of the full one")
+    parser.addoption("--soak-report", default=None, help="file to which the soak tests add their figures, line by line")
     parser.addoption("--fuzz", type=int, default=1, help="how many times as many examples hypothesis tries")
 
 

@@ -1,6 +1,8 @@
-"""Runs of an hour, by hand: ``pytest -m soak``."""
+"""Runs of an hour, by hand: ``pytest -m soak``; ``--soak-report FILE`` writes their figures down as they go on."""
 
+import json
 import resource
+import time
 
 import numpy as np
 import pytest
@@ -55,27 +57,66 @@ BOXES = {
 }
 
 
+def deepest_overlap(box):
+    """Return how deep the worst pair overlaps, in diameters; negative where all are apart."""
+    x = box.snapshot().position
+    d = x[:, None] - x[None, :]
+    for axis in range(3):
+        if box.periodic[axis]:
+            d[..., axis] -= box.length[axis] * np.round(d[..., axis] / box.length[axis])
+    apart = np.sqrt((d**2).sum(axis=-1))
+    return float(1.0 - apart[~np.eye(len(x), dtype=bool)].min())
+
+
+@pytest.fixture
+def figures(request):
+    """Return what writes figures down: what a soak that is stopped has done so far counts, too."""
+    path = request.config.getoption("--soak-report")
+    began, memory = time.process_time(), []
+
+    def write(name, box, **more):
+        now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        memory.append(now)
+        said = {"box": name, "collisions": box.contacts, "ledger": box.ledger(), "escaped": box.escaped()}
+        said |= {"memory_growth_kB": now - memory[0], "cpu_seconds": round(time.process_time() - began, 1), **more}
+        if path:
+            with open(path, "a", encoding="utf-8") as file:
+                file.write(json.dumps(said) + "\n")
+        return said
+
+    return write
+
+
 @pytest.mark.parametrize("name", BOXES)
-def test_an_exact_box_stays_lawful(name, request):
+def test_an_exact_box_stays_lawful(name, request, figures):
     wanted = request.config.getoption("--soak") * CONTACTS / len(BOXES)
     box = BOXES[name]()
-    box.advance(1.0)
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    box.advance(1000.0)
+    deepest, told = deepest_overlap(box), box.contacts
+    figures(name, box, deepest_overlap=deepest)
     while box.contacts < wanted:
-        box.advance(box.time + 100.0)
+        box.advance(box.time + 1000.0)
+        deepest = max(deepest, deepest_overlap(box))
         assert box.escaped() == 0
-    assert box.ledger() < 1e-10
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < memory + 50_000  # kB
+        assert deepest < 1e-9
+        if box.contacts > told + wanted / 50:
+            told = box.contacts
+            figures(name, box, deepest_overlap=deepest)
+    said = figures(name, box, deepest_overlap=deepest)
+    assert said["ledger"] < 1e-10
+    assert said["memory_growth_kB"] < 50_000
 
 
-def test_many_molecules_of_dsmc_stay_lawful(request):
+def test_many_molecules_of_dsmc_stay_lawful(request, figures):
     share = request.config.getoption("--soak")
     number, steps = int(max(1e7 * share, 1e4)), int(max(1e4 * share, 100))
     random = np.random.default_rng(1)
     side = (number / 0.02) ** (1.0 / 3.0)
     box = DsmcParcel(random.uniform(1.0, side - 1.0, (number, 3)), random.normal(size=(number, 3)), length=(side,) * 3)
-    for step in range(10):
-        box.advance(0.1 * (step + 1) * steps / 10)
-    assert box.contacts > 0
-    assert box.escaped() == 0
-    assert box.ledger() < 1e-10
+    for done in range(steps // 20, steps + 1, steps // 20):
+        box.advance(done * box.time_step)
+        said = figures("dsmc", box, molecules=number, steps=done)
+        assert said["escaped"] == 0
+    assert said["collisions"] > 0
+    assert said["ledger"] < 1e-10
+    assert said["memory_growth_kB"] < 50_000 + 0.05 * number
