@@ -23,10 +23,13 @@ from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli.check import conventions
 from atmosbox.errors import DiskFullError, FileError, SettingError, UnitError, UnknownSettingError
+from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read, write
+from atmosbox.file.output_lock import OutputLock
 from atmosbox.file.output_path import part_path
-from atmosbox.simulation import runner
-from atmosbox.sweep import SweepInterrupted, member_seed, parse_vary, plan, sweep
+from atmosbox.file.run_states import RunStates
+from atmosbox.simulation import continuation, runner
+from atmosbox.sweep import SweepInterrupted, member, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.result import assemble, mean_and_error
 
@@ -529,3 +532,86 @@ def test_what_the_command_cannot_do_is_refused(tmp_path, monkeypatch, words, sen
     assert done.exit_code == 2
     assert sentence in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def stopped_half_way(task, at):
+    """Run a member, and stop it, as by Ctrl-C, at a share of the run."""
+
+    def show(share, word):
+        if word == "running" and share >= at:
+            raise KeyboardInterrupt
+
+    with pytest.raises(runner.Interrupted):
+        member.run(task, show)
+
+
+def test_a_member_goes_on_within_its_run_and_finds_the_same(tmp_path, monkeypatch):
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    grid = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0})
+    states = RunStates(tmp_path / "a.nc")
+    for task in grid.tasks():
+        kept = task._replace(state=states.place(task.point, task.member))
+        stopped_half_way(kept, 0.5)
+        shares = []
+        assert member.run(kept, lambda share, word, into=shares: into.append(share)) == member.run(task)
+        assert min(shares[1:]) >= 0.4
+    assert RunStates(tmp_path / "a.nc").begun == 2
+    assert sweep(grid, tmp_path / "a.nc", jobs=1).computed == 2
+    assert [each.name for each in tmp_path.iterdir()] == ["a.nc"]
+
+
+@pytest.mark.parametrize("damage", ["other settings", "cut", "no folder", "in use", "full disk"])
+def test_a_state_that_does_not_serve_costs_no_run(tmp_path, monkeypatch, damage):
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    monkeypatch.setattr(continuation, "_PATIENCE", 0.1)
+    first, second = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}).tasks()
+    states = RunStates(tmp_path / "a.nc")
+    task = second._replace(state=states.place(1, 1))
+    part = part_path(task.state)
+    stopped_half_way(task if damage != "other settings" else first._replace(state=task.state), 0.5)
+    lock = None
+    if damage == "cut":
+        part.write_bytes(part.read_bytes()[:5000])
+    elif damage == "no folder":
+        shutil.rmtree(part.parent)
+    elif damage == "in use":
+        lock = OutputLock(Path(task.state))
+    elif damage == "full disk":
+        part.unlink()
+        monkeypatch.setattr(Checkpoint, "save", raises(DiskFullError("The disk is full.")))
+        stopped_half_way(task, 0.5)
+    shares = []
+    assert member.run(task, lambda share, word: shares.append(share)) == member.run(second)
+    assert min(shares[1:]) < 0.1
+    if lock is not None:
+        lock.release()
+
+
+def raises(error):
+    def fail(*args, **words):
+        raise error
+
+    return fail
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_the_command_killed_within_a_run_goes_on_within_it(tmp_path, monkeypatch, jobs):
+    """kill -9 while members are half-way: the same again finds what an undisturbed sweep finds."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    words = ["sweep", "temperature", "--vary", "temperature=0degC,40degC", "--set", "molecules=8000",
+             "--jobs", str(jobs), "--out"]  # fmt: skip
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    killed = tmp_path / "killed.nc"
+    with subprocess.Popen([sys.executable, "-m", "atmosbox", *words, str(killed)], env=environment) as process:
+        deadline = time.monotonic() + 120.0
+        while RunStates(killed).begun < jobs and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGKILL)
+    assert RunStates(killed).begun == jobs
+    assert saved(killed) == []
+    done = CliRunner().invoke(app, [*words, str(killed)])
+    assert done.exit_code == 0, done.output
+    assert f"0 of 2 runs are saved in {killed.with_name('killed.part.jsonl')} and {jobs} begun" in done.stderr
+    assert [each.name for each in tmp_path.iterdir()] == ["killed.nc"]
+    undisturbed = sweep(plan("temperature", words[3:4], settings={"molecules": 8000}), jobs=2).dataset
+    assert read(killed).drop_attrs().identical(undisturbed.drop_attrs())

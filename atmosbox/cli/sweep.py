@@ -79,8 +79,9 @@ def sweep(
 ) -> None:
     """Run a scene with many settings: how its numbers depend on them.
 
-    Every run is saved as it ends. What was stopped, by Ctrl-C or by anything else, goes on where it was when the
-    same is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws it.
+    Every run is saved as it ends, and its state before that. What was stopped, by Ctrl-C or by anything else, goes on
+    where it was when the same is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws
+    it.
     """
     from atmosbox.scene.spelling import assignments
     from atmosbox.sweep import SweepInterrupted, plan
@@ -229,7 +230,7 @@ def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
     from atmosbox.text.report import next_command
 
     if stop.swept is None:
-        tell("stopped before the first run was complete: nothing is kept")
+        tell("stopped before the first run was complete: type the same again to go on")
         return
     saved = stop.swept.computed + stop.swept.recalled
     tell(

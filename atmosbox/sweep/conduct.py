@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from atmosbox.errors import SettingError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.provenance import history_line
+from atmosbox.file.run_states import RunStates
 from atmosbox.sweep import local
 from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.member import FAILED, Record
@@ -63,8 +64,9 @@ def sweep(
 ) -> Swept:
     """Run all members of a sweep, on the cores of this machine or on a cluster.
 
-    Every run is saved as it ends, in ``NAME.part.jsonl`` beside the file. The same call goes on where an earlier one
-    stopped, whatever stopped it.
+    Every run is saved as it ends, in ``NAME.part.jsonl`` beside the file, and those under way keep their states in the
+    folder ``NAME.part.states``. The same call goes on where an earlier one stopped, whatever stopped it, and what it
+    finds is the same, bit for bit.
 
     Parameters
     ----------
@@ -142,13 +144,17 @@ class _Conductor:
         self.tell = progress or (lambda share, word: None)
         self.note = note or (lambda text: None)
         self.warned: set[str] = set()
+        self.states = RunStates(None if checkpoint is None else checkpoint.path)
 
     def conduct(self, jobs: int | None, scheduler: str | None) -> Swept:
         """Run what is missing, and write the file."""
         tasks = [task for task in self.plan.tasks() if (task.point, task.member) not in self.records]
-        if self.journal is not None and self.recalled:
+        tasks = [task._replace(state=self.states.place(task.point, task.member)) for task in tasks]
+        if self.journal is not None and (self.recalled or self.states.begun):
+            begun = f" and {self.states.begun} begun" if self.states.begun else ""
             self.note(
-                f"{self.recalled} of {self.plan.runs} runs are saved in {self.journal.path}: going on with the rest"
+                f"{self.recalled} of {self.plan.runs} runs are saved in {self.journal.path}{begun}: going on with the "
+                "rest"
             )
         try:
             if tasks:
@@ -161,6 +167,7 @@ class _Conductor:
         if self.checkpoint is not None and self.journal is not None:
             self.checkpoint.finish(swept.dataset)
             self.journal.remove()
+        self.states.close(everything=True)
         self.tell(1.0, "done")
         return swept
 
@@ -180,6 +187,7 @@ class _Conductor:
         """Save a run that has ended."""
         if self.journal is not None:
             self.journal.append(record)
+        self.states.remove(record["point"], record["member"])
         self.records[record["point"], record["member"]] = record
         for text in record.get("warnings", ()):
             if text not in self.warned:
@@ -191,6 +199,7 @@ class _Conductor:
 
     def _stopped(self) -> Swept | None:
         """Write what is complete, and return it."""
+        self.states.close()
         if not self.records:
             return None
         swept = self._swept("interrupted")

@@ -8,6 +8,7 @@ from typing import Any
 
 from atmosbox.errors import AtmosboxError
 from atmosbox.simulation import runner
+from atmosbox.simulation.continuation import execute_from
 from atmosbox.sweep.plan import Task
 
 __all__ = ["COMPLETE", "FAILED", "Progress", "Record", "failure", "run"]
@@ -23,7 +24,7 @@ _KEPT = ("name", "value", "standard_error", "theory", "tolerance", "reason", "un
 
 
 def run(task: Task, progress: Progress | None = None) -> Record:
-    """Run one member of a sweep; a failure becomes part of what is returned.
+    """Run one member of a sweep, from where an earlier call has left it; a failure becomes part of what is returned.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ def run(task: Task, progress: Progress | None = None) -> Record:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             prepared = runner.prepare(task.scene, task.settings, engine=task.engine, accuracy=task.accuracy)
-            outcome = runner.execute(prepared, progress=progress)
+            outcome = execute_from(prepared, task.state, progress)
     except AtmosboxError as error:
         return failure(task, str(error))
     except MemoryError:

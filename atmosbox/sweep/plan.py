@@ -29,7 +29,8 @@ MOST_RUNS = 100_000
 class Task(NamedTuple):
     """One run of a sweep, as it is sent to the process that computes it.
 
-    ``point`` and ``member`` count from 1, the points with the last of the varied settings running fastest.
+    ``point`` and ``member`` count from 1, the points with the last of the varied settings running fastest. ``state``
+    is where the run keeps its state on the way, None where it keeps none.
     """
 
     point: int
@@ -38,6 +39,7 @@ class Task(NamedTuple):
     settings: dict[str, Value]
     engine: str | None
     accuracy: str | None
+    state: str | None = None
 
 
 def member_seed(seed: int, point: int, member: int) -> int:

@@ -1,0 +1,111 @@
+"""The states of many runs that are under way, one file for each in a folder beside the file that all make together."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from atmosbox.errors import FileError
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.output_path import AnyPath, clear, part_path
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["RunStates", "StateCheckpoint"]
+
+
+class StateCheckpoint(Checkpoint):
+    """The state of one run among many, which never becomes a file of its own.
+
+    What comes of the run is kept elsewhere, so that a disk which is full costs the state and not the run. Whoever has
+    kept what came of it removes the state, see `RunStates`.
+
+    Parameters
+    ----------
+    path
+        What the file of the run would be; its state stands in ``NAME.part.nc``.
+    """
+
+    def __init__(self, path: AnyPath) -> None:
+        super().__init__(path, force=True)
+
+    def save(self, dataset: xr.Dataset) -> Path:
+        """Write the run so far, if there is room for it."""
+        with contextlib.suppress(FileError):
+            super().save(dataset)
+        return self.part
+
+    def finish(self, dataset: xr.Dataset) -> Path:
+        """Let the state be what it is."""
+        self.release()
+        return self.part
+
+
+class RunStates:
+    """The folder ``NAME.part.states`` beside a file, with the states of runs that are not finished.
+
+    Parameters
+    ----------
+    path
+        The file; None where nothing is kept.
+
+    Attributes
+    ----------
+    begun
+        How many runs have left a state, when this was made.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as home:
+    ...     states = RunStates(Path(home, "sweep.nc"))
+    ...     place = states.place(3, 2)
+    ...     part_path(place).touch()
+    ...     begun = RunStates(Path(home, "sweep.nc")).begun
+    ...     states.remove(3, 2)
+    ...     states.close()
+    ...     Path(place).name, begun, list(Path(home).iterdir())
+    ('3-2.nc', 1, [])
+    """
+
+    def __init__(self, path: Path | None) -> None:
+        self._folder = None if path is None else part_path(path.absolute().with_suffix(".states"))
+        self.begun = 0 if self._folder is None else len(list(self._folder.glob("*.part.nc")))
+
+    def place(self, point: int, member: int) -> str | None:
+        """Return what the file of a run would be, beside which its state stands; None where none is kept."""
+        if self._folder is None:
+            return None
+        with contextlib.suppress(OSError):  # where none can be made, the runs keep no states
+            self._folder.mkdir(exist_ok=True)
+        return os.fspath(self._folder / f"{point}-{member}.nc")
+
+    def remove(self, point: int, member: int) -> None:
+        """Remove the state of a run whose outcome is kept, with all that a process which was killed has left of it."""
+        if self._folder is None:
+            return
+        path = self._folder / f"{point}-{member}.nc"
+        part = part_path(path)
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+            path.with_name(f".{path.name}.lock").unlink(missing_ok=True)
+        clear(part, everything=True)
+
+    def close(self, *, everything: bool = False) -> None:
+        """Remove the folder, unless there is a state in it that is still needed.
+
+        Parameters
+        ----------
+        everything
+            Whether none is, because all runs are complete.
+        """
+        if self._folder is None or (any(self._folder.glob("*.part.nc")) and not everything):
+            return
+        with contextlib.suppress(OSError):
+            for pattern in ("*.part.nc", ".*.nc.lock", ".*.nc.*.tmp"):
+                for left in self._folder.glob(pattern):
+                    left.unlink(missing_ok=True)
+            self._folder.rmdir()
