@@ -19,9 +19,11 @@ from atmosbox.cli.option import (
     Accuracy,
     Config,
     Engine,
+    Language,
     SceneName,
     Seed,
     Source,
+    Tongue,
     Values,
     Verbose,
     out_option,
@@ -37,6 +39,7 @@ from atmosbox.errors import SettingError
     epilog=examples(
         "atmosbox live temperature",
         "atmosbox live lifting-dry --set molecules=2000 --no-browser",
+        "atmosbox live temperature --language de",
         "atmosbox live atmosphere --port 9000 --out column.nc",
     )
 )
@@ -66,6 +69,7 @@ def live(
     no_token: Annotated[
         bool, typer.Option("--no-token", help="Let in whoever reaches the port, also without the token of the address.")
     ] = False,
+    language: Language = Tongue.auto,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
     quiet: Annotated[bool, quiet_option("Print the address, no more.")] = False,
     verbose: Verbose = False,
@@ -112,7 +116,7 @@ def live(
             tell("Ctrl-C ends it; what is being recorded is saved")
 
     token = None if no_token else secrets.token_urlsafe(16)
-    ended, left = run(session, live_page(), host=host, port=number, token=token, opened=opened)
+    ended, left = run(session, live_page(language=language.value), host=host, port=number, token=token, opened=opened)
     for sentence in left:
         tell(sentence)
     raise typer.Exit(TERMINATED if ended == signal.SIGTERM else INTERRUPTED)

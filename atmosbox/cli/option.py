@@ -12,17 +12,28 @@ __all__ = [
     "Force",
     "Format",
     "Json",
+    "Language",
     "RunFile",
     "SceneName",
     "Seed",
     "Source",
     "Theme",
+    "Tongue",
     "Values",
     "ValuesOfAll",
     "Verbose",
     "out_option",
     "quiet_option",
 ]
+
+
+class Tongue(StrEnum):
+    """The languages of a page."""
+
+    auto = "auto"
+    en = "en"
+    de = "de"
+    es = "es"
 
 
 class Format(StrEnum):
@@ -93,6 +104,9 @@ Accuracy = Annotated[
         help="Pick engine and settings by their measured errors: sketch, lecture, reference, or the largest error of "
         "a run, such as 0.5K or 2%.",
     ),
+]
+Language = Annotated[
+    Tongue, typer.Option("--language", help="Words of the page; auto takes the reader's browser's language.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Verbose = Annotated[bool, typer.Option("--verbose", help="Say more, with the traceback of a bug.")]

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import app, examples
-from atmosbox.cli.option import Force, Verbose, out_option
+from atmosbox.cli.option import Force, Language, Tongue, Verbose, out_option
 from atmosbox.cli.output_name import beside
 from atmosbox.cli.terminal import guarded, say
 from atmosbox.errors import SettingError
@@ -31,6 +31,7 @@ class Colours(StrEnum):
         "atmosbox run temperature --save-molecules",
         "atmosbox view temperature.nc",
         "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
+        "atmosbox view temperature.nc --language es --force",
     )
 )
 @guarded
@@ -42,6 +43,7 @@ def view(
     theme: Annotated[
         Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
     ] = Colours.auto,
+    language: Language = Tongue.auto,
     force: Force = False,
     verbose: Verbose = False,
 ) -> None:
@@ -63,5 +65,5 @@ def view(
         show(0.4, "writing the page")
         from atmosbox.page import save
 
-        written = save(runs, path, theme=theme.value, force=force)
+        written = save(runs, path, theme=theme.value, language=language.value, force=force)
     say(str(written))

@@ -70,6 +70,7 @@ def show(
     *runs: xr.Dataset | str | os.PathLike[str],
     height: int = 720,
     theme: Literal["auto", "light", "dark"] = "auto",
+    language: Literal["auto", "en", "de", "es"] = "auto",
 ) -> InlinePage:
     """Show the molecules of a run in three dimensions, with its graphs on the same clock.
 
@@ -84,6 +85,8 @@ def show(
         How high the page is in a notebook, in pixels.
     theme
         Its colours; ``"auto"`` takes those that the reader's computer prefers.
+    language
+        Its words; ``"auto"`` takes the first language of the reader's browser that there is.
 
     Returns
     -------
@@ -95,7 +98,7 @@ def show(
     FileError
         If a run holds no molecules.
     SettingError
-        If there are none or more than two runs, or the theme is unknown.
+        If there are none or more than two runs, or the theme or the language is unknown.
 
     Examples
     --------
@@ -111,7 +114,7 @@ def show(
     with in_python():
         if not 1 <= len(runs) <= 2:
             raise SettingError("runs", None, f"are {len(runs)}", "give one run, or two to stand side by side")
-        page = InlinePage(page_text([opened(run) for run in runs], theme=theme), height)
+        page = InlinePage(page_text([opened(run) for run in runs], theme=theme, language=language), height)
     if not in_notebook():
         _open(page)
     return page

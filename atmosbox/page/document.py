@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import json
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-__all__ = ["MODULES", "THEMES", "live_page", "view_page"]
+__all__ = ["LANGUAGES", "MODULES", "THEMES", "live_page", "view_page", "words"]
 
 THEMES = ("auto", "light", "dark")
 
+LANGUAGES = ("auto", "en", "de", "es")
+"""The languages of a page; ``auto`` takes the first of the reader's browser that there is."""
+
 MODULES = (
+    "words.js",
     "colour.js",
     "figure.js",
     "frames.js",
@@ -42,7 +48,9 @@ _ENTRIES = {"view": ("view.js",), "live": ("link.js", "controls.js", "notes.js",
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 
 
-def view_page(runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme: str = "auto") -> str:
+def view_page(
+    runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme: str = "auto", language: str = "auto"
+) -> str:
     """Return the page that shows runs, complete.
 
     Parameters
@@ -53,6 +61,8 @@ def view_page(runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme
         Of each run its frames, as `atmosbox.page.frame.pack` packs them.
     theme : {"auto", "light", "dark"}
         Its colours; ``auto`` takes those that the reader's system prefers.
+    language : {"auto", "en", "de", "es"}
+        Its words; ``auto`` takes the first language of the reader's browser that there is.
 
     Returns
     -------
@@ -68,16 +78,18 @@ def view_page(runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme
     titles = dict.fromkeys(str(run["stage"]["title"]) for run in runs)
     packed = (_block(f"frames-{number}", "text/plain", text) for number, text in enumerate(frames))
     told = _block("told", "application/json", _json({"runs": list(runs)}))
-    return _document("view", " · ".join(titles), theme, [told, *packed])
+    return _document("view", " · ".join(titles), theme, language, [told, *packed])
 
 
-def live_page(*, theme: str = "auto") -> str:
+def live_page(*, theme: str = "auto", language: str = "auto") -> str:
     """Return the page that shows a box while it runs, complete; it fetches its data from ``/socket``.
 
     Parameters
     ----------
     theme : {"auto", "light", "dark"}
         Its colours.
+    language : {"auto", "en", "de", "es"}
+        Its words.
 
     Returns
     -------
@@ -89,14 +101,33 @@ def live_page(*, theme: str = "auto") -> str:
     >>> "/socket" in live_page()
     True
     """
-    return _document("live", "atmosbox live", theme, [])
+    return _document("live", "atmosbox live", theme, language, [])
 
 
-def _document(entry: str, title: str, theme: str, data: Iterable[str]) -> str:
+@functools.cache
+def words(language: str) -> dict[str, Any]:
+    """Return the words of a page in a language: see ``language/en.toml``.
+
+    Examples
+    --------
+    >>> words("de")["page"]["pause"]
+    'anhalten'
+    """
+    return tomllib.loads(_text("language", f"{language}.toml"))
+
+
+def _document(entry: str, title: str, theme: str, language: str, data: Iterable[str]) -> str:
     """Return the HTML around some data."""
     scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
     scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
+    first = "en" if language == "auto" else language
+    said = words(first)["page"]
+    tables = {name: words(name) for name in (LANGUAGES[1:] if language == "auto" else dict.fromkeys(("en", first)))}
     parts = {
+        "LANG": first,
+        "LANGUAGE": language,
+        "WORDS": _block("words", "application/json", _json(tables)),
+        **{name.upper(): html.escape(said[name]) for name in ("wait", "no_script", "cannot_start")},
         "TITLE": html.escape(title),
         "THEME": theme,
         "ENTRY": entry,

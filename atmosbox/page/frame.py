@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 __all__ = ["encode", "pack"]
 
-_HEAD = struct.Struct("<Id3fI")
+_HEAD = struct.Struct("<Id3fIf")
 _FINEST, _FASTEST = 65535, 255
 
 Floats = NDArray[np.floating]
@@ -24,9 +24,9 @@ def encode(
     r"""Return a frame as the page reads it.
 
     Little endian: the number of the frame (uint32), the time (float64), the three sides of the box (float32), the
-    number n of molecules (uint32), their positions over the sides (3 n uint16), their speeds over the highest (n
-    uint8), their states (n uint8: 0 in the gas, 1 not in it), the number m of drops (uint32), and of each its
-    position and its radius (4 m float32).
+    number n of molecules (uint32), the highest speed (float32), their positions over the sides (3 n uint16), their
+    speeds over the highest (n uint8), their states (n uint8: 0 in the gas, 1 not in it), the number m of drops
+    (uint32), and of each its position and its radius (4 m float32).
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def encode(
     speed : (molecule,)
         Their speeds.
     highest : float
-        The speed at the top of the scale of colours, in the same unit; faster ones are shown like it.
+        The speed at the top of the scale, in the same unit; faster ones are shown like it.
     drops : (drop, 4)
         Position and radius of each drop, in the unit of `length`.
 
@@ -54,7 +54,7 @@ def encode(
     --------
     >>> one = encode(7, 0.5, np.ones(3), np.full((1, 3), 0.5), np.array([300.0]), 900.0, np.zeros((0, 4)))
     >>> len(one), one[:4]
-    (40, b'\x07\x00\x00\x00')
+    (44, b'\x07\x00\x00\x00')
     """
     absent = ~np.isfinite(speed) | ~np.isfinite(position).all(axis=1)
     share = np.where(absent[:, None], 0.0, position / np.asarray(length, np.float64))
@@ -63,7 +63,7 @@ def encode(
     sides = [float(side) for side in length]
     return b"".join(
         (
-            _HEAD.pack(sequence, time, *sides, len(place)),
+            _HEAD.pack(sequence, time, *sides, len(place), highest),
             place.tobytes(),
             colour.tobytes(),
             absent.astype(np.uint8).tobytes(),

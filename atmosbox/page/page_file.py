@@ -9,16 +9,23 @@ from typing import TYPE_CHECKING
 
 from atmosbox.errors import SettingError
 from atmosbox.file.output_path import check_writable, write_whole
-from atmosbox.page.document import THEMES, view_page
+from atmosbox.page.document import LANGUAGES, THEMES, view_page
 from atmosbox.page.frame import pack
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["page_text", "save"]
+__all__ = ["check_choice", "page_text", "save"]
 
 
-def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str = "auto", force: bool = False) -> Path:
+def save(
+    runs: Sequence[xr.Dataset],
+    path: str | os.PathLike[str],
+    *,
+    theme: str = "auto",
+    language: str = "auto",
+    force: bool = False,
+) -> Path:
     """Write the page that shows a run, or two side by side.
 
     Parameters
@@ -29,6 +36,8 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
         The file; it should end in ``.html``.
     theme : {"auto", "light", "dark"}
         The colours of the page.
+    language : {"auto", "en", "de", "es"}
+        Its words; ``auto`` takes the first language of the reader's browser that there is.
     force : bool
         Whether a file of that name may be replaced.
 
@@ -42,7 +51,7 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
     FileError
         If a run holds no molecules, or the file cannot be written.
     SettingError
-        If the theme is unknown.
+        If the theme or the language is unknown.
 
     Notes
     -----
@@ -55,13 +64,14 @@ def save(runs: Sequence[xr.Dataset], path: str | os.PathLike[str], *, theme: str
     Traceback (most recent call last):
     atmosbox.errors.SettingError: theme = pink is unknown: give --theme auto, light or dark.
     """
-    _check_theme(theme)
+    check_choice("theme", theme, THEMES)
+    check_choice("language", language, LANGUAGES)
     target = check_writable(path, force, example="page.html")
-    write_whole(target, page_text(runs, theme=theme).encode("utf-8"))
+    write_whole(target, page_text(runs, theme=theme, language=language).encode("utf-8"))
     return target
 
 
-def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto") -> str:
+def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto", language: str = "auto") -> str:
     """Return the HTML of the page that `save` writes.
 
     Raises
@@ -69,15 +79,24 @@ def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto") -> str:
     FileError
         If a run holds no molecules.
     SettingError
-        If the theme is unknown.
+        If the theme or the language is unknown.
     """
     from atmosbox.page.saved_run import pages
 
-    _check_theme(theme)
+    check_choice("theme", theme, THEMES)
+    check_choice("language", language, LANGUAGES)
     told = pages(runs)
-    return view_page([page.record for page in told], [pack(page.frames) for page in told], theme=theme)
+    records, frames = [page.record for page in told], [pack(page.frames) for page in told]
+    return view_page(records, frames, theme=theme, language=language)
 
 
-def _check_theme(theme: str) -> None:
-    if theme not in THEMES:
-        raise SettingError("theme", theme, "is unknown", f"give --theme {', '.join(THEMES[:-1])} or {THEMES[-1]}")
+def check_choice(name: str, value: str, known: Sequence[str]) -> None:
+    """Refuse a theme or a language that there is not.
+
+    Raises
+    ------
+    SettingError
+        If the value is none of those that are known.
+    """
+    if value not in known:
+        raise SettingError(name, value, "is unknown", f"give --{name} {', '.join(known[:-1])} or {known[-1]}")

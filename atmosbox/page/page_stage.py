@@ -57,6 +57,7 @@ class Stage(NamedTuple):
         drops: ArrayLike | None = None,
         liquid: int = 0,
         rained: int = 0,
+        highest: float | None = None,
     ) -> bytes:
         """Return one moment as the page reads it.
 
@@ -74,6 +75,8 @@ class Stage(NamedTuple):
             Positions and radii of drops that have a place [m]; rows of NaN are left out.
         liquid, rained : int
             How many molecules are in a mist or a pool, and how many have left as rain.
+        highest : float, optional
+            The speed at the top of the scale of this moment [m/s]; that of the stage by default.
 
         Returns
         -------
@@ -85,7 +88,7 @@ class Stage(NamedTuple):
         >>> box = Box(length=(2e-8, 2e-8, 2e-8))
         >>> air = stage(scene="air", title="Air", box=box, mass=[4.8e-26], diameter=[3.7e-10], fastest=900.0)
         >>> len(air.frame(0, 0.5, box.length, [[1e-8, 1e-8, 1e-8]], [470.0]))
-        40
+        44
         """
         metre = self.record["metre"]
         sides = np.asarray(length, np.float64) * metre
@@ -101,7 +104,7 @@ class Stage(NamedTuple):
         elif liquid:
             wet = clumps(liquid, water, sides, self.record["species"][-1]["drawn"])
         wet = np.concatenate((wet, layer(rained, water, rain=True)))
-        return encode(sequence, time, sides, place, fast, self.record["speed"]["high"], wet)
+        return encode(sequence, time, sides, place, fast, highest or self.record["speed"]["high"], wet)
 
 
 def stage(

@@ -19,4 +19,4 @@ def test_the_pictures_that_a_page_gets_are_counted(tmp_path):
     (found,) = json.loads(file.read_text(encoding="utf-8"))
     assert found["molecules"] == 20
     assert found["pictures_per_second"] > 0.0
-    assert found["bytes_per_picture"] == 28 + 20 * 8 + 4
+    assert found["bytes_per_picture"] == 32 + 20 * 8 + 4

@@ -15,14 +15,14 @@ NO_DROPS = np.zeros((0, 4))
 
 def read(frame):
     """Return what the bytes of a frame say, read by the words of its docstring."""
-    sequence, time, x, y, z, number = struct.unpack_from("<Id3fI", frame)
-    place = np.frombuffer(frame, "<u2", 3 * number, 28).reshape(-1, 3)
-    speed = np.frombuffer(frame, np.uint8, number, 28 + 6 * number)
-    state = np.frombuffer(frame, np.uint8, number, 28 + 7 * number)
-    (drops,) = struct.unpack_from("<I", frame, 28 + 8 * number)
-    wet = np.frombuffer(frame, "<f4", 4 * drops, 32 + 8 * number).reshape(-1, 4)
-    assert len(frame) == 32 + 8 * number + 16 * drops
-    return sequence, time, (x, y, z), place, speed, state, wet
+    sequence, time, x, y, z, number, highest = struct.unpack_from("<Id3fIf", frame)
+    place = np.frombuffer(frame, "<u2", 3 * number, 32).reshape(-1, 3)
+    speed = np.frombuffer(frame, np.uint8, number, 32 + 6 * number)
+    state = np.frombuffer(frame, np.uint8, number, 32 + 7 * number)
+    (drops,) = struct.unpack_from("<I", frame, 32 + 8 * number)
+    wet = np.frombuffer(frame, "<f4", 4 * drops, 36 + 8 * number).reshape(-1, 4)
+    assert len(frame) == 36 + 8 * number + 16 * drops
+    return sequence, time, (x, y, z), place, speed / 255.0 * highest, state, wet
 
 
 def test_a_frame_says_where_everything_is_and_how_fast():
@@ -33,7 +33,7 @@ def test_a_frame_says_where_everything_is_and_how_fast():
     sequence, time, sides, place, fast, state, wet = read(encode(4, 1.25, length, position, speed, 900.0, drops))
     assert (sequence, time, sides) == (4, 1.25, (2.0, 3.0, 5.0))
     np.testing.assert_allclose(place / 65535.0 * length, position, atol=5.0 / 65535.0)
-    np.testing.assert_allclose(fast / 255.0 * 900.0, speed, atol=900.0 / 255.0)
+    np.testing.assert_allclose(fast, speed, atol=900.0 / 255.0)
     assert not state.any()
     np.testing.assert_array_equal(wet, drops)
 
@@ -49,7 +49,7 @@ def test_what_is_too_fast_or_just_outside_by_rounding_stays_on_the_scale():
     _, _, _, place, fast, *_ = read(encode(0, 0.0, np.ones(3), position, np.array([5.0]), 2.0, NO_DROPS))
     assert place[0, 0] == 65535
     assert place[0, 1] == 0
-    assert fast[0] == 255
+    assert fast[0] == 2.0
 
 
 def test_frames_are_packed_the_same_every_time():

@@ -71,7 +71,7 @@ def test_a_frame_takes_molecules_of_all_and_keeps_those_that_are_shown():
     told = air(100, most=10)
     assert len(told.shown) == told.record["molecules_shown"] == 10
     assert told.record["molecules"] == 100
-    assert len(told.frame(0, 0.0, NANO.length, np.full((100, 3), 1e-8), np.ones(100))) == 32 + 8 * 10
+    assert len(told.frame(0, 0.0, NANO.length, np.full((100, 3), 1e-8), np.ones(100))) == 36 + 8 * 10
 
 
 @pytest.mark.parametrize("fastest", [0.0, np.nan])

@@ -1,6 +1,7 @@
 // The atmosphere around a lifted parcel: ground or mountains, the parcel where it is now, its cloud, its rain, its gauges.
 
 import { curveColour, look, theme } from "./colour.js";
+import { word } from "./words.js";
 
 const CLOUD = 2e-4; // liquid per dry air [kg/kg] of a thin cumulus, from which on a cloud is drawn
 const GAP = 0.07; // how high above the mountains the parcel is drawn, in heights of the picture
@@ -130,7 +131,7 @@ function drawGauges(context, box, { now, temperature, pressure, humidity, crosse
   const rows = [
     [temperature[now], (kelvin) => `${(kelvin - 273.15).toFixed(0)} °C`, look().warm],
     [pressure[now], (pascal) => `${(pascal / 100).toFixed(0)} hPa`, look().ink],
-    [humidity[now], (share) => `${(100 * share).toFixed(0)} % RH`, look().liquid],
+    [humidity[now], (share) => word("humid", { number: (100 * share).toFixed(0) }), look().liquid],
   ].filter(([value]) => Number.isFinite(value));
   const size = Math.min(24, 0.13 * wide / unit) * unit;
   context.save();

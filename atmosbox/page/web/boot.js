@@ -17,7 +17,7 @@
   const fail = (reason) => {
     const line = document.createElement("p");
     line.className = "failure";
-    line.textContent = `This page could not start: ${reason}. It needs a browser of 2023 or later with WebGL.`;
+    line.textContent = `${document.body.dataset.failure} (${reason})`;
     document.body.append(line);
     console.error(reason);
   };

@@ -9,10 +9,10 @@ const MARGIN = [64, 58]; // pixels around the box, for the numbers at its edges
 
 // From which side, by azimuth and elevation, and how much closer than where all of the box is seen.
 export const PLACES = [
-  { name: "Corner", azimuth: -58, elevation: 17, closer: 1 },
-  { name: "Front", azimuth: -90, elevation: 0, closer: 1 },
-  { name: "Above", azimuth: -90, elevation: 89.9, closer: 1 },
-  { name: "Close", azimuth: -66, elevation: 9, closer: 2.4 },
+  { name: "corner", azimuth: -58, elevation: 17, closer: 1 },
+  { name: "front", azimuth: -90, elevation: 0, closer: 1 },
+  { name: "above", azimuth: -90, elevation: 89.9, closer: 1 },
+  { name: "close_up", azimuth: -66, elevation: 9, closer: 2.4 },
 ];
 
 export class Camera {

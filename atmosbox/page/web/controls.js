@@ -1,6 +1,7 @@
 // What may be changed while the box runs: a line for each setting, with its unit.
 
 import { spelled } from "./figure.js";
+import { phrase, word } from "./words.js";
 
 const WIDE = 300; // a slider over so many times its lowest value goes by ratios
 const PATIENCE = 120; // ms between two values that a moving slider sends
@@ -36,7 +37,7 @@ export class Controls {
     if (now.length) this.parent.append(this.#group(now));
     if (later.length) {
       const more = make("details", { open: now.length === 0 });
-      more.append(make("summary", { textContent: "Settings that begin the box anew" }), this.#group(later));
+      more.append(make("summary", { textContent: word("settings") }), this.#group(later));
       this.parent.append(more);
     }
   }
@@ -49,7 +50,7 @@ export class Controls {
 
   #line(control) {
     const line = make("label", { className: `setting ${control.kind}`, title: control.help ?? "" });
-    line.append(make("span", { className: "name", textContent: control.label }));
+    line.append(make("span", { className: "name", textContent: phrase(control.label) }));
     if (control.kind === "number") this.#number(line, control);
     else if (control.kind === "switch") this.#switch(line, control);
     else this.#choice(line, control);
@@ -103,7 +104,7 @@ export class Controls {
 
   #choice(line, { name, value, choices }) {
     const list = make("select");
-    for (const each of choices ?? []) list.append(make("option", { value: each, textContent: each }));
+    for (const each of choices ?? []) list.append(make("option", { value: each, textContent: phrase(each) }));
     list.value = value;
     list.addEventListener("change", () => this.set(name, list.value));
     line.append(list);

@@ -1,5 +1,7 @@
 // Numbers as they are read: their figures, their units, and the ticks of an axis.
 
+import { numbers } from "./words.js";
+
 const SPELLED = { degC: "°C", percent: "%", um: "µm", us: "µs", 1: "" };
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
@@ -67,4 +69,4 @@ export const round = (value) => plain(String(Number(value.toPrecision(6))));
 
 export const powerText = (power) => (power ? `10${raised(String(power))}` : "");
 
-const plain = (text) => text.replace("-", "−");
+const plain = (text) => numbers(text.replace("-", "−"));

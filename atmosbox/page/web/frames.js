@@ -1,6 +1,6 @@
 // Moments of a box: read from bytes, and kept in order of time.
 
-const HEAD = 28; // bytes before the positions
+const HEAD = 32; // bytes before the positions
 
 // One moment, from a place in a buffer. Its arrays are views of the buffer.
 export function decode(buffer, start = 0) {
@@ -12,6 +12,7 @@ export function decode(buffer, start = 0) {
     time: view.getFloat64(4, true),
     length: [12, 16, 20].map((place) => view.getFloat32(place, true)),
     count,
+    fastest: view.getFloat32(28, true), // the speed that 255 stands for
     position: new Uint16Array(buffer, start + HEAD, 3 * count),
     speed: new Uint8Array(buffer, start + HEAD + 6 * count, count),
     state: new Uint8Array(buffer, start + HEAD + 7 * count, count),

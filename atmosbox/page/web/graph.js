@@ -5,6 +5,7 @@ import { curveColour, curveDash, look } from "./colour.js";
 import { logTicks, powerText, scaled, tickTexts, ticks } from "./figure.js";
 import { drawCurve, markerSvg } from "./ink.js";
 import { drawSkewt, slanted } from "./skewt.js";
+import { numbers, phrase, word } from "./words.js";
 
 const ORDER = { reference: 0, environment: 1, data: 2, theory: 3 };
 const font = (size) => `${size}px system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif`;
@@ -20,7 +21,7 @@ export class Graph {
       + "<div class='heads'><span class='unit up'></span><span class='key'></span></div><div class='plot'></div>"
       + "<span class='unit along'></span>";
     this.part = (name) => this.element.querySelector(name);
-    this.part("strong").textContent = panel.title;
+    this.part("strong").textContent = phrase(panel.title);
     this.say(panel.sentences);
     this.overTime = !panel.across && panel.kind === "line" && panel.lines?.every(({ x }) => x.name === "elapsed_time");
     parent.append(this.element);
@@ -32,11 +33,11 @@ export class Graph {
   say(sentences) {
     const line = this.part(".sentences");
     line.replaceChildren();
-    line.title = sentences.join("\n");
+    line.title = sentences.map((sentence) => numbers(phrase(sentence))).join("\n");
     for (const sentence of sentences) {
       const [words, number] = sentence.split(" = "); // the number first, for a narrow graph cuts the end off
-      const bold = Object.assign(document.createElement("b"), { textContent: number ?? "" });
-      line.append(bold, ` ${words} `);
+      const bold = Object.assign(document.createElement("b"), { textContent: numbers(number ?? "") });
+      line.append(bold, ` ${phrase(words)} `);
     }
   }
 
@@ -94,7 +95,7 @@ export class Graph {
     const { label, unit } = this.panel[axis];
     if (axis === "x" && this.panel.kind === "atmosphere") return texts.map(() => ""); // the way across is no measure
     const words = [powerText(power), unit].filter(Boolean).join(" ");
-    const text = words ? `${label} (${words})` : label;
+    const text = words ? `${phrase(label)} (${words})` : phrase(label);
     const spot = this.part(axis === "x" ? ".along" : ".up");
     if (spot.textContent !== text) spot.textContent = text;
     return texts;
@@ -173,7 +174,7 @@ export class Graph {
       const wide = curve.role === "reference" ? 5 : 2.2;
       item.innerHTML = `<svg width="24" height="10" aria-hidden="true"><line x1="1" y1="5" x2="23" y2="5" stroke="${colour}" `
         + `stroke-width="${wide}" stroke-dasharray="${dashes}"/>${this.#several(curve) ? markerSvg(curve.index, colour) : ""}</svg>`;
-      item.append(curve.label);
+      item.append(phrase(curve.label));
       key.append(item);
     }
   }

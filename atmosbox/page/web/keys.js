@@ -1,15 +1,18 @@
 // The keyboard.
 
+import { word } from "./words.js";
+
 export const KEYS = [
-  ["Space", "play or pause"],
-  ["→  ←", "one frame on or back; ten with Shift"],
-  ["↑  ↓", "faster, slower"],
-  ["1 2 3 4", "camera: corner, front, above, close"],
-  ["C", "colour by speed or by kind"],
-  ["T", "follow one molecule; again: stop following"],
-  ["D", "light or dark"],
-  ["Home  End", "first and last moment"],
-  ["?", "this list"],
+  [word("space"), word("key_play")],
+  ["→  ←", word("key_step")],
+  ["↑  ↓", word("key_pace")],
+  ["1 2 3 4", word("key_camera")],
+  ["C", word("key_colour")],
+  ["T", word("key_trace")],
+  ["D", word("key_theme")],
+  ...(document.body.classList.contains("live")
+    ? [["R", word("key_again")]] : [["Home  End", word("key_ends")]]),
+  ["?", word("key_help")],
 ];
 
 // `actions`: what each key does, by the name that the browser gives it.

@@ -2,8 +2,9 @@
 
 import * as THREE from "three";
 import { round, scaled, ticks } from "./figure.js";
+import { word } from "./words.js";
 
-const AXES = ["x", "y", "height z"];
+const AXES = ["x", "y", word("height_z")];
 const GAP = 16, FAR = 44; // pixels between an edge and its numbers, and its name
 const SHORT = 60, END_ON = 0.93; // pixels, and a cosine: an edge that is seen short, or end on, has neither
 

@@ -2,6 +2,7 @@
 
 import { look, speedGradient } from "./colour.js";
 import { round } from "./figure.js";
+import { phrase, word } from "./words.js";
 
 export function showLegend(parent, stage, mode) {
   parent.replaceChildren();
@@ -18,7 +19,7 @@ export function showLegend(parent, stage, mode) {
     const scale = document.createElement("div");
     scale.className = "scale";
     scale.append(bar, ends);
-    parent.append(Object.assign(document.createElement("span"), { textContent: `speed (${unit})` }), scale);
+    parent.append(Object.assign(document.createElement("span"), { textContent: `${word("speed")} (${unit})` }), scale);
     return;
   }
   const largest = Math.max(...stage.species.map(({ drawn }) => drawn));
@@ -28,7 +29,7 @@ export function showLegend(parent, stage, mode) {
     const ball = document.createElement("i");
     ball.style.background = look().species[name] ?? look().species.molecule;
     ball.style.width = ball.style.height = `${Math.max(7, 16 * drawn / largest)}px`;
-    chip.append(ball, name);
+    chip.append(ball, phrase(name));
     parent.append(chip);
   }
   if (stage.water) {
@@ -36,7 +37,7 @@ export function showLegend(parent, stage, mode) {
     chip.className = "chip";
     const ball = Object.assign(document.createElement("i"), { className: "liquid" });
     ball.style.background = look().liquid;
-    chip.append(ball, "liquid water");
+    chip.append(ball, word("liquid_water"));
     parent.append(chip);
   }
 }

@@ -11,6 +11,7 @@ import { forget, note } from "./notes.js";
 import { Pulse } from "./pulse.js";
 import { Sheet } from "./sheet.js";
 import { Stage } from "./stage.js";
+import { phrase, spell, word } from "./words.js";
 
 const KEPT = 240; // frames, which the path of a molecule is drawn from
 const LOOK = 200; // ms between two updates of the graphs
@@ -28,7 +29,7 @@ class Live {
 
   line(state) {
     document.body.dataset.line = state;
-    if (state === "lost") note(find("notes"), { level: "warning", name: "line", text: "The connection to atmosbox is lost. Trying again; if it was stopped, type atmosbox live once more." });
+    if (state === "lost") note(find("notes"), { level: "warning", name: "line", text: word("line_lost") });
     else forget(find("notes"), "line");
   }
 
@@ -51,7 +52,7 @@ class Live {
     find("boxes").replaceChildren();
     const frame = Object.assign(document.createElement("div"), { className: "box" });
     find("boxes").append(frame);
-    find("title").textContent = document.title = record.title;
+    find("title").textContent = document.title = phrase(record.title);
     const place = this.stage?.camera.place;
     this.film = new Film([], KEPT);
     this.numbers = new Numbers();
@@ -112,6 +113,7 @@ class Live {
 }
 
 export function begin() {
+  spell();
   const live = new Live();
   const { pulse } = live;
   listen({

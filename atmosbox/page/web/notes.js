@@ -1,7 +1,9 @@
 // Messages for the viewer: a sentence that goes away, or, if something was refused, stays.
 
+import { phrase, word } from "./words.js";
+
 const SIGNS = { info: "i", warning: "!", error: "×" };
-const WORDS = { info: "", warning: "Note: ", error: "Refused: " };
+const WORDS = { warning: "note", error: "refused" };
 const READING = 7000; // ms
 
 export function note(parent, { level = "info", text, name }) {
@@ -10,8 +12,8 @@ export function note(parent, { level = "info", text, name }) {
   card.className = `note ${level}`;
   if (name) card.dataset.name = name;
   const sign = Object.assign(document.createElement("b"), { textContent: SIGNS[level] ?? "i" });
-  const words = Object.assign(document.createElement("span"), { textContent: (name ? "" : WORDS[level] ?? "") + text });
-  const close = Object.assign(document.createElement("button"), { type: "button", textContent: "Close" });
+  const words = Object.assign(document.createElement("span"), { textContent: (name || !WORDS[level] ? "" : word(WORDS[level])) + phrase(text) });
+  const close = Object.assign(document.createElement("button"), { type: "button", textContent: word("close") });
   close.onclick = () => card.remove();
   card.append(sign, words, close);
   parent.append(card);

@@ -2,6 +2,7 @@
 
 import { figure, withUnit } from "./figure.js";
 import { icon } from "./transport.js";
+import { phrase, word } from "./words.js";
 
 const SLOWEST = 0.25, FASTEST = 16;
 
@@ -9,14 +10,14 @@ export class Pulse {
   constructor(parent, say) {
     Object.assign(this, { say, state: { playing: false, pace: 1, recording: null }, unit: "" });
     parent.innerHTML = `
-      <button type="button" id="play" class="main" title="Play or pause (space)"></button>
-      <button type="button" id="on" title="One frame on (→)" aria-label="one frame on">${icon("on")}</button>
-      <span class="group"><button type="button" id="slower" title="Slower (↓)" aria-label="slower">−</button>
-      <output id="pace"></output><button type="button" id="faster" title="Faster (↑)" aria-label="faster">+</button></span>
+      <button type="button" id="play" class="main" title="${word("play_title")}"></button>
+      <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
+      <span class="group"><button type="button" id="slower" title="${word("slower_title")}" aria-label="${word("slower")}">−</button>
+      <output id="pace"></output><button type="button" id="faster" title="${word("faster_title")}" aria-label="${word("faster")}">+</button></span>
       <output id="time"></output><output id="vitals"></output>
-      <span class="group"><button type="button" id="reset" title="Begin anew (R)">Begin anew</button></span>
-      <label class="seed" title="Seed of the random numbers: the same seed, the same run">seed <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
-      <span class="group"><input type="text" id="file" aria-label="file to record to" spellcheck="false"><button type="button" id="record"></button></span>`;
+      <span class="group"><button type="button" id="reset" title="${word("again_title")}">${word("again")}</button></span>
+      <label class="seed" title="${word("seed_title")}">${word("seed")} <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
+      <span class="group"><input type="text" id="file" aria-label="${word("file")}" spellcheck="false"><button type="button" id="record"></button></span>`;
     this.part = (name) => parent.querySelector(`#${name}`);
     this.part("play").onclick = () => this.toggle();
     this.part("on").onclick = () => this.step();
@@ -60,18 +61,18 @@ export class Pulse {
     Object.assign(this.state, told);
     const { playing, pace, recording, time, rate, ledger, molecules, seed, finished, busy } = this.state;
     this.part("play").innerHTML = icon(playing ? "pause" : "play");
-    this.part("play").setAttribute("aria-label", playing ? "pause" : "play");
+    this.part("play").setAttribute("aria-label", word(playing ? "pause" : "play"));
     this.part("pace").textContent = pace < 1 ? `1/${Math.round(1 / pace)}×` : `${pace}×`;
-    this.part("record").textContent = recording ? "■ Stop recording" : "● Record";
+    this.part("record").textContent = recording ? `■ ${word("stop_record")}` : `● ${word("record")}`;
     this.part("record").setAttribute("aria-pressed", Boolean(recording));
     this.part("file").disabled = Boolean(recording);
     if (recording) this.part("file").value = recording;
     if (time !== undefined) this.part("time").textContent = withUnit(time, this.unit, 4);
-    const vitals = busy ? [busy] : [
-      molecules !== undefined && `${molecules} molecules`,
-      Number.isFinite(rate) && playing && `${figure(rate, 2)} frames/s`,
-      Number.isFinite(ledger) && `energy off by ${figure(ledger, 2)}`,
-      finished && "the run is over",
+    const vitals = busy ? [phrase(busy)] : [
+      molecules !== undefined && word("molecules", { number: molecules }),
+      Number.isFinite(rate) && playing && word("rate", { number: figure(rate, 2) }),
+      Number.isFinite(ledger) && word("energy_off", { number: figure(ledger, 2) }),
+      finished && word("over"),
     ];
     this.part("vitals").textContent = vitals.filter(Boolean).join(" · ");
     if (seed !== undefined && seed !== null && document.activeElement !== this.part("seed")) this.part("seed").value = seed;

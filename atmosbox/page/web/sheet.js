@@ -5,6 +5,7 @@ import { PLACES } from "./camera.js";
 import { showLegend } from "./legend.js";
 import { figure } from "./figure.js";
 import { KEYS } from "./keys.js";
+import { phrase, word } from "./words.js";
 
 const find = (name) => document.getElementById(name);
 
@@ -35,9 +36,9 @@ export class Sheet {
   #tools() {
     const [{ mode, camera, record }] = this.stages;
     const modes = this.modes = record.species.length > 1 ? ["speed", "species"] : ["speed"];
-    choice(find("colours"), modes.map((each) => (each === "speed" ? "Speed" : "Kind")), modes.indexOf(mode), (index) => this.colour(modes[index]));
+    choice(find("colours"), modes.map((each) => word(each === "speed" ? "by_speed" : "by_kind")), modes.indexOf(mode), (index) => this.colour(modes[index]));
     find("colours").hidden = modes.length < 2;
-    choice(find("cameras"), PLACES.map(({ name }, index) => `${index + 1} ${name}`), camera.place, (index) => this.look(index));
+    choice(find("cameras"), PLACES.map(({ name }, index) => `${index + 1} ${word(name)}`), camera.place, (index) => this.look(index));
     showLegend(find("legend"), record, mode);
   }
 
@@ -75,11 +76,10 @@ export class Sheet {
     const stage = this.stages.find(({ trace }) => trace.molecule !== null);
     if (!stage?.shown) return "";
     const { first } = stage.shown, { molecule } = stage.trace, { record } = stage;
-    const name = record.species[record.kind[molecule]].name;
-    if (first.state[molecule]) return `Following a molecule of ${name}: it is in the liquid`;
-    const speed = first.speed[molecule] / 255 * record.speed.high;
-    const what = record.particle === "disc" ? `a disc (${name})` : `a molecule of ${name.replace("molecule", "gas")}`;
-    return `Following ${what}: ${figure(speed)} ${record.speed.unit}`;
+    const name = phrase(record.species[record.kind[molecule]].name.replace("molecule", "gas"));
+    if (first.state[molecule]) return word("following_liquid", { name });
+    const speed = `${figure(first.speed[molecule] / 255 * first.fastest)} ${record.speed.unit}`;
+    return word(record.particle === "disc" ? "following_disc" : "following", { name, speed });
   }
 
   turnTheme() {
@@ -95,8 +95,8 @@ export class Sheet {
 
   help() {
     const dialog = find("sheet");
-    dialog.innerHTML = "<h2>Keys</h2><dl></dl><p>Drag to turn the box, wheel or two fingers to come closer, "
-      + "click a molecule to follow it, click a graph over time to go there.</p><p>Drawn with three.js and uPlot.</p><form method='dialog'><button>Close</button></form>";
+    dialog.innerHTML = `<h2>${word("keys")}</h2><dl></dl><p>${word("mouse")}</p><p>${word("libraries")}</p>`
+      + `<form method='dialog'><button>${word("close")}</button></form>`;
     for (const [key, meaning] of KEYS) {
       dialog.querySelector("dl").append(
         Object.assign(document.createElement("dt"), { textContent: key }),

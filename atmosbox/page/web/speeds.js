@@ -1,5 +1,7 @@
 // How fast the molecules are at this moment, and Maxwell's curve for as much energy.
 
+import { word } from "./words.js";
+
 const BOLTZMANN = 1.380649e-23; // J/K
 const BINS = 32;
 const TOP = 255; // a faster molecule is shown like this, and has no bin
@@ -7,12 +9,12 @@ const TOP = 255; // a faster molecule is shown like this, and has no bin
 // The panel of a graph that shows it.
 export const speedPanel = (stage) => ({
   kind: "histogram",
-  title: `How fast the ${stage.particle}s are now`,
+  title: word(stage.particle === "disc" ? "speeds_now_discs" : "speeds_now"),
   note: "",
   across: false,
   sentences: [],
-  x: { label: "speed", unit: stage.speed.unit, log: false, invert: false },
-  y: { label: `share of ${stage.particle}s`, unit: "%", log: false, invert: false },
+  x: { label: word("speed"), unit: stage.speed.unit, log: false, invert: false },
+  y: { label: word(stage.particle === "disc" ? "share_of_discs" : "share_of_molecules"), unit: "%", log: false, invert: false },
 });
 
 // Counts by kind at a moment: how many, and the sums of the squares of their speeds.
@@ -21,7 +23,7 @@ export function census(frame, stage) {
   let number = 0;
   for (let index = 0; index < frame.count; index += 1) {
     if (frame.state[index]) continue;
-    const speed = frame.speed[index] / TOP * stage.speed.high;
+    const speed = frame.speed[index] / TOP * frame.fastest;
     const kind = kinds[stage.kind[index]];
     number += 1;
     kind.number += 1;
@@ -49,14 +51,14 @@ export function speedCurves(frame, stage) {
   const counted = census(frame, stage);
   const { bins, kinds, number } = counted;
   if (!number) return [];
-  const width = stage.speed.high / BINS, temperature = kineticTemperature(counted, stage);
+  const width = frame.fastest / BINS, temperature = kineticTemperature(counted, stage);
   const middle = Array.from(bins, (_, bin) => (bin + 0.5) * width);
   const curves = [{
     label: `${stage.particle}s`, role: "data", index: 0, steps: true, error: null,
     x: middle, y: Array.from(bins, (count) => 100 * count / number),
   }];
   if (temperature > 0) {
-    const fine = Array.from({ length: 97 }, (_, place) => place / 96 * stage.speed.high);
+    const fine = Array.from({ length: 97 }, (_, place) => place / 96 * frame.fastest);
     const share = (speed) => kinds.reduce((sum, kind, place) =>
       sum + kind.number / number * maxwell(speed, stage.species[place].mass, temperature, stage.box.planar), 0);
     curves.push({

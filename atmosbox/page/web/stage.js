@@ -7,6 +7,7 @@ import { Furniture } from "./furniture.js";
 import { Labels } from "./labels.js";
 import { Molecules } from "./molecules.js";
 import { Trace } from "./trace.js";
+import { phrase, word } from "./words.js";
 
 const TABLE = Array.from({ length: 256 }, (_, share) => speedColour(share / 255));
 const SHARPEST = 2; // pixels of the screen per pixel of the page, at most
@@ -21,7 +22,7 @@ export class Stage {
     this.canvas = document.createElement("canvas");
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", `Molecules in a box: ${record.title}`);
+    this.canvas.setAttribute("aria-label", word("picture", { title: phrase(record.title) }));
     parent.append(this.canvas);
     this.parent = parent;
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, powerPreference: "high-performance" });

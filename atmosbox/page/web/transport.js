@@ -1,6 +1,7 @@
 // The bar that plays a run: play, step, the time line, the speed.
 
 import { figure, withUnit } from "./figure.js";
+import { word } from "./words.js";
 
 const MARK = { play: "M3 1.5v13l11-6.5z", pause: "M3 2h3.6v12H3zM9.4 2H13v12H9.4z", back: "M12 2v12L4.5 8zM2 2h2v12H2z", on: "M4 2v12l7.5-6zM12 2h2v12h-2z" };
 
@@ -10,13 +11,13 @@ export class Transport {
   constructor(parent, clock, unit) {
     Object.assign(this, { clock, unit });
     parent.innerHTML = `
-      <button type="button" id="back" title="One frame back (←)" aria-label="one frame back">${icon("back")}</button>
-      <button type="button" id="play" class="main" title="Play or pause (space)"></button>
-      <button type="button" id="on" title="One frame on (→)" aria-label="one frame on">${icon("on")}</button>
-      <input type="range" id="line" min="0" max="1000" step="any" aria-label="time">
+      <button type="button" id="back" title="${word("back_title")}" aria-label="${word("back")}">${icon("back")}</button>
+      <button type="button" id="play" class="main" title="${word("play_title")}"></button>
+      <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
+      <input type="range" id="line" min="0" max="1000" step="any" aria-label="${word("time")}">
       <output id="time"></output>
-      <span class="group"><button type="button" id="slower" title="Slower (↓)" aria-label="slower">−</button>
-      <output id="pace"></output><button type="button" id="faster" title="Faster (↑)" aria-label="faster">+</button></span>`;
+      <span class="group"><button type="button" id="slower" title="${word("slower_title")}" aria-label="${word("slower")}">−</button>
+      <output id="pace"></output><button type="button" id="faster" title="${word("faster_title")}" aria-label="${word("faster")}">+</button></span>`;
     this.part = (name) => parent.querySelector(`#${name}`);
     this.part("play").onclick = () => clock.toggle();
     this.part("back").onclick = () => clock.step(-1);
@@ -33,10 +34,10 @@ export class Transport {
   #change() {
     const { playing, factor, pace } = this.clock;
     this.part("play").innerHTML = icon(playing ? "pause" : "play");
-    this.part("play").setAttribute("aria-label", playing ? "pause" : "play");
+    this.part("play").setAttribute("aria-label", word(playing ? "pause" : "play"));
     this.part("pace").innerHTML = "<b></b><small></small>";
     this.part("pace b").textContent = factor < 1 ? `1/${1 / factor}×` : `${factor}×`;
-    this.part("pace small").textContent = `1 s shows ${withUnit(pace * factor, this.unit, 2)}`;
+    this.part("pace small").textContent = word("pace", { time: withUnit(pace * factor, this.unit, 2) });
     document.body.dataset.playing = playing;
   }
 

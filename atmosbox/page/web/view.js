@@ -9,18 +9,20 @@ import { listen } from "./keys.js";
 import { Sheet } from "./sheet.js";
 import { Stage } from "./stage.js";
 import { Transport } from "./transport.js";
+import { phrase, spell } from "./words.js";
 
 const find = (name) => document.getElementById(name);
 const letter = (run) => String.fromCharCode(65 + run);
 
 export async function begin() {
+  spell();
   const { runs } = JSON.parse(find("told").textContent);
   for (const [number, run] of runs.entries()) {
     run.film = new Film(await unpack(find(`frames-${number}`).textContent));
     run.numbers = new Numbers(run);
     find(`frames-${number}`).remove();
   }
-  find("title").textContent = [...new Set(runs.map(({ stage }) => stage.title))].join(" · ");
+  find("title").textContent = [...new Set(runs.map(({ stage }) => phrase(stage.title)))].join(" · ");
   document.body.dataset.runs = runs.length;
   find("boxes").replaceChildren();
   const stages = runs.map((run, number) => new Stage(frameOf(run, number, runs.length), run.stage, run.film));

@@ -1,0 +1,103 @@
+"""The words of the pages: one table a language, complete, and nothing said beside them."""
+
+import re
+from importlib import resources
+
+import pytest
+
+from atmosbox import scenarios
+from atmosbox.cli.option import Tongue
+from atmosbox.live.control import controls
+from atmosbox.page import live_page, view_page
+from atmosbox.page.document import LANGUAGES, words
+from atmosbox.simulation.preparation import build, prepare
+
+WEB = resources.files("atmosbox.page").joinpath("web")
+SCRIPTS = {
+    file.name: file.read_text(encoding="utf-8") for file in WEB.iterdir() if file.name.endswith((".js", ".html"))
+}
+GAP = re.compile(r"\{\w*\}")
+
+
+def asked():
+    """Return the keys that scripts and document ask for; of a key that is put together, the pattern."""
+    text = "\n".join(SCRIPTS.values())
+    keys = set(re.findall(r'\bword\("(\w+)"', text)) | set(re.findall(r'data-word(?:-\w+)?="(\w+)"', text))
+    return keys | {name.lower() for name in re.findall(r"@@(WAIT|NO_SCRIPT|CANNOT_START)@@", text)}
+
+
+def said_by_scenes():
+    """Return all that the shipped scenes say on a page with graphs: titles, curves, axes, settings."""
+    found = set()
+    for name in scenarios.names():
+        prepared = prepare(name, {})
+        module, settings = prepared.module, prepared.settings
+        panels = module.panels(settings) if callable(module.panels) else module.panels
+        found |= {module.title, (module.__doc__ or "").split("\n\n")[0].replace("\n", " ")}
+        for panel in panels:
+            found |= {panel.title, panel.x_label, panel.y_label} | {line.label for line in panel.lines}
+        small = {"molecules": 200} if hasattr(settings, "molecules") else {}
+        box = build(prepare(name, small))
+        values = {knob.name: knob.value for knob in box.knobs} | settings.as_dict()
+        found |= {c.parameter.help for c in controls(box.knobs, settings.describe(), values, collisions=True)}
+    return {text.replace("\u00a0", " ") for text in found if text}
+
+
+def test_the_command_line_offers_the_languages_that_there_are():
+    shipped = {
+        file.name.removesuffix(".toml") for file in resources.files("atmosbox.page").joinpath("language").iterdir()
+    }
+    assert set(LANGUAGES) == {tongue.value for tongue in Tongue} == {"auto", *shipped}
+
+
+@pytest.mark.parametrize("language", LANGUAGES[1:])
+def test_a_table_has_all_words_with_the_same_gaps_and_no_other(language):
+    english, table = words("en")["page"], words(language)["page"]
+    assert set(table) == set(english)
+    for key, text in english.items():
+        assert sorted(GAP.findall(table[key])) == sorted(GAP.findall(text)), key
+        assert '"' not in table[key]
+        assert "<" not in table[key]
+
+
+def test_every_word_that_the_page_asks_for_is_in_the_table_and_none_is_left_over():
+    known = set(words("en")["page"])
+    assert asked() <= known
+    text = "\n".join(SCRIPTS.values())
+    unused = {key for key in known - asked() if not re.search(rf'"{key}"', text)}
+    put_together = {"box", "flat_box", "box_gravity", "flat_box_gravity"}
+    walls = {"specular", "periodic", "heat_bath", "piston", "pool"}
+    assert unused <= put_together | walls
+
+
+@pytest.mark.parametrize("language", ["de", "es"])
+def test_all_that_scenes_say_on_a_page_is_translated(language):
+    table = words(language)["phrase"]
+    assert said_by_scenes() - set(table) == set()
+
+
+def test_a_page_carries_the_tables_that_it_may_need():
+    assert "Erst kühlt das Becken" in live_page()
+    assert "Se enfría el agua" not in view_page([], [], language="de")
+    assert '<html lang="de"' in view_page([], [], language="de")
+
+
+def test_a_reader_gets_the_language_that_was_asked_for_or_that_of_the_browser(browser, site, run, tmp_path):
+    from atmosbox.page import save
+
+    seen = {}
+    for name, language, locale in [
+        ("asked", "de", "en-US"),
+        ("own", "auto", "es-MX"),
+        ("none", "auto", "fr-FR"),
+    ]:
+        path = save([run()], tmp_path / f"{name}.html", language=language)
+        context = browser.new_context(locale=locale, reduced_motion="reduce")
+        page = context.new_page()
+        page.goto(path.as_uri())
+        page.wait_for_selector("body[data-ready]")
+        seen[name] = page.evaluate("[document.documentElement.lang, document.getElementById('trace').textContent]")
+        text = page.locator("#graphs").inner_text()
+        assert ("Geschwindigkeit" in text, "rapidez" in text.lower()) == (name == "asked", name == "own")
+        context.close()
+    assert seen == {"asked": ["de", "Verfolgen"], "own": ["es", "Seguir"], "none": ["en", "Trace"]}
