@@ -57,8 +57,8 @@ LAYERS = {
 }
 """One row a room; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
-DOORS = ("compiler", "lanes", "window")
-"""The files that may speak to the compiler: what compiles kernels, and what is written in single instructions."""
+DOORS = ("by_reference", "compiler", "constant_modes", "lanes", "window")
+"""The files that may speak to the compiler: what compiles kernels, how, and what is written in single instructions."""
 
 
 class Imports(ast.NodeVisitor):
@@ -139,7 +139,7 @@ def refusal(importer, name, late):
     else:
         thing, allowed = target[0], layer.libraries.split()
         if home == "engine" and thing in ("numba", "llvmlite") and importer[-1] not in DOORS:
-            return "only engine/core/compiler.py calls numba"
+            return f"only {DOORS} call numba"
     if thing in layer.lazily.split():
         return None if late else "only inside a function"
     if thing in allowed or (target[0] == "atmosbox" and "*" in allowed):

@@ -6,11 +6,14 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
 import atmosbox.engine
 from atmosbox.engine.core import compiler, jit, kernel_cache
+from atmosbox.engine.core.state import Modes
 
 ENGINE = Path(atmosbox.engine.__file__).parent
 
@@ -203,3 +206,52 @@ def test_the_digest_depends_on_every_source_and_on_its_name(tmp_path):
     (tmp_path / "one.py").write_text("2", encoding="utf-8")
     assert len({first, second, third, kernel_cache.source_digest(tmp_path)}) == 4
     assert kernel_cache.source_digest() == kernel_cache.source_digest(ENGINE)
+
+
+NO_MODES = Modes(*[False] * 7)
+
+
+class Inner(NamedTuple):
+    """Two values that kernels hand on."""
+
+    number: float
+    values: Any
+
+
+class Outer(NamedTuple):
+    """A NamedTuple in a NamedTuple."""
+
+    inner: Inner
+    number: float
+
+
+@jit.kernel
+def fallen(x, outer, modes):
+    """Return a number; without gravity, the code of the branch has no meaning."""
+    if modes.gravity and modes.drops < 2:
+        x -= outer.inner.no_such_field
+    if not modes.rotation:
+        x += outer.inner.number
+    outer.inner.values[1] += outer.number
+    return x
+
+
+def asked_with(modes):
+    """Return a kernel that calls `fallen` with a set of modes."""
+
+    @jit.kernel(entry=True)
+    def ask(x, outer):
+        return fallen(x, jit.by_reference(outer), modes)
+
+    return ask
+
+
+def test_a_feature_that_is_off_is_not_compiled_and_a_reference_reads_and_writes_what_it_names():
+    values = np.zeros(3)
+    outer = Outer(Inner(2.0, values), 5.0)
+    assert asked_with(NO_MODES)(1.0, outer) == 3.0
+    assert asked_with(NO_MODES._replace(rotation=True))(1.0, outer) == 1.0
+    assert asked_with(NO_MODES._replace(gravity=True, drops=2))(1.0, outer) == 3.0
+    assert list(values) == [0.0, 15.0, 0.0]
+    with pytest.raises(Exception, match="no_such_field"):
+        asked_with(NO_MODES._replace(gravity=True))(1.0, outer)

@@ -17,12 +17,14 @@ from numba.core import caching, cgutils, config, types
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
+from atmosbox.engine.core.by_reference import by_reference
+from atmosbox.engine.core.constant_modes import KernelCompiler
 from atmosbox.engine.core.kernel_cache import announce, cache_folder
 
 if sys.platform != "win32":
     import fcntl
 
-__all__ = ["compiled", "prange", "prefetch", "type_of", "use_threads"]
+__all__ = ["by_reference", "compiled", "prange", "prefetch", "type_of", "use_threads"]
 
 prange = numba.prange
 """The ``range`` of a loop whose turns a kernel that is ``parallel`` shares among threads."""
@@ -125,7 +127,7 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
 
 def compiled(function: Callable[..., Any], *, entry: bool, early: bool, allocates: bool, parallel: bool) -> Any:
     """Return what numba makes of a function, which is compiled for the types it is called with: see `jit.kernel`."""
-    options = _SHARED | {"_nrt": allocates, "parallel": parallel}
+    options = _SHARED | {"_nrt": allocates, "parallel": parallel, "pipeline_class": KernelCompiler}
     if early:
         return numba.njit(inline="always", **options)(function)
     if not entry:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["COMPILED", "POSITIVE", "Kernel", "kernel", "lowest_bit", "prefetch", "use_threads"]
+__all__ = ["COMPILED", "POSITIVE", "Kernel", "by_reference", "kernel", "lowest_bit", "prefetch", "use_threads"]
 
 POSITIVE = (1 << 40) - 1
 """``index & POSITIVE`` tells the compiler that an index is not negative: that saves Python's counting from the end."""
@@ -117,6 +117,15 @@ def prefetch(array, index):
     """Ask the processor to bring ``array[index]`` (first axis) into its cache; uncompiled code does nothing."""
 
 
+def by_reference(bundle):
+    """Return a NamedTuple so that kernels hand it on by its place in memory, not value by value.
+
+    Said once by each kernel that Python calls. All kernels in it are inlined, so it changes nothing in what runs; but
+    a box is two hundred values, and to take them apart and put them together at each call was most of the compilation.
+    """
+    return bundle
+
+
 def lowest_bit(bits):
     """Return the number of the lowest bit that is set; there must be one."""
     return (int(bits) & -int(bits)).bit_length() - 1
@@ -134,5 +143,11 @@ if COMPILED:
 
         return compiler.lowest_bit
 
+    def _by_reference() -> Any:
+        from atmosbox.engine.core import compiler
+
+        return compiler.by_reference
+
+    by_reference = Kernel(by_reference, _by_reference)
     prefetch = Kernel(prefetch, _prefetch)
     lowest_bit = Kernel(lowest_bit, _lowest_bit)

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
+from atmosbox.engine.core.jit import POSITIVE, by_reference, kernel, prefetch
 from atmosbox.engine.core.pair import nearest_image, reach
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.calendar import next_event
@@ -203,6 +203,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel(entry=True)
     def place(gas, now):
         """Enter all molecules into their cells at time ``now``, where they plan their events, unless a row is full."""
+        gas = by_reference(gas)
         cells = gas.cells
         row = cells.row
         row[:] = 0
@@ -229,11 +230,13 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel(entry=True)
     def refill(gas, now):
         """Write the copies in all rows anew at time ``now``; tell whether a row is too short."""
+        gas = by_reference(gas)
         return fill(now, gas, modes)
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
         """Plan anew, at time ``now``, the moves of all that may meet a ceiling that comes down to ``lowest``."""
+        gas = by_reference(gas)
         replan_under(lowest, now, gas, modes)
 
     @kernel(entry=True)
@@ -243,12 +246,14 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         The status leaves compiled code as a plain number: to make an enum of it is Python's work, in which a signal
         that has arrived meanwhile would raise its exception at a place where none can be.
         """
+        gas = by_reference(gas)
         status, done = proceed(gas, until, most, modes)
         return status.value, done
 
     @kernel(entry=True)
     def ascend(gas, ascent, until, most):
         """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        gas, ascent = by_reference(gas), by_reference(ascent)
         done = 0
         while True:
             stop, then = ahead(until, gas, ascent)
@@ -265,6 +270,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel(entry=True)
     def overlap(gas):
         """Return the deepest overlap, in diameters, and the two molecules; all clocks must read the same."""
+        gas = by_reference(gas)
         cells = gas.cells
         deepest = -1.0
         first = -1

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.jit import by_reference, kernel
 from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes, Motion
@@ -202,6 +202,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     @kernel(entry=True)
     def begin(gas, drops, reservoir, now):
         """Make each drop as large as it is, and draw at time ``now`` when the next molecule leaves."""
+        gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
         for k in range(drops.record.size):
             resize(drops, k, gas.kinds, modes)
         _renew(now, gas, drops, reservoir)
@@ -209,6 +210,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     @kernel(entry=True)
     def advance(gas, drops, reservoir, until, most):
         """Resolve events of molecules and drops up to time ``until``; return a `Status` and how many."""
+        gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
         done = 0
         checked = 0
         while done < most:

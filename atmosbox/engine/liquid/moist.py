@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.jit import by_reference, kernel
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
@@ -260,6 +260,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     @kernel(entry=True)
     def begin(gas, reservoir, now, speed):
         """Draw the times of the liquid at time ``now``, when molecules may be as fast as ``speed`` [length/time]."""
+        gas, reservoir = by_reference(gas), by_reference(reservoir)
         reservoir.bound[0] = speed
         _next_meeting(now, gas, reservoir, modes)
         renew(now, gas.tallies.random, reservoir)
@@ -267,12 +268,14 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
     @kernel(entry=True)
     def advance(gas, reservoir, until, most):
         """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
+        gas, reservoir = by_reference(gas), by_reference(reservoir)
         status, done = _proceed(gas, reservoir, until, most, modes)
         return status.value, done
 
     @kernel(entry=True)
     def ascend(gas, reservoir, ascent, until, most):
         """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        gas, reservoir, ascent = by_reference(gas), by_reference(reservoir), by_reference(ascent)
         done = 0
         while True:
             stop, then = ahead(until, gas, ascent.dry)
