@@ -1,5 +1,6 @@
 """A run that was stopped, killed or finished goes on: what comes out is what a run that was let alone measures."""
 
+import contextlib
 import json
 import os
 import random
@@ -34,6 +35,24 @@ RUNS = {
     "drops": ("condensation", {"molecules": 200, "duration": "0.3 ns", "drops": 2}, None),
     "rain": ("mountains", {"molecules": 200, "travel": 40}, None),
 }
+
+
+# The same boxes, so large that each takes some seconds: what a process needs to be killed in.
+LARGE = {
+    "discs": {"molecules": 400, "duration": "7500 s"},
+    "walls": {"molecules": 4000, "duration": "200 ns"},
+    "strips": {"molecules": 400, "duration": "70 s"},
+    "column": {"molecules": 1000, "duration": 300},
+    "column by dsmc": {"molecules": 4000, "duration": 16000},
+    "piston": {"molecules": 8000, "ascent": 3000},
+    "in steps": {"molecules": 2000, "ascent": 250},
+    "mist": {"molecules": 4000, "ascent": 2500},
+    "mist by dsmc": {"molecules": 20000, "ascent": 2000},
+    "liquid": {"molecules": 2000, "duration": "300 ns"},
+    "drops": {"molecules": 2000, "duration": "200 ns", "drops": 2},
+    "rain": {"molecules": 2000, "travel": 2000},
+}
+KILLS = 50
 
 
 class Stop(KeyboardInterrupt):
@@ -92,40 +111,81 @@ def test_a_run_that_was_stopped_goes_on_bit_for_bit(name, tmp_path, monkeypatch)
     assert sorted(each.name for each in tmp_path.iterdir()) == ["stopped.nc", "whole.nc"]
 
 
+def started(words, folder):
+    """Start the real command in a folder of its own."""
+    folder.mkdir(exist_ok=True)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    return subprocess.Popen(
+        [sys.executable, "-m", "atmosbox", *words], cwd=folder, env=environment, stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+    )  # fmt: skip
+
+
+def killed_again_and_again(words, folder, kills, draw):
+    """Run the command, kill it at random moments, and let it go on each time; return where each kill struck.
+
+    Every second kill waits for a state that is newer than the one from which the process goes on, so that the run
+    comes to its end; the others strike whenever they like: while Python starts, while the state is put back, while
+    the engine runs, inside a writing.
+    """
+    part, struck = folder / "x.part.nc", []
+    now = words
+    while not (folder / "x.nc").exists():
+        with started(now, folder) as process:
+            old = part.stat().st_mtime_ns if part.exists() else 0
+            if len(struck) < kills:
+                patient = len(struck) % 2 == 0
+                waits = draw.uniform(0.0, 0.3 if patient else 3.0)
+                while patient and process.poll() is None and (not part.exists() or part.stat().st_mtime_ns == old):
+                    time.sleep(0.01)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(waits)
+                if process.poll() is None:
+                    process.send_signal(signal.SIGKILL)
+                    struck.append("after a state" if patient else "anywhere")
+            _, said = process.communicate()
+        assert process.returncode in (0, 3, -signal.SIGKILL), said
+        now = ["run", "--resume", "x.part.nc", "--quiet"] if part.exists() else words
+    return struck
+
+
 def test_the_command_killed_at_random_moments_goes_on_bit_for_bit(tmp_path):
     """kill -9, as a computer that is switched off: what was saved last is where it goes on."""
     words = ["run", "temperature", "--set", "molecules=20000", "--quiet", "--out", "x.nc"]
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-
-    def start(words, folder):
-        folder.mkdir(exist_ok=True)
-        return subprocess.Popen(
-            [sys.executable, "-m", "atmosbox", *words], cwd=folder, env=environment, stderr=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-        )  # fmt: skip
-
-    with start(words, whole) as process:
+    with started(words, tmp_path / "whole") as process:
         process.communicate()
-    draw, kills = random.Random(17), 0
-    now = words
-    while not (killed / "x.nc").exists():
-        with start(now, killed) as process:
-            part, before = killed / "x.part.nc", time.monotonic()
-            old = part.stat().st_mtime_ns if part.exists() else 0
-            while process.poll() is None and kills < 3 and time.monotonic() - before < 60.0:
-                if part.exists() and part.stat().st_mtime_ns != old:
-                    time.sleep(draw.uniform(0.0, 0.3))
-                    process.send_signal(signal.SIGKILL)
-                    kills += 1
-                    break
-                time.sleep(0.01)
-            _, said = process.communicate()
-        assert process.returncode in (0, -signal.SIGKILL), said
-        now = ["run", "--resume", "x.part.nc", "--quiet"]
-    assert kills
-    assert content(killed / "x.nc") == content(whole / "x.nc")
+    killed = tmp_path / "killed"
+    assert killed_again_and_again(words, killed, 3, random.Random(17))
+    assert content(killed / "x.nc") == content(tmp_path / "whole" / "x.nc")
     assert [each.name for each in killed.iterdir()] == ["x.nc"]
+
+
+@pytest.mark.soak
+def test_fifty_kills_of_the_command_change_nothing(tmp_path, request):
+    """All engines and kinds of liquid; the moments are other ones each time, and written down."""
+    seed = random.SystemRandom().randrange(2**32)
+    report = request.config.getoption("--soak-report")
+    total = 0
+    for place, name in enumerate(LARGE):
+        kills = KILLS // len(LARGE) + (place < KILLS % len(LARGE))
+        scene, _, engine = RUNS[name]
+        values = [word for pair in LARGE[name].items() for word in ("--set", "=".join(map(str, pair)))]
+        words = ["run", scene, *values, *(["--engine", engine] if engine else []), "--quiet", "--out", "x.nc"]
+        with started(words, tmp_path / f"{place}-whole") as process:
+            _, said = process.communicate()
+        assert (tmp_path / f"{place}-whole" / "x.nc").exists(), said
+        killed = tmp_path / f"{place}-killed"
+        struck = killed_again_and_again(words, killed, kills, random.Random(seed + place))
+        total += len(struck)
+        same = content(killed / "x.nc") == content(tmp_path / f"{place}-whole" / "x.nc")
+        left = sorted(each.name for each in killed.iterdir())
+        if report:
+            facts = {"killed": name, "kills": len(struck), "seed": seed + place, "same": same, "left": left}
+            with open(report, "a", encoding="utf-8") as file:
+                file.write(json.dumps(facts) + "\n")
+        assert same, (name, seed)
+        assert left == ["x.nc"]
+    assert total > KILLS / 2  # a fast computer is done with some boxes sooner
 
 
 @pytest.fixture
