@@ -11,13 +11,17 @@ unmarked
     Runs of an hour, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long, ``--soak-report FILE``
     writes their figures down, line by line.
 
-``--fuzz 100`` tries a hundred times as many examples of whatever hypothesis makes up, other ones each time.
+``--fuzz 100`` tries a hundred times as many examples of whatever hypothesis makes up, other ones each time; with
+``--soak-report FILE`` it says how many there were.
 
 Timings are never tests; they live in ``benchmarks/``. Every warning is an error.
 """
 
+import json
 import os
 import shutil
+import sys
+import time
 
 import pytest
 from hypothesis import settings
@@ -32,7 +36,7 @@ settings.load_profile("atmosbox")
 def pytest_addoption(parser):
     parser.addoption("--validate", action="store_true", help="also run the long statistical tests")
     parser.addoption("--soak", type=float, default=1.0, help="length of the soak tests, as a share of the full one")
-    parser.addoption("--soak-report", default=None, help="file to which the soak tests add their figures, line by line")
+    parser.addoption("--soak-report", default=None, help="file to which soak and fuzz add figures, line by line")
     parser.addoption("--fuzz", type=int, default=1, help="how many times as many examples hypothesis tries")
 
 
@@ -54,6 +58,14 @@ def pytest_collection_modifyitems(config, items):
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in left_out]
+
+
+def pytest_sessionfinish(session):
+    report = session.config.getoption("--soak-report")
+    if report and "tests.fuzz_case" in sys.modules:
+        said = {"fuzz": dict(sys.modules["tests.fuzz_case"].CASES), "cpu_seconds": round(time.process_time(), 1)}
+        with open(report, "a", encoding="utf-8") as file:
+            file.write(json.dumps(said) + "\n")
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from atmosbox.errors import AtmosboxError
 from atmosbox.scene.sounding import Sounding, read
+from tests.fuzz_case import fuzz_case
 
 numbers = st.one_of(
     st.floats().map(repr),
@@ -66,7 +67,8 @@ def outcome(path, content, **options):
     """Return the sounding in a file, or None after making sure that it was refused decently."""
     path.write_bytes(content)
     try:
-        sounding = read(path, **options)
+        with fuzz_case("soundings"):
+            sounding = read(path, **options)
     except AtmosboxError as error:
         sentence = str(error)
         assert sentence.isprintable()

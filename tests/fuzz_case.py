@@ -1,0 +1,60 @@
+"""What every case of a fuzz is held to: an end within some seconds of processor time; and how many cases there were."""
+
+import contextlib
+import signal
+from collections import Counter
+
+import pytest
+import typer
+from typer import testing
+
+from atmosbox.cli import app
+
+CASES = Counter()
+"""How many cases there were, by what was fuzzed, and what became of them."""
+STATUSES = (0, 1, 2, 3, 130)
+COMMAND = typer.main.get_command(app)  # built once: to build it takes thirty times as long as to refuse a word
+_LONGEST = 20.0
+
+
+class Endless(BaseException):
+    """A case has not come to an end."""
+
+
+@contextlib.contextmanager
+def fuzz_case(kind):
+    """Count a case, and stop it after twenty seconds of processor time, however long it waited for other programs."""
+
+    def stop(number, frame):
+        raise Endless(f"{kind}: no end in {_LONGEST} s of processor time")
+
+    CASES[kind] += 1
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, _LONGEST)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def typed(kind, *words):
+    """Type a command in this process; return its result after making sure that it failed decently if it failed."""
+    with fuzz_case(kind), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(testing, "_get_command", lambda app: COMMAND)
+        result = testing.CliRunner().invoke(app, [*words])
+    said = f"{words}: {result.exception!r}\n{result.output}"
+    assert result.exit_code in STATUSES, said
+    assert result.exception is None or isinstance(result.exception, SystemExit), said
+    assert "Traceback" not in result.output, said
+    assert "This is a bug" not in result.output, said
+    if result.exit_code in (1, 2):
+        assert result.stdout == "", said
+        lines = [line for line in result.stderr.splitlines() if not line.startswith(("note: ", "warning: "))]
+        assert lines, said
+        if lines[0].startswith("error: "):
+            assert len(lines) == 1, said
+        else:
+            assert lines[0].startswith("Usage: "), said
+    CASES[f"{kind}, status {result.exit_code}"] += 1
+    return result

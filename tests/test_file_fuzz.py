@@ -1,0 +1,140 @@
+"""Whatever stands in a netCDF file: what it holds, or one sentence, and never a traceback."""
+
+import contextlib
+import json
+import random
+import shutil
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.simulation import runner
+from atmosbox.sweep import plan, sweep
+from tests.fuzz_case import typed
+
+ODD_TEXTS = ["", "x", "[" * 3000, "{}", "null", '{"scene": 3}', "\x00", "é" * 500, "nan", "9" * 400, '"', "run.nc"]
+ODD_NUMBERS = [0, -1, 2**31 - 1, -(2**31), float("nan"), float("inf"), -1e308, 1e-320, 300.0]
+COMMANDS = {
+    "read": (["compare", "{odd}", "{good}", "--out", "out.png"], 1),
+    "plot": (["plot", "{odd}", "--out", "out.png"], 1),
+    "view": (["view", "{odd}", "--out", "out.html"], 6),
+    "csv": (["export", "{odd}", "--format", "csv", "--out", "out.csv"], 12),
+    "xyz": (["export", "{odd}", "--format", "extxyz", "--out", "out.xyz"], 12),
+    "from": (["run", "--from", "{odd}", "--dry-run"], 12),
+    "resume": (["run", "--resume", "{odd}", "--out", "out.nc", "--dry-run"], 12),
+}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Small files of all kinds, in a folder to be in."""
+    place = tmp_path_factory.mktemp("files")
+
+    def stop(share, word):
+        if word == "running" and share > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        patch.setattr(runner, "_BREATH", 0.0)
+        runner.run("temperature", molecules=50, duration="0.1 ns", save_molecules=True, out="molecules.nc")
+        runner.run("lifting-dry", molecules=50, ascent=30.0, out="lift.nc")
+        prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})
+        with pytest.raises(runner.Interrupted):
+            runner.execute(prepared, checkpoint=Checkpoint("half.nc"), progress=stop)
+        sweep(plan("elastic-collisions", ["molecules=10,20"], settings={"duration": 2.0}), "sweep.nc", jobs=1)
+        yield sorted(place.iterdir())
+
+
+def other_bytes(path, draw):
+    """Change some bytes of a file, cut it, or put a piece of it into another place."""
+    content = bytearray(path.read_bytes())
+    kind = draw.randrange(5)
+    start = draw.randrange(len(content))
+    if kind == 0:
+        for _ in range(draw.randrange(1, 20)):
+            content[draw.randrange(len(content))] = draw.randrange(256)
+    elif kind == 1:
+        del content[start:]
+    elif kind == 2:
+        content[start : start + draw.randrange(1, 200)] = bytes(draw.randrange(1, 200))
+    elif kind == 3:
+        piece = content[start : start + draw.randrange(1, 500)]
+        place = draw.randrange(len(content))
+        content[place : place + len(piece)] = piece
+    else:
+        for _ in range(draw.randrange(1, 4)):  # in the first blocks HDF5 says what lies where
+            content[draw.randrange(min(4096, len(content)))] = draw.choice([0, 255, draw.randrange(256)])
+    path.write_bytes(content)
+
+
+def other_content(path, draw):
+    """Change attributes, names and numbers of a file that stays a whole one."""
+    with netCDF4.Dataset(path, "r+") as file:
+        for _ in range(draw.randrange(1, 4)):
+            owner = draw.choice([file, *file.variables.values()])
+            names = owner.ncattrs()
+            kind = draw.randrange(6)
+            if kind == 0 and names:
+                owner.delncattr(draw.choice(names))
+            elif kind == 1 and names:
+                owner.setncattr(draw.choice(names), draw.choice([*ODD_TEXTS, *ODD_NUMBERS]))
+            elif kind == 2:
+                told = [name for name in file.ncattrs() if str(file.getncattr(name)).startswith(("{", "["))]
+                if told:
+                    name = draw.choice(told)
+                    file.setncattr(name, json.dumps(other_json(json.loads(file.getncattr(name)), draw)))
+            elif kind == 3 and owner is not file and owner.size and owner.dtype.kind in "fiu":
+                values = np.array(owner[...], dtype=owner.dtype)
+                with np.errstate(all="ignore"):
+                    odd = np.asarray(draw.choice(ODD_NUMBERS), float)
+                    values.flat[draw.randrange(values.size)] = (
+                        odd if owner.dtype.kind == "f" else int(np.nan_to_num(odd)) % 127
+                    )
+                owner[...] = values
+            elif kind == 4 and owner is not file:
+                file.renameVariable(owner.name, f"other_{owner.name}")
+            elif kind == 5:
+                name = draw.choice(sorted(file.dimensions))
+                file.renameDimension(name, f"other_{name}")
+
+
+def other_json(held, draw):
+    """Return what a text holds, with one thing in it another."""
+    if isinstance(held, dict) and held and draw.random() < 0.8:
+        name = draw.choice(sorted(held))
+        return {**held, name: other_json(held[name], draw)}
+    if isinstance(held, list) and held and draw.random() < 0.8:
+        k = draw.randrange(len(held))
+        return [*held[:k], other_json(held[k], draw), *held[k + 1 :]]
+    return draw.choice([None, True, [], {}, -1, 1e300, *ODD_TEXTS[:4], *ODD_TEXTS[6:]])
+
+
+def tried(files, seed):
+    """Damage a file in a way that a number decides, and give it to a command."""
+    draw = random.Random(seed)
+    good = draw.choice(files)
+    odd = good.with_name("odd.nc")
+    shutil.copy(good, odd)
+    refusals = OSError, RuntimeError, ValueError, AttributeError, TypeError, KeyError
+    with contextlib.suppress(*refusals):  # netCDF itself refuses to write that
+        (other_content if draw.random() < 0.6 else other_bytes)(odd, draw)
+    name = draw.choices([*COMMANDS], [weight for _, weight in COMMANDS.values()])[0]
+    words = [word.format(odd="odd.nc", good=good.name) for word in COMMANDS[name][0]]
+    try:
+        return typed("netCDF files", *words)
+    finally:
+        for path in Path.cwd().iterdir():
+            if path not in files:
+                path.unlink()
+
+
+@settings(max_examples=60)
+@given(seed=st.integers(0, 2**40))
+def test_no_file_breaks_a_command(files, seed):
+    tried(files, seed)
