@@ -5,6 +5,7 @@ Read `core` first, then `exact`; the other folders when you need them. Each list
 `core`     molecules, walls, schedules, random numbers, the laws of contact, tallies, refusals
 `start`    where molecules stand at the start, and how they move
 `exact`    from event to event, with nothing in between; and the slow reference
+`wells`    molecules that attract each other, from event to event
 `liquid`   condensed water: a reservoir, as a mist, as drops or as a pool
 `stepped`  in time steps: all move, those that overlap collide
 `dsmc`     direct simulation Monte Carlo
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from atmosbox.engine.start.lattice import lattice_positions
     from atmosbox.engine.start.scatter import random_positions
     from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies, two_halves
+    from atmosbox.engine.wells.attracting_parcelset import AttractingParcelSet
+    from atmosbox.engine.wells.attraction import RandomBath, SquareWell
 
 _HOMES = {
     "core.course": "Course",
@@ -44,10 +47,13 @@ _HOMES = {
     "start.lattice": "lattice_positions",
     "start.scatter": "random_positions",
     "start.velocity": "equal_speeds maxwell_velocities rotational_energies two_halves",
+    "wells.attracting_parcelset": "AttractingParcelSet",
+    "wells.attraction": "RandomBath SquareWell",
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
+    "AttractingParcelSet",
     "CoarseStepWarning",
     "Constant",
     "Course",
@@ -64,10 +70,12 @@ __all__ = [
     "Piston",
     "Pool",
     "Ramp",
+    "RandomBath",
     "RefusedError",
     "Schedule",
     "Snapshot",
     "Specular",
+    "SquareWell",
     "StalledError",
     "Steps",
     "Substance",

@@ -9,6 +9,7 @@ file                what it answers
 =================== =====================================================================================
 equation_of_state   by how much the pressure of hard spheres exceeds that of points
 entropy             what their excluded volume does to the free energy and to the adiabat
+well_gas            pressure and energy of a gas whose molecules attract each other
 disc                the same in two dimensions, and how often discs meet
 collision           how often molecules meet, and how far they fly between
 maxwell             how fast they are, and how much the temperature of few of them scatters
@@ -132,6 +133,12 @@ from atmosbox.theory.wall_law import (
     emission_normal_speed,
     free_molecular_slab,
 )
+from atmosbox.theory.well_gas import (
+    square_well_compressibility,
+    square_well_energy,
+    square_well_second_virial,
+    square_well_third_virial,
+)
 
 __all__ = [
     "BINDING_TEMPERATURE",
@@ -214,6 +221,10 @@ __all__ = [
     "saturation_mixing_ratio",
     "saturation_vapor_pressure",
     "saturation_vapor_pressure_iapws",
+    "square_well_compressibility",
+    "square_well_energy",
+    "square_well_second_virial",
+    "square_well_third_virial",
     "staying_energy_density",
     "temperature_noise",
     "vapor_pressure",

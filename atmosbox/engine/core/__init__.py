@@ -4,6 +4,7 @@
 `motion`        free flight
 `random`        random numbers
 `hard_sphere`   the law of hard spheres: when two touch, what becomes of their velocities
+`square_well`   the law of spheres that attract each other: edge and core of a well
 `pair`          how far molecules feel each other, when they meet: by whichever law
 `schedule`      numbers that change with time
 `walls`         what walls do, one law each

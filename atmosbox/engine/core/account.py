@@ -114,7 +114,7 @@ class Account(ABC):
         return np.array(self._tallies.virial)
 
     def energy(self) -> tuple[float, float, float]:
-        """Return kinetic, rotational and potential energy now [energy]."""
+        """Return kinetic, rotational and potential energy now [energy]; that of gravity, and of attraction if any."""
         position, velocity, spin = self.snapshot()[1:]
         kinetic = 0.5 * float(np.sum(self.mass * np.sum(velocity * velocity, axis=1)))
         rotational = float(np.sum(spin)) if self._rotates else 0.0
@@ -125,13 +125,33 @@ class Account(ABC):
         """Return by how much the energy ledger fails to close, relative to the energy that there is or has passed.
 
         Kinetic + rotational + potential energy and that of a liquid = what there was at the start + heat from the
-        walls + work of the piston + what changes of gravity gave + what an approximate scheme has made by itself.
+        walls and from a random bath + work of the piston + what changes of gravity and of attraction gave + what an
+        approximate scheme has made by itself.
         """
-        total = sum(self.energy()) + self.condensed_energy
-        given = float(self._tallies.heat.sum()) + self.work + self.gravity_work + self.numerical_heat
+        parts = self.energy()
+        total = sum(parts) + self.condensed_energy
+        given = self._given()
         passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work) + abs(self.gravity_work)
-        scale = max(abs(total), abs(self._start_energy), passed)
+        passed += abs(self.bath_heat) + abs(self.attraction_work)
+        # in deep wells a large kinetic energy and a large negative potential one may add up to little
+        scale = max(abs(total), abs(self._start_energy), passed, *(abs(part) for part in parts))
         return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
+
+    def _given(self) -> float:
+        """Return all energy that has come in since the start [energy]."""
+        walls = float(self._tallies.heat.sum())
+        given = walls + self.work + self.gravity_work + self.numerical_heat
+        return given + self.bath_heat + self.attraction_work
+
+    @property
+    def bath_heat(self) -> float:
+        """Heat that a random bath has given since the start [energy]; most boxes have none."""
+        return 0.0
+
+    @property
+    def attraction_work(self) -> float:
+        """Energy that changes of an attraction have given since the start [energy]; hard spheres have none."""
+        return 0.0
 
     @property
     def numerical_heat(self) -> float:
@@ -159,5 +179,4 @@ class Account(ABC):
 
         Meant for boxes without gravity, where it costs nothing however many molecules there are.
         """
-        given = float(self._tallies.heat.sum()) + self.work + self.gravity_work + self.numerical_heat
-        return self._start_energy + given - self.condensed_energy
+        return self._start_energy + self._given() - self.condensed_energy

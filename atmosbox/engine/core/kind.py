@@ -12,9 +12,13 @@ Array = NDArray[np.float64]
 
 
 def classify(
-    mass: Array, diameter: Array, rotation: Array, rotational_energy: Array | None
+    mass: Array,
+    diameter: Array,
+    rotation: Array,
+    rotational_energy: Array | None,
+    species: NDArray[np.int64] | None = None,
 ) -> tuple[Kinds, NDArray[np.int64], Array]:
-    """Gather equal molecules into kinds.
+    """Gather equal molecules into kinds; those of different species are never of one kind.
 
     Returns
     -------
@@ -27,12 +31,12 @@ def classify(
     >>> classify(*both, None)[1].tolist()
     [1, 0, 1]
     """
-    columns = np.stack([mass, 0.5 * diameter, rotation], axis=1)
+    columns = np.stack([mass, 0.5 * diameter, rotation, *([] if species is None else [species])], axis=1)
     table, kind = np.unique(columns, axis=0, return_inverse=True)
     if not len(table):
         table = np.array([[1.0, 0.0, 0.0]])
     classes, radius = size_classes(table[:, 1])
     records = aligned_records(len(table), KIND)
-    records["mass"], records["radius"], records["rotation"] = table.T
+    records["mass"], records["radius"], records["rotation"] = table.T[:3]
     records["size_class"] = classes
     return Kinds(records, np.zeros(1) if rotational_energy is None else rotational_energy), kind.reshape(-1), radius

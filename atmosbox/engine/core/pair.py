@@ -1,8 +1,9 @@
 """Pairs of molecules: how far they feel each other, when they meet, and what becomes of them.
 
 Everything that asks about a pair asks here: the exact engine and the time-stepped one, drops, and the checks for
-overlap. The law itself stands in a file of its own, `hard_sphere`. A second law is a second such file and a branch on
-a mode in `reach`, `approach`, `predict` and `resolve`; nothing else of the engine changes.
+overlap. The law itself stands in a file of its own, `hard_sphere`. Another law of one distance is a second such file
+and a branch on a mode in `reach`, `approach`, `predict` and `resolve`; nothing else of the engine changes. The law of
+the square well, `square_well`, has two distances and a memory of who is between them: its loop is that of `wells`.
 """
 
 import math

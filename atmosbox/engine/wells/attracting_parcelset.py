@@ -1,0 +1,311 @@
+"""The parcel of molecules that attract each other, advanced exactly: a liquid that nobody put in."""
+
+from typing import ClassVar, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.core.inputs import number
+from atmosbox.engine.core.kind import classify
+from atmosbox.engine.core.parcel import Arrangement, Array
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.state import EVENT, MOLECULE, Modes, aligned_records
+from atmosbox.engine.core.walls import PISTON
+from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.exact.exact import Status
+from atmosbox.engine.exact.parcelset import ParcelSet
+from atmosbox.engine.wells.attraction import RandomBath, SquareWell, Wells, new_bath, new_wells
+from atmosbox.engine.wells.vicinity import Vicinity, new_vicinity
+from atmosbox.engine.wells.well_events import WellGas, specialise
+
+__all__ = ["AttractingParcelSet"]
+
+_TIGHT = 1.05
+_KINDS = 64
+
+
+class AttractingParcelSet(ParcelSet):
+    """A set of molecules that attract each other, with its box, advanced exactly.
+
+    What it is given besides, and what it tells, is described at `Parcel`. Its potential energy is that of the wells and
+    of gravity.
+
+    Parameters
+    ----------
+    well
+        How far and how strongly they attract each other.
+    species : (molecule,)
+        Whole numbers from 0: rows of the tables of the well. All molecules are alike by default.
+    strength
+        The depth of all wells, over that of their law; it may be changed while time passes.
+    bath
+        A heat bath that draws velocities anew, or none.
+
+    Raises
+    ------
+    RefusedError
+        If a piston or rotation is asked for, a periodic side is too short for the wells, or a table does not fit.
+
+    References
+    ----------
+    Alder, B. J., Wainwright, T. E. (1959), doi:10.1063/1.1730376.
+
+    Examples
+    --------
+    Two molecules that meet at a relative speed of 2 are captured, collide, part, and climb out of the well again:
+
+    >>> pair = AttractingParcelSet(
+    ...     [[4, 5, 5], [7, 5, 5]], [[1, 0, 0], [-1, 0, 0]], length=(10, 10, 10), well=SquareWell(1.5, 1.0)
+    ... )
+    >>> pair.advance(0.8)
+    >>> pair.number_of_wells, pair.energy()[2], round(float(pair.snapshot().velocity[0, 0]), 6)
+    (1, -1.0, 1.414214)
+    >>> pair.advance(2.0)
+    >>> pair.number_of_wells, pair.contacts, pair.snapshot().velocity[:, 0].round(12).tolist()
+    (0, 1, [-1.0, 1.0])
+    """
+
+    engine: ClassVar[str] = "exact"
+
+    _attraction_work = 0.0
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        *,
+        well: SquareWell,
+        species: ArrayLike = 0,
+        strength: float = 1.0,
+        bath: RandomBath | None = None,
+        **box: Unpack[Arrangement],
+    ) -> None:
+        self._well = well.range, well.depth
+        self._species = np.asarray(species)
+        self._strength = number(strength, "strength of the attraction", least=0.0)
+        self._bath = new_bath(bath)
+        super().__init__(position, velocity, **box)
+
+    def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        if self._walls.law[5] == PISTON:
+            raise RefusedError("molecules that attract each other have no piston: make wall z_high another one")
+        if self._rotates:
+            raise RefusedError("rotation of molecules that attract each other is not available: make rotation 0")
+        if not self._collisions:
+            raise RefusedError("molecules that attract each other collide: make collisions True")
+        super()._begin(position, velocity, rotational_energy)
+
+    def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        n = len(position)
+        species = self._species
+        if species.ndim > 1 or (species.ndim == 1 and len(species) != n):
+            raise RefusedError(
+                f"species has shape {species.shape}: give one whole number, or one for each of {n} molecules"
+            )
+        if not np.issubdtype(species.dtype, np.integer) or (species < 0).any():
+            raise RefusedError("species of a molecule is no whole number: give 0, 1, 2, ...")
+        species = np.broadcast_to(species, (n,)).astype(np.int64)
+        self._molecules = aligned_records(n, MOLECULE)
+        for axis, name in enumerate("xyz"):
+            self._molecules[name] = position[:, axis]
+            self._molecules["v" + name] = velocity[:, axis]
+        self._kinds, kind, self._size_radius = classify(self._mass, self._diameter, self._rotation, None, species)
+        self._molecules["kind"] = kind
+        self._fields = self._molecules.view(np.ndarray)
+        radius = np.array(self._kinds.table["radius"])
+        if len(radius) > _KINDS:
+            raise RefusedError(
+                f"{len(radius)} kinds of molecules that attract each other are too many: let them differ in at most "
+                f"{_KINDS} masses, diameters and species together"
+            )
+        species_of_kind = np.zeros(len(radius), np.int64)
+        species_of_kind[kind] = species
+        self._species = species
+        self._wells: Wells = new_wells(SquareWell(*self._well), species_of_kind, radius)
+        self._full_depth = self._wells.depth.copy()
+        self._wells.depth[:] *= self._strength
+
+    def _lay_out(self) -> None:
+        """Make the lists of all molecules, and plan every event anew."""
+        n = len(self._fields)
+        self._filled = self.ceiling
+        reach = float(self._wells.distance.max(initial=0.0))
+        for axis in range(3):
+            if self._periodic[axis] and self._sides[axis] < 2.0 * _TIGHT * reach:
+                raise RefusedError(
+                    f"length = {self._sides[axis]:.6g} along {'xyz'[axis]} is too short for molecules that feel each "
+                    f"other over {reach:.6g} on a periodic axis: make it {2.0 * _TIGHT * reach:.6g} or more"
+                )
+        self._modes = Modes(
+            contacts=True,
+            gravity=self.gravity > 0.0,
+            rotation=False,
+            mixed=len(self._kinds.table) > 1,
+            spanning=False,
+            periodic=any(self._periodic),
+            piston=False,
+        )
+        self._find_kernels()
+        self._events = aligned_records(n, EVENT)
+        self._calendar = new_calendar(n)
+        vicinity = new_vicinity(self._sides, self._periodic, n, reach, planar=self._planar)
+        self._vicinity: Vicinity = vicinity
+        stride = 64
+        while True:
+            self._vicinity = vicinity._replace(entry=np.zeros(n * stride, np.uint32), stride=stride)
+            if self._place(self._gas(), self._now) != Status.ROW_FULL:
+                return
+            stride *= 2
+
+    def _find_kernels(self) -> None:
+        self._place, self._advance, self._replan, self._overlap_at = specialise(self._modes)
+
+    def _overlap(self, gas: WellGas) -> tuple[float, int, int]:
+        depth, i, j = self._overlap_at(gas, self._now)
+        return float(depth), int(i), int(j)
+
+    def _gas(self) -> WellGas:  # type: ignore[override]
+        return WellGas(
+            self._molecules, self._events, self._kinds, self._calendar, self._box,
+            self._walls, self._tallies, self._wells, self._vicinity, self._bath,
+        )  # fmt: skip
+
+    def _grow_rows(self) -> None:
+        """Make the lists of all molecules longer."""
+        old, n = self._vicinity, len(self._fields)
+        entry = np.zeros((n, 2 * old.stride), np.uint32)
+        entry[:, : old.stride] = old.entry.reshape(n, old.stride)
+        self._vicinity = old._replace(entry=entry.reshape(-1), stride=2 * old.stride)
+
+    def _next_time(self) -> float:
+        return min(super()._next_time(), float(self._bath.clock[0]))
+
+    def _rebase(self, step: float) -> None:
+        self._fields["clock"] -= step
+        self._events["contact_time"] -= step
+        times = self._calendar.time
+        times -= step
+        self._bath.clock[0] -= step
+        self._walls.piston[2] -= step
+        self._tallies.progress[0] -= step
+        self._walls.epoch[0] += step
+        self._now -= step
+
+    def memory(self) -> int:
+        """Return the bytes that molecules, events, lists and calendar take."""
+        arrays = [self._molecules, self._events, self._calendar.time, self._calendar.winner, self._kinds.table]
+        arrays += [part for part in (*self._vicinity, *self._wells) if isinstance(part, np.ndarray)]
+        return sum(int(a.nbytes) for a in arrays)
+
+    # ------------------------------------------------------------------ what it tells
+
+    def energy(self) -> tuple[float, float, float]:
+        """Return kinetic, rotational and potential energy now [energy]: that of gravity and of the wells."""
+        kinetic, rotational, potential = super().energy()
+        return kinetic, rotational, potential + self.well_energy
+
+    @property
+    def well_energy(self) -> float:
+        """Potential energy of all pairs that are in each other's well now, 0 or below [energy]."""
+        return -float(np.sum(self._wells.depth * self._wells.number)) if self._wells.number.any() else 0.0
+
+    @property
+    def number_of_wells(self) -> int:
+        """How many pairs are in each other's well now."""
+        return int(self._wells.number.sum())
+
+    @property
+    def well_events(self) -> dict[str, int]:
+        """Numbers of captures, releases, bounces in the well, and velocities drawn anew since the start."""
+        names = ("captures", "releases", "bounces", "drawn")
+        return {name: int(count) for name, count in zip(names, self._wells.count, strict=True)}
+
+    @property
+    def stress(self) -> Array:
+        """Sums of r_a dp_a over all events of pairs since the start, along x, y and z [energy]."""
+        return np.array(self._wells.stress)
+
+    @property
+    def bath_heat(self) -> float:
+        """Heat that the random bath has given since the start [energy]."""
+        return float(self._bath.heat[0])
+
+    def pairs(self) -> NDArray[np.int64]:
+        """Return the pairs that are in each other's well now, (pair, 2), the lower number first."""
+        n, stride = len(self._fields), self._vicinity.stride
+        entry = self._vicinity.entry.reshape(n, stride)
+        listed = np.arange(1, stride)[None, :] <= entry[:, :1]
+        first, place = np.nonzero(listed & (entry[:, 1:] & 1 == 1))
+        second = (entry[first, place + 1] >> 1).astype(np.int64)
+        lower = first < second
+        return np.stack([first[lower], second[lower]], axis=1)
+
+    def neighbours(self) -> NDArray[np.int64]:
+        """Return in how many wells each molecule is now, (molecule,)."""
+        return np.bincount(self.pairs().reshape(-1), minlength=len(self._fields))
+
+    # ------------------------------------------------------------------ what may be changed
+
+    @property
+    def attraction_work(self) -> float:
+        """Energy that changes of the depth of the wells have given since the start [energy]."""
+        return self._attraction_work
+
+    @property
+    def strength(self) -> float:
+        """The depth of the wells, over that of their law."""
+        return self._strength
+
+    def set_strength(self, strength: float) -> None:
+        """Let all wells have another depth from now on: this many times that of their law.
+
+        No molecule moves in that moment, but those in wells lie deeper or less deep; the ledger has it as
+        `attraction_work`.
+
+        Raises
+        ------
+        RefusedError
+            If the number is not finite, or below 0.
+
+        Examples
+        --------
+        >>> box = AttractingParcelSet([[4, 5, 5], [5.2, 5, 5]], [[0, 0, 0]] * 2, length=(10,) * 3, well=SquareWell())
+        >>> box.set_strength(0.5)
+        >>> box.well_energy, box.attraction_work, box.ledger()
+        (-0.5, 0.5, 0.0)
+        """
+        strength = number(strength, "strength of the attraction", least=0.0)
+        before = self.well_energy
+        self._strength = strength
+        self._wells.depth[:] = strength * self._full_depth
+        self._attraction_work += self.well_energy - before
+        self._replan(self._gas(), self._now)
+
+    def set_bath_kT(self, kT: float) -> None:
+        """Keep the random bath at another temperature [energy] from now on; a schedule that it had is forgotten.
+
+        Raises
+        ------
+        RefusedError
+            If there is no bath, or the temperature is not finite and above 0.
+        """
+        kT = number(kT, "kT of the random bath")
+        if not kT > 0.0:
+            raise RefusedError(f"kT of the random bath = {kT} is not positive: give a number above 0")
+        if not self._bath.rate > 0.0:
+            raise RefusedError("this box has no random bath: give it a RandomBath")
+        self._bath.schedule_kT[:] = kT
+
+    def _field_changes(self, gravity: float) -> None:
+        now = self._now
+        m = self._fields
+        dt = now - m["clock"]
+        for name in "xyz":
+            m[name] += dt * m["v" + name]
+        m["z"] -= 0.5 * self._gravity * dt * dt
+        m["vz"] -= self._gravity * dt
+        m["clock"] = now
+        self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
+        self._modes = self._modes._replace(gravity=gravity > 0.0)
+        self._find_kernels()
+        self._replan(self._gas(), now)

@@ -1,0 +1,178 @@
+"""What a box of molecules that attract each other is given besides: its wells, and a bath of random velocities."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox.engine.core.inputs import number
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.schedule import Schedule, as_schedule
+
+__all__ = ["Bath", "RandomBath", "SquareWell", "Wells", "new_bath", "new_wells", "well_table"]
+
+Array = NDArray[np.float64]
+
+_WIDEST = 5.0
+
+
+@dataclass(frozen=True)
+class SquareWell:
+    """How far and how strongly molecules attract each other.
+
+    Parameters
+    ----------
+    range
+        Where the well ends, in contact distances of the pair: lambda, from 1 to 5.
+    depth
+        How deep it is [energy], 0 or above.
+
+    Either may be a symmetric table, (species, species). Where a range is 1 or a depth 0, the pair are hard spheres.
+
+    Examples
+    --------
+    Vapour that attracts itself, and air that neither attracts it nor itself:
+
+    >>> SquareWell(range=1.5, depth=[[1.0, 0.0], [0.0, 0.0]]).depth
+    [[1.0, 0.0], [0.0, 0.0]]
+    """
+
+    range: ArrayLike = 1.5
+    depth: ArrayLike = 1.0
+
+
+@dataclass(frozen=True)
+class RandomBath:
+    """A heat bath without walls: now and then it draws the velocity of a molecule anew.
+
+    Parameters
+    ----------
+    kT
+        Its temperature [energy], a number or a schedule.
+    rate
+        How often it does so with each molecule, on average [1/time].
+
+    References
+    ----------
+    Andersen, H. C. (1980), doi:10.1063/1.439486.
+    """
+
+    kT: float | Schedule
+    rate: float
+
+
+class Wells(NamedTuple):
+    """The wells as the kernels know them.
+
+    ``core``, ``edge`` and ``depth : (kind, kind)``: see `square_well.Well`; ``distance : (kind, kind)`` is the edge
+    [length]. ``number : (kind, kind)``: how many pairs of a lower and a higher kind are inside their wells now.
+    ``count : (4,)`` captures, releases, bounces, velocities drawn anew by the bath; ``stress : (axis,)`` sums of
+    r_a dp_a over all events of pairs since the start [energy].
+    """
+
+    core: Any
+    edge: Any
+    depth: Any
+    distance: Any
+    number: Any
+    count: Any
+    stress: Any
+
+
+class Bath(NamedTuple):
+    """The bath as the kernels know it.
+
+    ``clock : (1,)`` when it acts next [time, local]; ``rate`` how often it does with each molecule [1/time]; the
+    polygon of its temperature as that of a wall, see `state.Walls`; ``heat : (1,)`` what it has given [energy].
+    """
+
+    clock: Any
+    rate: float
+    schedule: Any
+    schedule_time: Any
+    schedule_kT: Any
+    heat: Any
+
+
+def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
+    """Return range and depth as tables, (species, species), or refuse; a table may hold more species than are there.
+
+    Raises
+    ------
+    RefusedError
+        If a table is too small or not symmetric, or a number in it is impossible.
+
+    Examples
+    --------
+    >>> well_table(SquareWell(range=1.5, depth=2.0), 1)
+    (array([[1.5]]), array([[2.]]))
+    """
+    limits = {"range": (1.0, _WIDEST), "depth": (0.0, math.inf)}
+    tables = []
+    for name, (least, most) in limits.items():
+        try:
+            table = np.array(getattr(well, name), np.float64)
+        except (TypeError, ValueError):
+            raise RefusedError(f"{name} of the well is not a number: give a number, or a table of species") from None
+        if table.ndim == 0:
+            table = np.full((species, species), float(table))
+        if table.ndim != 2 or table.shape[0] != table.shape[1] or len(table) < species:
+            raise RefusedError(
+                f"{name} of the well has shape {table.shape} for {species} species: give one number, or a table of "
+                f"{species} by {species}"
+            )
+        for value in table.flat:
+            number(value, f"{name} of the well", least=least, most=most)
+        if (table != table.T).any():
+            raise RefusedError(f"{name} of the well is not symmetric: the attraction of a pair is mutual")
+        tables.append(table[:species, :species])
+    return tables[0], tables[1]
+
+
+def new_wells(well: SquareWell, species: NDArray[np.int64], radius: Array) -> Wells:
+    """Return the wells of kinds of molecules: ``species : (kind,)`` and ``radius : (kind,)`` [length].
+
+    Examples
+    --------
+    >>> wells = new_wells(SquareWell(1.5, [[1, 0], [0, 0]]), np.array([0, 1]), np.array([0.5, 0.5]))
+    >>> wells.distance
+    array([[1.5, 1. ],
+           [1. , 1. ]])
+    """
+    ranges, depths = well_table(well, int(species.max(initial=0)) + 1)
+    contact = radius[:, None] + radius[None, :]
+    range_of, depth = ranges[np.ix_(species, species)], depths[np.ix_(species, species)]
+    hard = (depth == 0.0) | (range_of == 1.0)
+    distance = np.where(hard, contact, range_of * contact)
+    core = contact * contact
+    return Wells(
+        core=core,
+        edge=np.where(hard, core, distance * distance),
+        depth=np.where(hard, 0.0, depth),
+        distance=distance,
+        number=np.zeros(core.shape, np.int64),
+        count=np.zeros(4, np.int64),
+        stress=np.zeros(3),
+    )
+
+
+def new_bath(bath: RandomBath | None) -> Bath:
+    """Return a bath, checked; without one, nothing that ever acts.
+
+    Examples
+    --------
+    >>> new_bath(None).rate
+    0.0
+    """
+    rate = 0.0 if bath is None else number(bath.rate, "rate of the random bath", least=0.0)
+    corners = [(0.0, 1.0)] if bath is None else as_schedule(bath.kT, "kT of the random bath")
+    return Bath(
+        clock=np.full(1, math.inf),
+        rate=rate,
+        schedule=np.array([0, len(corners)]),
+        schedule_time=np.array([time for time, _ in corners]),
+        schedule_kT=np.array([kT for _, kT in corners]),
+        heat=np.zeros(1),
+    )
