@@ -153,6 +153,30 @@ def test_the_home_of_caches_is_tried_before_the_temporary_folder(tmp_path, monke
     assert tried[1].startswith(tempfile.gettempdir())
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there, a user without a home is another matter")
+def test_a_user_without_a_home_has_a_folder_among_the_temporary_files(tmp_path, monkeypatch):
+    """In a container the user may be a number that is in no list, without a home."""
+    import pwd
+
+    def unknown(number):
+        raise KeyError(number)
+
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(pwd, "getpwuid", unknown)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    assert kernel_cache.cache_folder().parent.parent == tmp_path
+
+
+@pytest.mark.parametrize("damage", [b"", b"\xff\xfe", b"..", b"0123456789abcde/"])
+def test_a_damaged_note_of_the_digest_counts_for_nothing(tmp_path, damage):
+    digest = kernel_cache.source_digest(memory=tmp_path)
+    (note,) = tmp_path.glob("*.digest")
+    note.write_bytes(damage)
+    assert kernel_cache.source_digest(memory=tmp_path) == digest
+    assert note.read_text(encoding="ascii") == digest
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
 def test_a_folder_that_others_may_write_to_is_not_trusted(tmp_path, monkeypatch):
     ours, theirs = tmp_path / "ours", tmp_path / "theirs"

@@ -11,6 +11,7 @@ import ast
 import contextlib
 import hashlib
 import os
+import re
 import stat
 import sys
 import tempfile
@@ -18,6 +19,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 __all__ = ["announce", "cache_folder", "compilations", "source_digest"]
+
+
+_DIGEST = re.compile(rb"[0-9a-f]{16}")
 
 
 def _code_of(source: str) -> str:
@@ -55,7 +59,9 @@ def source_digest(folder: Path | None = None, memory: Path | None = None) -> str
     written = _digest([version, *(f"{name} {hashlib.sha256(text).hexdigest()}" for name, text in sources.items())])
     known = memory / f"{written}.digest" if memory else None
     if known and known.is_file():
-        return known.read_text(encoding="ascii")
+        held = known.read_bytes()
+        if _DIGEST.fullmatch(held):  # a power failure may leave anything in a file
+            return held.decode()
     digest = _digest([version, *(f"{name} {_code_of(text.decode())}" for name, text in sources.items())])
     if known:
         new = known.with_suffix(f".{os.getpid()}")
@@ -74,13 +80,16 @@ def _homes_of_caches() -> list[Path]:
     if asked:
         return [Path(asked)]
     if sys.platform == "win32":
-        home = Path(os.environ.get("LOCALAPPDATA", tempfile.gettempdir()))
+        usual = os.environ.get("LOCALAPPDATA", tempfile.gettempdir())
     elif sys.platform == "darwin":
-        home = Path("~/Library/Caches").expanduser()
+        usual = "~/Library/Caches"
     else:
-        home = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser()
+        usual = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
     owner = str(os.getuid()) if hasattr(os, "getuid") else os.environ.get("USERNAME", "cache")
-    return [home / "atmosbox", Path(tempfile.gettempdir()) / f"atmosbox-{owner}"]
+    homes = [Path(tempfile.gettempdir()) / f"atmosbox-{owner}"]
+    with contextlib.suppress(RuntimeError):  # in a container, a user may be a number that has no home
+        homes.insert(0, Path(usual).expanduser() / "atmosbox")
+    return homes
 
 
 def _is_ours(folder: Path) -> bool:
