@@ -170,6 +170,7 @@ CASES = [
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
     Case("lifting-dry", {"molecules": 200, "ascent": 400.0}, 24),
+    Case("lifting-dry", {"molecules": 200, "ascent": 150.0}, 60),
     Case("lifting-moist", {"molecules": 2000}, 60),
     Case("lifting-sounding", {"molecules": 4000, "ascent": 400.0}, 60, METPY),
     Case("mountains", {"molecules": 4000, "cloud_water": 3.0}, 60),
