@@ -240,55 +240,6 @@ def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> 
     return critical
 
 
-def successive_error(values: ArrayLike, block: int = 1, lag: int = 1, near: int = 6) -> NDArray[np.float64]:
-    r"""Return the standard error of the mean of so many neighbouring values, around each value of a row that may drift.
-
-    A block average would take the drift for noise. The mean square successive difference does not [1]_,
-
-    .. math:: \sigma^2 = \tfrac12 \langle (b_{k + \ell} - b_k)^2 \rangle ,
-
-    where b are running means over the block, and the blocks must be independent of each other.
-
-    Parameters
-    ----------
-    values : (time,)
-        The row.
-    block
-        Over how many values the mean goes.
-    lag
-        How many blocks lie between two that are compared.
-    near
-        How many differences on each side count.
-
-    Returns
-    -------
-    (time,) ndarray
-        The errors, NaN where the row is too short.
-
-    References
-    ----------
-    .. [1] von Neumann, J. (1941), doi:10.1214/aoms/1177731677.
-
-    Examples
-    --------
-    Noise of 1 on a steep drift:
-
-    >>> noise = np.random.default_rng(1).normal(size=2000)
-    >>> row = 0.05 * np.arange(2000) + noise
-    >>> [round(float(np.median(successive_error(row, block, near=200))), 1) for block in (1, 4)]
-    [1.0, 0.5]
-    """
-    row = np.asarray(values, float)
-    shift = block * lag
-    if len(row) < shift + block + 1:
-        return np.full(len(row), np.nan)
-    means = np.convolve(row, np.full(block, 1.0 / block), "valid")
-    half = 0.5 * (means[shift:] - means[:-shift]) ** 2
-    centre = np.arange(len(row)) - (shift + block - 1) // 2
-    low = np.clip(centre - near, 0, max(len(half) - 2 * near, 0))
-    return np.array([np.sqrt(half[a : a + 2 * near].mean()) for a in low])
-
-
 def running_mean(values: ArrayLike, block: int) -> NDArray[np.float64]:
     """Return the mean of each value and its neighbours, as many on either side as there are up to half a block.
 
