@@ -13,7 +13,7 @@ import numpy as np
 
 from atmosbox.engine import StalledError
 from atmosbox.errors import EngineError
-from atmosbox.scene.instruments import Instrument
+from atmosbox.scene.instruments import Instrument, Speeds
 from atmosbox.simulation.preparation import Prepared, build
 from atmosbox.simulation.recording import Recording
 
@@ -89,6 +89,7 @@ class Experiment:
         self._clock = clock
         self._speed = math.nan
         self._stale = False
+        self._warmest = float(np.nan_to_num(self.setup.parcel.wall_kT()).max())
         self._fresh = tuple(_copied(instrument) for instrument in self.setup.instruments)
         self.gauges = [self.recording()]
 
@@ -122,8 +123,15 @@ class Experiment:
         about = {"atmosbox_parameters": json.dumps(prepared.parameters)} if attributes is None else attributes
         if attributes is None and not self.setup.ends:  # graphs need no molecules
             prepared = replace(prepared, save_molecules=False)
-        fresh = tuple(_copied(instrument) for instrument in self._fresh)
+        fresh = tuple(self._fitting(instrument) for instrument in self._fresh)
         return Recording(prepared, self.setup, about, first=self.frame, instruments=fresh)
+
+    def _fitting(self, instrument: Instrument) -> Instrument:
+        """Return an instrument that has seen nothing; one of speeds reaches as far as heated walls need."""
+        warmest = np.nan_to_num(self.setup.parcel.wall_kT()).max()
+        if isinstance(instrument, Speeds) and warmest > self._warmest > 0.0:
+            return instrument.wider(math.sqrt(warmest / self._warmest))
+        return _copied(instrument)
 
     def begin_averages_anew(self) -> None:
         """Let the graphs average over what comes from the next frame on: something has been changed."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.page import Box, Stage, stage
+from atmosbox.live.outlook import outlook, planned
+from atmosbox.page import Box, Stage, round_up, stage
 from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.quantity import phrase
 from atmosbox.scene.setup import Setup
@@ -22,6 +23,7 @@ __all__ = ["Picture"]
 
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _FASTEST = 3.0
+_COLDER = 0.5  # of the scale of speeds, below which it is drawn anew
 
 
 class Picture:
@@ -54,10 +56,9 @@ class Picture:
             mass[~present] = WATER.molecule_mass  # only water is ever out of the gas
             diameter[~present] = float(np.nanmean(diameter)) if present.any() else DRY_AIR.diameter
             water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
-        kT = np.array([*parcel.wall_kT(), self._kT()])
-        lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
-        fastest = _FASTEST * math.sqrt(float(np.nanmax(kT)) / lightest) * scale.velocity
+        self._lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
         module, settings = prepared.module, prepared.settings
+        self._highest = 0.0
         self.stage: Stage = stage(
             scene=prepared.scene,
             title=str(getattr(module, "title", prepared.scene)),
@@ -80,10 +81,32 @@ class Picture:
             diameter=diameter,
             water=water,
             time_unit=setup.time_unit,
-            fastest=fastest,
+            fastest=self._fastest(),
             panels=panels,
             discs=any(panel.kind == "discs" for panel in panels),
         )
+
+        for record, points in zip(
+            self.stage.record["panels"], planned(self.stage.record["panels"], outlook(setup)), strict=True
+        ):
+            record["planned"] = points
+
+    def _fastest(self) -> float:
+        """Return a speed that hardly any molecule has, as warm as gas and walls are now [m/s]."""
+        kT = np.array([*self._setup.parcel.wall_kT(), self._kT()])
+        return _FASTEST * math.sqrt(float(np.nanmax(kT)) / self._lightest) * self._setup.scale.velocity
+
+    def _scale(self) -> float:
+        """Return where the scale of speeds ends: where it did, unless the box is too warm or too cold for it."""
+        wanted = self._fastest()
+        if not _COLDER * self._highest <= wanted <= self._highest:
+            self._highest = round_up(wanted)
+        return self._highest
+
+    def walls(self) -> list[float | None]:
+        """Return the temperatures of the six walls now [K], None of one that has none."""
+        kelvin = self._setup.parcel.wall_kT() * self._setup.scale.temperature
+        return [float(f"{each:.6g}") if math.isfinite(each) else None for each in kelvin]
 
     def _kT(self) -> float:
         parcel = self._setup.parcel
@@ -117,6 +140,7 @@ class Picture:
             drops=drops,
             liquid=int(getattr(parcel, "liquid", 0)),
             rained=int(getattr(parcel, "rained", 0)),
+            highest=self._scale(),
         )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,9 @@ from atmosbox.errors import SettingError
 from atmosbox.live import hand
 from atmosbox.live.control import COLLISIONS, Control, in_words, number_between
 from atmosbox.live.experiment import Experiment
+from atmosbox.live.gauge import readings
 from atmosbox.live.hand import Hand, begun_anew, with_collisions
+from atmosbox.live.lesson import lesson_of
 from atmosbox.live.picture import Picture
 from atmosbox.live.recorder import Recorder, longest
 from atmosbox.live.summary import Report, while_it_runs
@@ -26,6 +29,20 @@ __all__ = ["Session"]
 
 SLOWEST, FASTEST = 0.25, 16.0
 _STEP = 0.04
+_DRAG = 1.5  # s within which a slider that moves is one change
+_MOST_PAST = 200
+_PUMP = 4.0  # times as many molecules, or as few, at one stroke
+
+
+@dataclass(frozen=True)
+class _Past:
+    """How it was before a change: where a knob stood, or with which settings and engine the box had begun."""
+
+    knob: str | None
+    value: Value
+    settings: Mapping[str, Any]
+    engine: str
+    when: float
 
 
 class Session:
@@ -86,6 +103,9 @@ class Session:
         self.playing = False
         self.pace = 1.0
         self._notes: list[dict[str, str]] = []
+        self._past: list[_Past] = []
+        self._gauges: list[dict[str, Any]] = []
+        self.lesson = lesson_of(prepared.module)
         self._recorder = Recorder(folder, out, force, command or f"atmosbox live {prepared.scene}", self.note)
         self._begin(prepared)
 
@@ -103,6 +123,7 @@ class Session:
         self.finished = False
         self._sequence = 0
         self._hand = Hand(experiment.setup)
+        self._gauges = []
 
     @property
     def prepared(self) -> Prepared:
@@ -171,7 +192,7 @@ class Session:
         Parameters
         ----------
         message
-            Its ``type`` is play, pause, step, reset, pace, set, record or stop_record.
+            Its ``type`` is play, pause, step, reset, pace, set, preset, pump, undo, record or stop_record.
 
         Raises
         ------
@@ -198,19 +219,72 @@ class Session:
             self.pace = number_between(message.get("value"), "pace", SLOWEST, FASTEST)
         elif kind == "set":
             self._set(message.get("name"), message.get("value"))
+        elif kind == "preset":
+            self._preset(message.get("number"))
+        elif kind == "pump":
+            self._pump(message.get("factor"))
+        elif kind == "undo":
+            self._undo()
         elif kind == "record":
             self._recorder.start(message.get("file"), self.experiment, self.changes)
         elif kind == "stop_record":
             self.stop_recording()
         else:
-            known = "play, pause, step, reset, pace, set, record or stop_record"
+            known = "play, pause, step, reset, pace, set, preset, pump, undo, record or stop_record"
             raise SettingError("type", in_words(kind), "is nothing that this page can ask for", f"give {known}")
 
     def _reset(self, seed: object) -> None:
         values: dict[str, Any] = self._hand.settings(self.prepared)
         if seed is not None:
             values["seed"] = seed
-        self._begin(begun_anew(self.prepared, values, str(self.prepared.engine)))
+        self._anew(values, str(self.prepared.engine))
+
+    def _anew(self, values: Mapping[str, Any], engine: str) -> None:
+        """Begin a box with these settings, and remember how it was."""
+        before = _Past(None, 0.0, self._hand.settings(self.prepared), str(self.prepared.engine), self._clock())
+        self._begin(begun_anew(self.prepared, values, engine))
+        self._remember(before)
+
+    def _remember(self, before: _Past) -> None:
+        self._past = [*self._past[1 - _MOST_PAST :], before]
+
+    def _preset(self, number: object) -> None:
+        """Begin a box with settings that have a name, and the scene's own for the rest; the seed stays."""
+        presets = self.lesson.presets
+        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(presets):
+            raise SettingError("number", in_words(number), "is no set of settings", f"give 0 to {len(presets) - 1}")
+        values = {"seed": self.prepared.settings.as_dict()["seed"], **presets[number].values}
+        self._anew(values, str(self.prepared.engine))
+
+    def _pump(self, factor: object) -> None:
+        """Begin a box of the same volume with more molecules, or fewer."""
+        if not self.lesson.pump:
+            raise SettingError("type", "pump", "is nothing that this scene offers", "change the number of molecules")
+        by = number_between(factor, "factor", 1.0 / _PUMP, _PUMP)
+        values = self._hand.settings(self.prepared)
+        declared = {parameter.name: parameter for parameter in self.prepared.settings.describe()}
+        for name in self.lesson.pump:
+            new = float(values[name]) * by
+            values[name] = round(new) if declared[name].kind == "int" else float(f"{new:.6g}")
+        self._anew(values, str(self.prepared.engine))
+        number = self.setup.parcel.number
+        self.note(
+            "info",
+            f"The box begins anew with {number} molecules in the same volume: "
+            "the engine cannot add any to a box that runs.",
+        )
+
+    def _undo(self) -> None:
+        """Take back the last change."""
+        if not self._past:
+            self.note("info", "There is nothing to take back.")
+            return
+        last = self._past[-1]
+        if last.knob is None:
+            self._begin(begun_anew(self.prepared, last.settings, last.engine))
+        else:
+            self._turn(next(each for each in self.controls() if each.name == last.knob), last.value)
+        self._past.pop()
 
     def _set(self, name: object, value: object) -> None:
         control = next((each for each in self.controls() if each.name == name), None)
@@ -219,14 +293,20 @@ class Session:
             raise SettingError("name", in_words(name), "is nothing that can be changed here", f"give one of {known}")
         wanted = control.parse(value)
         if not control.restarts:
+            before = _Past(control.name, control.value, {}, "", self._clock())
             self._turn(control, wanted)
+            last = self._past[-1] if self._past else None
+            if last is not None and last.knob == control.name and before.when - last.when < _DRAG:
+                self._past[-1] = replace(last, when=before.when)  # a slider on its way
+            else:
+                self._remember(before)
             return
         values, engine = self._hand.settings(self.prepared), str(self.prepared.engine)
         if control.name == COLLISIONS:
             engine = with_collisions(self.prepared.engine, bool(wanted))
         else:
             values[control.name] = wanted
-        self._begin(begun_anew(self.prepared, values, engine))
+        self._anew(values, engine)
 
     def _turn(self, control: Control, value: Value) -> None:
         """Turn a knob."""
@@ -274,13 +354,22 @@ class Session:
             "finished": self.finished,
             "ledger": self.setup.parcel.ledger(),
             "molecules": self.setup.parcel.number,
+            "walls": self.picture.walls(),
+            "gauges": self._gauges,
+            "undo": bool(self._past),
         }
 
     def stage(self) -> dict[str, Any]:
         """Return what a page is told first."""
         state = {name: value for name, value in self.state().items() if name != "type"}
         told = [control.record() for control in self.controls()]
-        return {"type": "stage", "stage": self.picture.stage.record, "controls": told, "state": state}
+        return {
+            "type": "stage",
+            "stage": self.picture.stage.record,
+            "controls": told,
+            "state": state,
+            "lesson": self.lesson.record(),
+        }
 
     def frame(self) -> bytes:
         """Return where everything is now."""
@@ -290,4 +379,7 @@ class Session:
     def measured(self) -> list[dict[str, Any]]:
         """Return what has been measured since the last call, as messages to the page."""
         found = self.experiment.measured(self.changes[-1].frame + 1 if self.changes else 0)
-        return [] if found is None else self.report.messages(found)
+        if found is None:
+            return []
+        self._gauges = readings(found, moving=self.setup.ends)
+        return self.report.messages(found)

@@ -12,6 +12,7 @@ from typing import Any
 
 from atmosbox.errors import AtmosboxError
 from atmosbox.live.session import Session
+from atmosbox.simulation.compilation import told
 
 __all__ = ["GREET", "JOIN", "LEAVE", "Publish", "Worker"]
 
@@ -26,6 +27,7 @@ _BUDGET = 0.75
 _MEASURE_EVERY, _MEASURE_SHARE, _MEASURE_LATEST = 0.25, 0.1, 2.0
 _STATE_EVERY = 0.5
 _WAITING = 500
+_BUILDING = ("reset", "preset", "pump", "undo")
 
 
 class Worker:
@@ -96,6 +98,7 @@ class Worker:
         due = measured = told = now()
         pause = _MEASURE_EVERY
         pictures: list[float] = []
+        unmeasured = False
         while not self._stopping.is_set():
             touched = self._obey(max(0.0, due - now()))
             if now() < due and not touched:
@@ -107,7 +110,9 @@ class Worker:
                 self._publish(None, session.frame())
                 pictures = [t for t in pictures if t > now() - 2.0] + [now()]
             due = max(due + period, now())
-            if (running or touched) and now() - measured > pause:
+            unmeasured = unmeasured or running or touched
+            if unmeasured and now() - measured > pause:  # also what came last before it stopped
+                unmeasured = False
                 begun = now()
                 for message in session.measured():
                     self._tell(None, message)
@@ -155,12 +160,25 @@ class Worker:
             self._tell(None, {"type": "controls", "controls": [control.record() for control in found]})
 
     def _do(self, page: int, message: dict[str, Any]) -> None:
-        if message.get("type") in ("reset", "set"):
-            self._tell(None, {**self._state(True), "busy": "The box is being built."})
+        session = self._session
+        waits = message.get("type") in _BUILDING or any(
+            control.restarts for control in session.controls() if control.name == message.get("name")
+        )
+        if waits:
+            self._say_busy("The box is being built.")
         try:
-            self._session.obey(message)
+            with told(session.prepared, self._say_compiling):
+                session.obey(message)
         except AtmosboxError as error:
             self._tell(page, {"type": "note", "level": "error", "text": str(error)})
+
+    def _say_busy(self, words: str) -> None:
+        """Tell all pages what they wait for; the next state, whatever it says, takes it back."""
+        self._tell(None, {"type": "state", "busy": words})
+        self._last_state = {}
+
+    def _say_compiling(self, share: float, words: str) -> None:
+        self._say_busy(f"The box is being built: {words}.")
 
     def _greet(self, page: int) -> None:
         """Tell a page all there is."""

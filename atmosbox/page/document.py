@@ -44,7 +44,10 @@ MODULES = (
 )
 """Our scripts, each after those that it imports."""
 
-_ENTRIES = {"view": ("view.js",), "live": ("link.js", "controls.js", "notes.js", "pulse.js", "live.js")}
+_ENTRIES = {
+    "view": ("view.js",),
+    "live": ("link.js", "controls.js", "notes.js", "pulse.js", "gauges.js", "lesson.js", "live.js"),
+}
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 
 

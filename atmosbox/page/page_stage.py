@@ -17,7 +17,7 @@ from atmosbox.page.thinning import MOST, chosen
 from atmosbox.scene.panels import Panel
 from atmosbox.theory.constants import DRY_AIR
 
-__all__ = ["Stage", "stage"]
+__all__ = ["Stage", "round_up", "stage"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -220,7 +220,7 @@ def stage(
         "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
-        "speed": {"unit": "m/s", "low": 0.0, "high": _round_up(fastest)},
+        "speed": {"unit": "m/s", "low": 0.0, "high": round_up(fastest)},
         "panels": [
             panel_record(
                 panel,
@@ -273,8 +273,14 @@ def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str)
     return factor, f"{particle}s collide as if {length_text(size, 3)} wide, and are {also}."
 
 
-def _round_up(value: float) -> float:
-    """Return the next round number; 1 for what is no positive number."""
+def round_up(value: float) -> float:
+    """Return the next round number; 1 for what is no positive number.
+
+    Examples
+    --------
+    >>> round_up(870.0), round_up(0.0)
+    (1000.0, 1.0)
+    """
     if not (math.isfinite(value) and value > 0.0):
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))

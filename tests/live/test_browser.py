@@ -67,3 +67,87 @@ def test_moving_the_slider_makes_the_measured_temperature_follow_and_the_recordi
     # 100 molecules scatter by sqrt(2 / 300) of T; 20 blocks, 4 errors of their mean: 1 false alarm in 1300
     assert abs(blocks.mean() - 573.15) < 4.0 * blocks.std(ddof=1) / 20**0.5
     assert made.air_temperature.values[: turned - 5].mean() < 373.15
+
+
+@pytest.fixture
+def visit(browser, serve, tmp_path):
+    """Return a function that opens the page of a scene as some reader would; a fault in it fails the test."""
+    opened, faults = [], []
+
+    def page(scene, settings, *, size=(1280, 720), **reader):
+        site = serve(Session(prepare(scene, settings), folder=tmp_path), document=live_page())
+        site.__enter__()
+        context = browser.new_context(viewport={"width": size[0], "height": size[1]}, **reader)
+        opened.append((context, site))
+        shown = context.new_page()
+        shown.on("pageerror", lambda error: faults.append(str(error)))
+        shown.goto(site.address)
+        shown.wait_for_selector("body[data-ready]", timeout=20_000)
+        return shown
+
+    yield page
+    for context, site in opened:
+        context.close()
+        site.__exit__()
+    assert not faults
+
+
+def test_the_page_opens_playing_unless_the_reader_wants_nothing_to_move(visit):
+    still = visit("temperature", {"molecules": 100}, reduced_motion="reduce")
+    moving = visit("temperature", {"molecules": 100})
+    moving.wait_for_selector("body[data-playing=true]")
+    play_to(moving, 0.05)
+    assert still.evaluate("document.body.dataset.playing") == "false"
+    assert still.locator("#time").inner_text() == "0 ns"
+
+
+def test_a_knob_of_a_box_that_rests_acts_at_once_and_the_words_follow_it(visit):
+    page = visit("temperature", {"molecules": 100}, reduced_motion="reduce")
+    assert "walls at 25.0 °C" in page.locator("#caption").inner_text()
+    slider = page.locator("input[type=range][aria-label=temperature]")
+    slider.fill("400")
+    slider.dispatch_event("change")
+    page.locator("#caption", has_text="walls at 400 °C").wait_for(timeout=2000)
+    page.locator("#legend", has_text="1500").wait_for(timeout=2000)
+    assert "being built" not in page.locator("#vitals").inner_text()
+    page.keyboard.press("Escape")
+    page.locator("#undo").click()
+    page.locator("#caption", has_text="walls at 25.0 °C").wait_for(timeout=2000)
+    page.locator("#undo:disabled").wait_for(timeout=2000)
+
+
+def test_a_challenge_is_judged_by_what_has_been_measured(visit):
+    page = visit("lifting-dry", {"molecules": 1000, "ascent": 400, "temperature": 27.3})
+    page.click("text=Challenge 1")
+    for pace in ("2×", "4×", "8×", "16×"):
+        page.click("#faster")
+        page.locator("#pace", has_text=pace).wait_for()
+    page.locator(".challenge.reached").wait_for(timeout=20_000)
+    assert re.search(r"Reached: 30\d hPa, −(59|60)\.\d °C\.", page.locator(".verdict").inner_text())
+
+
+def test_what_is_measured_can_be_heard(visit):
+    page = visit("temperature", {"molecules": 100})
+    page.locator("#gauges output").first.wait_for(timeout=10_000)
+    assert page.get_by_role("group", name="what is measured now").count() == 1
+    page.keyboard.press("m")
+    heard = page.locator("#voice").inner_text()
+    assert re.fullmatch(r"[\d.]+ ns: temperature −?[\d.]+ °C, pressure \d+ hPa", heard)
+
+
+def test_a_phone_shows_everything_whole_and_nothing_lies_on_another(visit):
+    page = visit("temperature", {"molecules": 100}, size=(390, 844), locale="de-DE", reduced_motion="reduce")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for group in ("footer > *", "#lesson .tries > *", "#controls .setting > *", "#tools > *"):
+        boxes = page.evaluate(
+            """(group) => [...document.querySelectorAll(group)].map((each) => each.getBoundingClientRect())
+               .filter(({ width }) => width > 0).map(({ left, right, top, bottom }) => [left, right, top, bottom])""",
+            group,
+        )
+        assert len(boxes) > 2, group
+        for number, (left, right, top, bottom) in enumerate(boxes):
+            assert left >= 0
+            assert right <= 390
+            for other in boxes[number + 1 :]:
+                beside = right <= other[0] + 1.0 or other[1] <= left + 1.0
+                assert beside or bottom <= other[2] + 1.0 or other[3] <= top + 1.0, group

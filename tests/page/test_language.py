@@ -8,6 +8,7 @@ import pytest
 from atmosbox import scenarios
 from atmosbox.cli.option import Tongue
 from atmosbox.live.control import controls
+from atmosbox.live.lesson import lesson_of
 from atmosbox.page import live_page, view_page
 from atmosbox.page.document import LANGUAGES, words
 from atmosbox.simulation.preparation import build, prepare
@@ -39,6 +40,9 @@ def said_by_scenes():
         small = {"molecules": 200} if hasattr(settings, "molecules") else {}
         box = build(prepare(name, small))
         values = {knob.name: knob.value for knob in box.knobs} | settings.as_dict()
+        lesson = lesson_of(module)
+        found |= {preset.title for preset in lesson.presets}
+        found |= {text for each in lesson.challenges for text in (each["ask"], each["hint"])}
         found |= {c.parameter.help for c in controls(box.knobs, settings.describe(), values, collisions=True)}
     return {text.replace("\u00a0", " ") for text in found if text}
 
@@ -67,7 +71,8 @@ def test_every_word_that_the_page_asks_for_is_in_the_table_and_none_is_left_over
     unused = {key for key in known - asked() if not re.search(rf'"{key}"', text)}
     put_together = {"box", "flat_box", "box_gravity", "flat_box_gravity"}
     walls = {"specular", "periodic", "heat_bath", "piston", "pool"}
-    assert unused <= put_together | walls
+    gauges = {"thermometer", "barometer", "hygrometer"}
+    assert unused <= put_together | walls | gauges
 
 
 @pytest.mark.parametrize("language", ["de", "es"])

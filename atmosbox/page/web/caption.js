@@ -1,19 +1,23 @@
 // The words under the box: what is seen, how it is drawn, and where it comes from.
 
-import { figure } from "./figure.js";
-import { numbers, phrase, story, word } from "./words.js";
+import { figure, round, spelled } from "./figure.js";
+import { phrase, story, word } from "./words.js";
 
 // The sides of the box and what its walls are, in a sentence.
-function boxSentence({ box }) {
-  const sides = box.planar ? [box.length[0], box.length[2]] : box.length;
+function boxSentence({ box }, { walls: kelvins = box.wall_temperature, length = box.length } = {}) {
+  const sides = box.planar ? [length[0], length[2]] : length;
   const size = `${sides.map((side) => figure(side)).join(" × ")} ${box.unit}`;
   const laws = [...new Set(box.walls.filter((_, index) => !(box.planar && index >> 1 === 1)))];
-  const warm = [...new Set(box.wall_temperature.filter((kelvin) => kelvin !== null).map((kelvin) => figure(kelvin - 273.15)))];
+  const warm = [...new Set((kelvins ?? box.wall_temperature).filter((kelvin) => kelvin !== null).map((kelvin) => figure(kelvin - 273.15)))];
   const walls = laws.map((law) => (law === "heat_bath" && warm.length === 1 ? word("heat_bath_at", { temperature: `${warm[0]} °C` }) : word(law))).join("; ");
   return word(`${box.planar ? "flat_" : ""}box${box.gravity ? "_gravity" : ""}`, { size, walls });
 }
 
-// The first lines are there at once; a button opens the rest.
+// The small type, in whose parts numbers stand between words.
+const named = (footer) => footer.split(" · ").map((part, place) => (place > 1 ? phrase(part) : part)).join(" · ");
+
+// The first lines are there at once; a button opens the rest. Returns what lets the words of a box that runs follow it:
+// `follow({ walls, length, settings })` takes what is known anew.
 export function showCaption(parent, runs) {
   parent.replaceChildren();
   const text = document.createElement("div");
@@ -26,12 +30,28 @@ export function showCaption(parent, runs) {
   more.onclick = () => open(!parent.classList.contains("open"));
   open(false);
   parent.append(text, more);
-  const add = (kind, words) => words && text.append(Object.assign(document.createElement("p"), { className: kind, textContent: words }));
+  const add = (kind, words) => {
+    const line = Object.assign(document.createElement("p"), { className: kind, textContent: words, hidden: !words });
+    text.append(line);
+    return line;
+  };
   const [{ stage }] = runs;
   add("story", story(stage.story));
-  const lines = [...new Set(runs.flatMap(({ stage: each, notes = [] }) => [boxSentence(each), phrase(each.exaggeration), ...notes.map(phrase)]))];
-  add("drawn", lines.join(" "));
-  const settings = stage.settings.map(([name, value]) => `${name} ${value}`).join(", ");
-  add("source", [...new Set(runs.map(({ footer }) => footer))].filter(Boolean).join(" | "));
-  if (settings && runs.length === 1) add("source", settings);
+  const told = (now) => [...new Set(runs.flatMap(({ stage: each, notes = [] }) =>
+    [boxSentence(each, now), phrase(each.exaggeration), ...notes.map(phrase)]))].join(" ");
+  const drawn = add("drawn", told());
+  add("source", [...new Set(runs.map(({ footer }) => footer))].filter(Boolean).map(named).join(" | "));
+  const settings = new Map(stage.settings);
+  const listed = () => [...settings].map(([name, value]) => `${name} ${value}`).join(", ");
+  const source = add("source", runs.length === 1 ? listed() : "");
+  const write = (line, words) => { if (line.textContent !== words) line.textContent = words; };
+  return {
+    follow({ settings: knobs, ...now }) {
+      for (const { name, value, unit } of knobs ?? []) {
+        const plain = name.replaceAll("_", " ");
+        if (settings.has(plain)) settings.set(plain, [round(value), spelled(unit)].filter(Boolean).join(" "));
+      }
+      write(knobs ? source : drawn, knobs ? listed() : told(now));
+    },
+  };
 }

@@ -27,6 +27,7 @@ export class Graph {
     parent.append(this.element);
     this.veil = Object.assign(document.createElement("div"), { className: "veil" });
     this.dots = [];
+    this.waiting = Object.assign(document.createElement("p"), { className: "first", textContent: word("first_numbers") });
     this.#begin();
   }
 
@@ -62,6 +63,7 @@ export class Graph {
       hooks: { draw: [() => this.#draw()] },
     }, [[0, 1], [0, 1]], plot);
     this.plot.over.append(this.veil);
+    plot.append(this.waiting);
     if (this.overTime && this.seek) {
       this.plot.over.style.cursor = "pointer";
       this.plot.over.addEventListener("click", (event) => {
@@ -84,6 +86,7 @@ export class Graph {
 
   // The numbers on an axis, as many as have room.
   #ticks(axis, plot) {
+    if (!this.held) return []; // an axis that holds nothing says nothing
     const { log } = this.panel[axis];
     const [low, high] = this.range[axis].map((value) => (log ? 10 ** value : value));
     const room = axis === "x" ? (plot.width - scaled(60)) / scaled(52) : (plot.height - scaled(32)) / scaled(30);
@@ -132,7 +135,10 @@ export class Graph {
         }
       }
     }
-    const { kind } = this.panel;
+    const { kind, planned } = this.panel;
+    this.waiting.hidden = known.y.length > 0 || planned?.y.length > 0;
+    for (const axis of ["x", "y"]) known[axis].push(...(planned?.[axis] ?? []));
+    this.held = known.y.length > 0;
     if (kind === "skewt" && known.y.length) {
       this.foot = Math.max(...known.y) * 1.02;
       known.x = known.x.map((value, index) => slanted(value, known.y[index], this.foot));

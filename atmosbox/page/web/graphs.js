@@ -14,7 +14,7 @@ const subject = (panel) => JSON.stringify([panel.kind, panel.lines.map(({ x, y, 
 export class Graphs {
   // `runs`: of each its stage, its film and its numbers.
   constructor(parent, runs, seek) {
-    Object.assign(this, { parent, runs });
+    Object.assign(this, { parent, runs, whole: Boolean(seek) });
     this.panels = [];
     parent.replaceChildren();
     runs.forEach(({ stage }, run) => {
@@ -56,10 +56,17 @@ export class Graphs {
       if (!film.frames.length) return [];
       return speedCurves(film.frames[film.before(time)], stage).map((curve) => ({ ...curve, run }));
     });
-    const tops = this.runs.map(({ stage, film }) => (this.highest ? 0 : highestShare(film.frames, stage)));
-    this.highest = Math.max(this.highest, ...tops);
+    this.#rescale(curves);
     this.speeds.fixed = { y: [0, this.highest || 1] };
     this.speeds.set(curves);
+  }
+
+  // How high the axis of the speeds is: of a film that is there whole, as high as it ever needs; of a box that runs, anew
+  // when its gas has become so warm or so cold that the curve would leave the graph, or lie at its foot.
+  #rescale(curves) {
+    const peak = curves.filter(({ role }) => role === "theory").reduce((most, { y }) => Math.max(most, ...y), 0);
+    if (!this.highest) this.highest = Math.max(...this.runs.map(({ stage, film }) => highestShare(film.frames, stage)));
+    else if (!this.whole && peak && (peak > 0.9 * this.highest || peak < 0.4 * this.highest)) this.highest = 1.5 * peak;
   }
 
   repaint() {

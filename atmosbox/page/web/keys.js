@@ -11,7 +11,7 @@ export const KEYS = [
   ["T", word("key_trace")],
   ["D", word("key_theme")],
   ...(document.body.classList.contains("live")
-    ? [["R", word("key_again")]] : [["Home  End", word("key_ends")]]),
+    ? [["M", word("key_say")], ["U", word("key_undo")], ["R", word("key_again")]] : [["Home  End", word("key_ends")]]),
   ["?", word("key_help")],
 ];
 

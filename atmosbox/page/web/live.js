@@ -3,9 +3,13 @@
 import { showCaption } from "./caption.js";
 import { Controls } from "./controls.js";
 import { Numbers } from "./curves.js";
+import { withUnit } from "./figure.js";
 import { Film, decode } from "./frames.js";
+import { Gauges } from "./gauges.js";
 import { Graphs } from "./graphs.js";
 import { listen } from "./keys.js";
+import { showLegend } from "./legend.js";
+import { Lesson } from "./lesson.js";
 import { Link } from "./link.js";
 import { forget, note } from "./notes.js";
 import { Pulse } from "./pulse.js";
@@ -22,6 +26,8 @@ class Live {
   constructor() {
     this.link = new Link({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer), state: (state) => this.line(state) });
     this.pulse = new Pulse(find("transport"), (told) => this.link.say(told));
+    this.lesson = new Lesson(find("lesson"), (told) => this.link.say(told));
+    this.gauges = new Gauges(find("gauges"), find("voice"));
     this.controls = new Controls(find("controls"), (name, value) => this.link.say({ type: "set", name, value }));
     this.beat = { arrived: 0, interval: 50 };
     this.stale = false;
@@ -37,8 +43,8 @@ class Live {
     if (told.type === "stage") this.open(told);
     else if (told.type === "series") this.append(told);
     else if (told.type === "arrays") this.numbers?.replace(told.values);
-    else if (told.type === "state") this.pulse.show(told);
-    else if (told.type === "controls") this.controls.show(told.controls);
+    else if (told.type === "state") this.state(told);
+    else if (told.type === "controls") this.knobs(told.controls);
     else if (told.type === "note") {
       note(find("notes"), told);
       if (told.level === "error") this.controls.restore();
@@ -47,7 +53,7 @@ class Live {
   }
 
   // A new box begins: forget all that was shown of the one before.
-  open({ stage: record, controls, state }) {
+  open({ stage: record, controls, state, lesson }) {
     this.stage?.leave();
     find("boxes").replaceChildren();
     const frame = Object.assign(document.createElement("div"), { className: "box" });
@@ -60,19 +66,46 @@ class Live {
     if (place !== undefined && place !== null) this.stage.camera.place = place;
     this.graphs = new Graphs(find("graphs"), [{ stage: record, film: this.film, numbers: this.numbers }], null);
     this.sheet = new Sheet([this.stage], () => this.graphs.repaint());
+    this.walls = state.walls ?? null;
+    this.lesson.offer(lesson);
+    document.body.dataset.pictured = record.panels.some(({ kind }) => kind === "atmosphere");
     const footer = [`atmosbox ${record.version}`.trim(), record.scene, `${record.molecules} ${record.particle}s`,
       record.seed === null ? "" : `seed ${record.seed}`, `${record.engine} engine`].filter(Boolean).join(" · ");
-    showCaption(find("caption"), [{ stage: record, footer }]);
+    this.caption = showCaption(find("caption"), [{ stage: record, footer }]);
     this.pulse.begin(record);
-    this.pulse.show({ seed: record.seed, ...state });
-    this.controls.show(controls ?? []);
+    this.state({ seed: record.seed, ...state });
+    this.knobs(controls ?? []);
     document.body.dataset.ready = true;
+    this.start(state);
+  }
+
+  // A box that nobody has started yet plays, unless the reader prefers that nothing moves.
+  start({ playing, time }) {
+    if (this.started) return;
+    this.started = true;
+    if (!playing && time === 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.link.say({ type: "play" });
+  }
+
+  // What the box says of itself, at least twice a second.
+  state(told) {
+    this.pulse.show(told);
+    this.lesson.show(told);
+    if (told.gauges) this.gauges.show(told.gauges);
+    if (told.walls) {
+      this.walls = told.walls;
+      this.stage?.warm(told.walls);
+    }
+  }
+
+  // Where the knobs stand: the words under the box follow them.
+  knobs(controls) {
+    this.controls.show(controls);
+    this.caption?.follow({ settings: controls.filter(({ kind }) => kind === "number") });
   }
 
   append({ reset, time, values }) {
     if (reset) this.numbers.clear();
     this.numbers.append(time ?? [], values ?? {});
-    this.stage.warm(this.numbers.walls());
   }
 
   see(buffer) {
@@ -81,11 +114,18 @@ class Live {
     const last = this.film.frames.at(-1);
     if (last && frame.time < last.time) this.film.clear();
     this.film.push(frame);
+    if (frame.fastest !== this.stage.record.speed.high) this.rescale(frame.fastest);
     const now = performance.now();
     this.beat = { arrived: now, interval: Math.min(0.8 * this.beat.interval + 0.2 * (now - this.beat.arrived), 400) };
     this.stale = true;
     document.body.dataset.time = frame.time;
     if (last === undefined || !this.pulse.state.playing) this.pulse.show({ time: frame.time });
+  }
+
+  // The box has become so warm or so cold that the scale of speeds is another from this frame on.
+  rescale(fastest) {
+    this.stage.record.speed.high = fastest;
+    showLegend(find("legend"), this.stage.record, this.stage.mode);
   }
 
   // Between two frames that came, molecules go on evenly; so the picture is one frame behind.
@@ -108,7 +148,9 @@ class Live {
     if (this.film.frames.length) {
       this.graphs.at(this.film.end);
       find("status").textContent = this.sheet.story();
+      this.caption.follow({ walls: this.walls, length: this.film.frames.at(-1).length });
     }
+    this.lesson.judge(this.numbers);
   }
 }
 
@@ -126,6 +168,8 @@ export function begin() {
     t: () => live.sheet?.trace(),
     d: () => live.sheet?.turnTheme(),
     r: () => pulse.reset(),
+    u: () => live.lesson.undo(),
+    m: () => live.gauges.say(withUnit(live.film?.end, pulse.unit, 4)),
     "?": () => live.sheet?.help(),
   });
   setInterval(() => live.look(), LOOK);

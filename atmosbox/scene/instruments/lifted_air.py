@@ -52,6 +52,11 @@ class Lift:
     environment
         The environment.
 
+    Attributes
+    ----------
+    environment
+        The environment.
+
     Notes
     -----
     The work shows in the entropy per molecule of spheres of density n and temperature T, with the measured
@@ -80,7 +85,7 @@ class Lift:
 
     def __init__(self, driver: FollowPressure, environment: Environment) -> None:
         self._driver = driver
-        self._environment = environment
+        self.environment = environment
         self._rows: list[tuple[float, ...]] = []
         self._freedom = 5.0
 
@@ -113,7 +118,7 @@ class Lift:
         seconds = np.array([self._driver.course.moment(t) for t in time]) * scale.time
         parcel_temperature = kT * scale.temperature
         parcel_pressure = pressure * scale.pressure
-        surroundings = self._environment
+        surroundings = self.environment
         return Readings(
             parcel_temperature=parcel_temperature,
             parcel_temperature_se=parcel_temperature * spread,

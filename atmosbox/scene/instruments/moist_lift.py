@@ -48,7 +48,7 @@ class MoistLift:
         scatter: Callable[[Array], Array],
     ) -> None:
         self._driver = driver
-        self._environment = environment
+        self.environment = environment
         self._curve = curve
         self._scatter = scatter
         self._looks: list[tuple[float, float]] = []
@@ -75,7 +75,7 @@ class MoistLift:
         expected = self._curve(pressure.ravel()).reshape(pressure.shape)
         parcel_temperature = temperature.mean(axis=1)
         parcel_pressure = np.exp(np.log(pressure).mean(axis=1))
-        around = self._environment
+        around = self.environment
         middle = time - 0.5 * np.diff(time, prepend=0.0)
         middle = np.array([self._driver.course.moment(t) for t in middle]) * scale.time
         outside = np.array([around.pressure(t) for t in middle])

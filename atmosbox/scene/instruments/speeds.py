@@ -34,6 +34,16 @@ class Speeds:
         self._mean: list[float] = []
         self._frames: list[Array] = []
 
+    def wider(self, factor: float) -> Speeds:
+        """Return an instrument with as many bins that reaches so many times as far, and has seen nothing.
+
+        Examples
+        --------
+        >>> Speeds(np.array([0.0, 1.0, 2.0])).wider(2.0)._edges.tolist()
+        [0.0, 2.0, 4.0]
+        """
+        return Speeds(self._edges * factor)
+
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count by speed."""
         self._counts += speed_counts(snapshot, self._edges)

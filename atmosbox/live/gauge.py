@@ -1,0 +1,55 @@
+"""Thermometer, barometer and hygrometer of a box that runs: what was measured last, as numbers to read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["readings"]
+
+_FRAMES = 20
+_GAUGES = (
+    ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
+    ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
+    ("hygrometer", ("relative_humidity",), "%", 100.0, 0.0),
+)
+
+
+def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
+    """Return what the gauges of a box say.
+
+    Parameters
+    ----------
+    found
+        What has been measured since the last change.
+    moving
+        Whether the box is on a way, so that only its last frame tells how it is now; else up to 20 frames are averaged,
+        because so few molecules scatter.
+
+    Returns
+    -------
+    list of dict
+        Of each gauge that the box has: its ``name``, ``value`` and ``unit``.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> found = xr.Dataset({"air_temperature": ("elapsed_time", [300.0, 296.3])})
+    >>> readings(found, moving=False)
+    [{'name': 'thermometer', 'value': 25.0, 'unit': '°C'}]
+    """
+    made = []
+    for name, variables, unit, factor, offset in _GAUGES:
+        known = next((each for each in variables if each in found and found[each].dims == ("elapsed_time",)), None)
+        if known is None:
+            continue
+        last = found[known].values[-1 if moving else -_FRAMES :]
+        last = last[np.isfinite(last)]
+        if last.size:
+            value = float(last.mean()) * factor + offset
+            made.append({"name": name, "value": float(f"{value:.4g}"), "unit": unit})
+    return made

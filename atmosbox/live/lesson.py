@@ -1,0 +1,158 @@
+"""What a scene offers a class beside its knobs: named settings to try, a pump, and challenges.
+
+It stands beside the scene, in ``my_scene.live.toml``, and is data: nothing in it runs. ::
+
+    [[preset]]
+    title = "Polar night"
+    set = {temperature = "-40 degC"}
+
+    [pump]
+    with = ["molecules", "pressure"]
+
+    [[challenge]]
+    ask = "Reach 300 hPa at -60 degC. What must you change?"
+    hint = "A dry parcel cools as T ~ p^(2/7)."
+    reach = {parcel_pressure = ["300 hPa", "3 hPa"], parcel_temperature = ["-60 degC", "1 K"]}
+
+A preset begins the box anew with these settings, and the scene's own for the rest. Settings that a pump names grow
+together with the number of molecules. A challenge is met when each variable comes as near to its value as is said.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from atmosbox.errors import ConfigError, FileError
+from atmosbox.file.variables import variable
+from atmosbox.scene.conversion import from_si
+from atmosbox.scene.quantity import converted, number_and_unit
+
+__all__ = ["Lesson", "Preset", "lesson_of"]
+
+SUFFIX = ".live.toml"
+_KNOWN = {"preset": {"title", "set"}, "challenge": {"ask", "hint", "reach"}}
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Settings with a name.
+
+    Parameters
+    ----------
+    title
+        What a class calls them.
+    values
+        The settings that differ from those of the scene.
+    """
+
+    title: str
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """What a scene offers a class.
+
+    Parameters
+    ----------
+    presets
+        Settings to try.
+    pump
+        Settings that grow together when molecules are pumped in; none where that has no meaning.
+    challenges
+        As the page is told: what is asked, a hint, and how near to which values.
+    """
+
+    presets: tuple[Preset, ...] = ()
+    pump: tuple[str, ...] = ()
+    challenges: tuple[dict[str, Any], ...] = ()
+
+    def record(self) -> dict[str, Any]:
+        """Return it as data for the page.
+
+        Examples
+        --------
+        >>> Lesson((Preset("Polar night", {}),)).record()["presets"]
+        ['Polar night']
+        """
+        return {
+            "presets": [preset.title for preset in self.presets],
+            "pump": bool(self.pump),
+            "challenges": list(self.challenges),
+        }
+
+
+def lesson_of(module: ModuleType) -> Lesson:
+    """Return what a scene offers; nothing if no file stands beside it.
+
+    Parameters
+    ----------
+    module
+        The scene, from `atmosbox.scenarios.load`.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read.
+    ConfigError
+        If it is not TOML, or says what a lesson does not know.
+
+    Examples
+    --------
+    >>> from atmosbox import scenarios
+    >>> lesson_of(scenarios.load("temperature")).pump
+    ('molecules', 'pressure')
+    """
+    path = Path(str(getattr(module, "__file__", ""))).with_suffix(SUFFIX)
+    if not path.is_file():
+        return Lesson()
+    try:
+        told = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileError(f"What a class may try cannot be read from {path}: {error.strerror}.") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path} is not TOML ({error}): correct it and try again.") from error
+    unknown = sorted(set(told) - {*_KNOWN, "pump"})
+    if unknown:
+        raise ConfigError(f"{path}: {unknown[0]} is unknown: give preset, pump or challenge.")
+    presets = [Preset(str(each["title"]), dict(each["set"])) for each in _entries(path, told, "preset")]
+    pump = told.get("pump", {}).get("with", [])
+    return Lesson(
+        tuple(presets),
+        tuple(str(name) for name in pump),
+        tuple(_challenge(path, each) for each in _entries(path, told, "challenge")),
+    )
+
+
+def _entries(path: Path, told: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
+    """Return the entries of a kind, refused unless each has all that it needs and no more."""
+    entries = told.get(kind, [])
+    for number, entry in enumerate(entries if isinstance(entries, list) else [None], 1):
+        if not isinstance(entry, dict) or set(entry) != _KNOWN[kind]:
+            wanted = ", ".join(sorted(_KNOWN[kind]))
+            raise ConfigError(f"{path}: {kind} {number} must have {wanted}, and nothing else: write [[{kind}]].")
+    return list(entries)
+
+
+def _challenge(path: Path, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a challenge, its values in SI and with the way into the units in which they were given."""
+    goals = []
+    for name, wanted in entry["reach"].items():
+        try:
+            units = variable(name).units or "1"
+            (value, unit), (width, of_width) = (number_and_unit(each) for each in wanted)
+            target, within = converted(float(value), unit, units), converted(float(width), of_width, units)
+        except (KeyError, TypeError, ValueError) as error:
+            raise ConfigError(
+                f"{path}: {name} of a challenge cannot be read ({error}): "
+                'give a variable of the file, and two quantities as in ["300 hPa", "3 hPa"].'
+            ) from error
+        zero = from_si(0.0, unit)
+        way = {"unit": unit, "factor": from_si(1.0, unit) - zero, "offset": zero}
+        goals.append({"name": name, "target": target, "within": within, **way})
+    return {"ask": str(entry["ask"]), "hint": str(entry["hint"]), "reach": goals}

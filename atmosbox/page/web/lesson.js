@@ -1,0 +1,107 @@
+// What a class may try: named settings, a pump, undo, and challenges.
+
+import { figure, spelled } from "./figure.js";
+import { numbers, phrase, word } from "./words.js";
+
+const STROKE = 1.5; // times as many molecules, or as few, by one stroke of the pump
+
+const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
+
+export class Lesson {
+  // `say(message)` tells the box what to do.
+  constructor(parent, say) {
+    Object.assign(this, { parent, say, challenge: null });
+  }
+
+  // Offer what the scene has.
+  offer({ presets = [], pump = false, challenges = [] } = {}) {
+    const told = JSON.stringify([presets, pump, challenges]);
+    if (told === this.told) return;
+    this.told = told;
+    this.challenge = null;
+    this.parent.replaceChildren();
+    const bar = make("div", { className: "tries" });
+    if (presets.length) bar.append(this.#presets(presets));
+    if (pump) bar.append(this.#pump());
+    challenges.forEach((challenge, index) => bar.append(this.#opener(challenge, index, challenges.length)));
+    this.back = make("button", { type: "button", id: "undo", textContent: `↶ ${word("undo")}`, title: word("undo_title") });
+    this.back.onclick = () => this.undo();
+    bar.append(this.back);
+    this.card = make("section", { className: "challenge", hidden: true });
+    this.card.setAttribute("aria-label", word("challenge"));
+    this.parent.append(bar, this.card);
+    this.parent.hidden = false;
+  }
+
+  undo() {
+    this.say({ type: "undo" });
+  }
+
+  #presets(presets) {
+    const list = make("select", { id: "presets", title: word("preset") });
+    list.setAttribute("aria-label", word("preset"));
+    list.append(make("option", { value: "", textContent: `${word("presets")} …` }));
+    presets.forEach((title, number) => list.append(make("option", { value: number, textContent: phrase(title) })));
+    list.onchange = () => {
+      if (list.value !== "") this.say({ type: "preset", number: Number(list.value) });
+      list.blur(); // so that the keys play again
+    };
+    return list;
+  }
+
+  #pump() {
+    const group = make("span", { className: "group" });
+    group.setAttribute("role", "group");
+    group.setAttribute("aria-label", word("pump"));
+    for (const [sign, name, factor] of [["−", "pump_out", 1 / STROKE], ["+", "pump_in", STROKE]]) {
+      const button = make("button", { type: "button", id: name, title: word(name), textContent: sign === "+" ? `${word("pump")} +` : "−" });
+      button.setAttribute("aria-label", word(name));
+      button.onclick = () => this.say({ type: "pump", factor });
+      group.append(button);
+    }
+    return group;
+  }
+
+  #opener(challenge, index, count) {
+    const text = count > 1 ? `${word("challenge")} ${index + 1}` : word("challenge");
+    const button = make("button", { type: "button", className: "opener", textContent: text });
+    button.setAttribute("aria-pressed", false);
+    button.onclick = () => {
+      this.challenge = this.challenge === challenge ? null : challenge;
+      for (const each of this.parent.querySelectorAll(".opener")) each.setAttribute("aria-pressed", each === button && this.challenge !== null);
+      this.#open();
+    };
+    return button;
+  }
+
+  #open() {
+    this.card.hidden = this.challenge === null;
+    if (this.challenge === null) return;
+    const hint = make("details");
+    hint.append(make("summary", { textContent: word("hint") }), make("p", { textContent: phrase(this.challenge.hint) }));
+    this.verdict = make("p", { className: "verdict" });
+    this.verdict.setAttribute("role", "status");
+    this.card.replaceChildren(make("p", { className: "ask", textContent: numbers(phrase(this.challenge.ask)) }), this.verdict, hint);
+  }
+
+  // Tell whether anything can be taken back.
+  show({ undo }) {
+    if (this.back && undo !== undefined) this.back.disabled = !undo;
+  }
+
+  // Look whether what has been measured meets the challenge, at any moment.
+  judge(values) {
+    if (this.challenge === null) return;
+    const { reach } = this.challenge;
+    const series = reach.map(({ name }) => values.get(name) ?? []);
+    const count = Math.min(...series.map(({ length }) => length));
+    const met = (place) => reach.every(({ target, within }, goal) => Math.abs(series[goal][place] - target) <= within);
+    const first = Array.from({ length: count }, (_, place) => place).find(met);
+    const place = first ?? count - 1;
+    const told = place < 0 ? "" : reach.map(({ unit, factor, offset }, goal) =>
+      `${figure(series[goal][place] * factor + offset)} ${spelled(unit)}`).join(", ");
+    const text = told ? word(first === undefined ? "not_yet" : "reached", { values: told }) : "";
+    if (this.verdict.textContent !== text) this.verdict.textContent = text;
+    this.card.classList.toggle("reached", first !== undefined);
+  }
+}
