@@ -23,6 +23,7 @@ from atmosbox import plot, scenarios
 from atmosbox.errors import DiskFullError, FileError, SettingError
 from atmosbox.plot import caption, tick, unit
 from atmosbox.plot.curve import curve
+from atmosbox.plot.layout import panels_of
 from atmosbox.plot.theme import OKABE_ITO
 from atmosbox.scene.panels import Line, Panel, to_json
 
@@ -1055,3 +1056,12 @@ def test_one_moment_alone_is_its_own_mean():
     )
     line = Line("elapsed_time", "noise", "noise")
     assert curve(dataset, Panel("line", "Noise", (line,), averages=9), line).y.tolist() == [5.0]
+
+
+def test_a_line_of_a_headline_that_the_run_could_not_give_is_left_out():
+    base = Line("t", "cloud_base_theory", "condensation level", "reference")
+    panel = Panel("profile", "A kink", (Line("t", "p", "parcel"), base), headlines=("cloud_base",))
+    held = xr.Dataset({"t": ("time", [280.0]), "p": ("time", [9e4])}, attrs={"atmosbox_panels": to_json([panel])})
+    assert [line.label for line in panels_of(held)[0].lines] == ["parcel"]
+    found = held.assign(cloud_base=9e4, cloud_base_theory=9.1e4)
+    assert [line.label for line in panels_of(found)[0].lines] == ["parcel", "condensation level"]

@@ -24,7 +24,7 @@ import warnings
 from atmosbox.cli.application import app
 
 # In the order in which ``--help`` lists them.
-from atmosbox.cli import list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare  # isort: skip
+from atmosbox.cli import tour, list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare  # isort: skip
 from atmosbox.cli import export, sheet, check, prepare  # isort: skip
 
 __all__ = [
@@ -42,6 +42,7 @@ __all__ = [
     "run",
     "sheet",
     "sweep",
+    "tour",
     "tradeoff",
     "view",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
@@ -130,7 +131,7 @@ def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
 
 
 def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
-    """Return the panels that a run asks for.
+    """Return the panels that a run asks for, without lines of headlines that it could not give.
 
     Parameters
     ----------
@@ -157,4 +158,10 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
         raise FileError(f"The file does not say what its figure shows, because {error}") from error
     if not panels:
         raise FileError("The file has no figure: its scene names no panels.")
-    return panels
+    return tuple(replace(panel, lines=_found(dataset, panel)) for panel in panels)
+
+
+def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
+    """Return the lines of a panel but those of a headline that the run could not give, as a cloud base too ragged."""
+    missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
+    return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))
