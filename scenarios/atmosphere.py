@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Periodic, Specular, maxwell_velocities
+from atmosbox.engine import HeatBath, Periodic, RandomNumbers, Specular, maxwell_velocities
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -42,6 +42,7 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import gravity, wall_temperature
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import average_beside
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -123,6 +124,7 @@ class Column:
             self.diameter = 1.0 / (2.0 * math.sqrt(2.0) * density * settings.knudsen)
         else:
             self.diameter = math.sqrt(1.0 / (math.sqrt(2.0) * math.pi * density * settings.knudsen))
+        self.diameter = rounded(self.diameter)
         self.room = 0.0 if engine.ideal else self.diameter
         # the floor carries what lies above it; what the ceiling pushes back is small
         floor = self.per_area * (1.0 + math.exp(-min(self.height, 700.0)) / held)
@@ -213,7 +215,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     column = Column(settings, engine)
     n = settings.molecules
     plane = settings.plane
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     length = (column.width, 2.0 * column.diameter if plane else column.width, column.height)
     diameter = np.full(n, column.diameter)
     sides = (True, True, False)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import Drops, HeatBath, Liquid, Mist
+from atmosbox.engine import Drops, HeatBath, Liquid, Mist, RandomNumbers
 from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
@@ -103,7 +103,7 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray) -> Liquid:
     """Return a mist, or drops around nuclei at these places."""
     heat = nuclei_heat_capacity(settings.molecules)
     if not settings.drops:
-        return Mist(water(start.scale), kT=1.0, nuclei=heat, area=settings.area * start.side**2)
+        return Mist(water(start.scale), kT=1.0, nuclei=heat, area=settings.area * start.side * start.side)
     ball = settings.drop_size * MOLECULE
     return Drops(
         water(start.scale),
@@ -119,7 +119,7 @@ def _liquid(settings: Settings, start: MoistBox, place: np.ndarray) -> Liquid:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the moist air between its walls."""
     n, drops = settings.molecules, settings.drops
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     start = _start(settings, ideal=engine.ideal)
     scale, length = start.scale, (start.side + 1.0,) * 3
     gas = moist_air(n, start.vapour, rng)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import equal_speeds
+from atmosbox.engine import RandomNumbers, equal_speeds
 from atmosbox.scene import (
     Air,
     Discs,
@@ -31,6 +31,7 @@ from atmosbox.scene import (
     setting,
 )
 from atmosbox.scene.engines import EXACT
+from atmosbox.scene.rounding import rounded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,8 +63,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the discs on their table."""
     si = settings.si
     n = settings.molecules
-    rng = np.random.default_rng(settings.seed)
-    mass = settings.mass_ratio ** rng.random(n)
+    rng = RandomNumbers(settings.seed)
+    mass = rounded(settings.mass_ratio ** rng.random(n))
     mass *= 1.0 / mass.min()
     area = mass / mass.sum() * (si.filling)
     diameter = np.sqrt(4.0 * area / math.pi)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import FollowPressure, Pool
+from atmosbox.engine import FollowPressure, Pool, RandomNumbers
 from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
@@ -43,6 +43,7 @@ from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, his
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.moisture import water
 from atmosbox.scene.piston import moist_parcel
+from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -126,11 +127,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     si = settings.si
     start = _start(settings, ideal=engine.ideal)
     scale, n = start.scale, settings.molecules
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     substance = water(scale)
     driver = FollowPressure(
         [0.0],
-        [si.pressure / scale.pressure],
+        [rounded(si.pressure / scale.pressure)],
         mean_free_time=start.free_time,
         relaxation=start.closing / start.free_time,
         excess=start.excess,

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import FollowPressure, Piston, Specular, maxwell_velocities, rotational_energies
+from atmosbox.engine import FollowPressure, Piston, RandomNumbers, Specular, maxwell_velocities, rotational_energies
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -38,6 +38,7 @@ from atmosbox.scene.ascent import atmosphere_panel, refuse_descent
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import altitude
 from atmosbox.scene.piston import CLOSING, size_of_parcel
+from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
 if TYPE_CHECKING:
@@ -113,11 +114,12 @@ def _environment(settings: Settings, duration: float) -> Environment:
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the parcel at the ground with its piston."""
     n = settings.molecules
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     scale, density, sides, excess = _start(settings, ideal=engine.ideal)
     mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
     if engine.ideal:  # no excluded volume
         mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
+    mean_free_time = rounded(mean_free_time)
     length = tuple(sides + 1.0)
     degrees = 2.0 if settings.rotation else 0.0
     spin = rotational_energies(1.0, np.full(n, degrees), rng)
@@ -128,7 +130,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     times = np.linspace(0.0, duration, 400)
     pressures = np.array([environment.pressure(t * scale.time) for t in times]) / scale.pressure
     driver = FollowPressure(
-        list(times), list(pressures), mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess
+        list(times), list(rounded(pressures)), mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess
     )
     parcel = engine.make(
         engine.scatter(length, np.ones(n), rng),

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, equal_speeds, maxwell_velocities
+from atmosbox.engine import HeatBath, RandomNumbers, equal_speeds, maxwell_velocities
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -34,6 +34,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -87,7 +88,7 @@ def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, flo
         side = (settings.molecules / possible) ** (1.0 / 3.0)
         excess = float(law.compressibility_factor(law.packing_fraction(possible, 1.0))) - 1.0
         factor = 1.0 + (0.0 if ideal else excess * law.contact_share((side,) * 3, 1.0, settings.molecules))
-    return scale, density, (settings.molecules / density) ** (1.0 / 3.0), factor
+    return scale, density, rounded((settings.molecules / density) ** (1.0 / 3.0)), factor
 
 
 def _crowding(density: float, side: float, molecules: int) -> float:
@@ -118,7 +119,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the cold gas between warm walls."""
     si = settings.si
     n = settings.molecules
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     scale, density, side, _ = _start(settings, ideal=engine.ideal)
     length = (side + 1.0,) * 3
     cold = scale.reduced_temperature(si.start_temperature)

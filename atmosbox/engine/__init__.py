@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.core.lift import FollowPressure
     from atmosbox.engine.core.packing import packing_fraction
     from atmosbox.engine.core.parcel import Driver, Parcel, Snapshot
+    from atmosbox.engine.core.random import RandomNumbers
     from atmosbox.engine.core.refusal import CoarseStepWarning, PackingError, RefusedError, StalledError
     from atmosbox.engine.core.schedule import Constant, Ramp, Schedule, Steps
     from atmosbox.engine.core.walls import HeatBath, Periodic, Piston, Specular, Wall
@@ -39,6 +40,7 @@ _HOMES = {
     "core.lift": "FollowPressure",
     "core.packing": "packing_fraction",
     "core.parcel": "Driver Parcel Snapshot",
+    "core.random": "RandomNumbers",
     "core.refusal": "CoarseStepWarning PackingError RefusedError StalledError",
     "core.schedule": "Constant Ramp Schedule Steps",
     "core.walls": "HeatBath Periodic Piston Specular Wall",
@@ -71,6 +73,7 @@ __all__ = [
     "Pool",
     "Ramp",
     "RandomBath",
+    "RandomNumbers",
     "RefusedError",
     "Schedule",
     "Snapshot",

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox.scene.conversion import from_si, to_si
+from atmosbox.scene.rounding import rounded
 
 if TYPE_CHECKING:
     from atmosbox.engine import FollowPressure, Parcel
@@ -153,7 +154,7 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
     heights = np.array([height(float(share)) for share in shares])
 
     def turn(metres: float) -> None:
-        _lead(parcel, driver, float(np.interp(metres, heights, shares)))
+        _lead(parcel, driver, rounded(float(np.interp(metres, heights, shares))))
 
     low, high = (from_si(float(h), "km") for h in (heights[0], heights[-1]))
     return Knob("altitude", "height to which the parcel moves", "km", low, high, high, turn)

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.engine import Substance, maxwell_velocities, rotational_energies
+from atmosbox.engine.core.random import Source
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import DRY_AIR, WATER
 
@@ -47,7 +49,7 @@ def water(scale: Scale, diameter: float = 1.0) -> Substance:
         diameter=diameter,
         binding_energy=binding,
         heat_capacity=law.LIQUID_HEAT_CAPACITY,
-        volatility=at_unit * math.exp(binding),
+        volatility=rounded(at_unit * math.exp(binding)),
         rotation=float(WATER.rotational_dof),
     )
 
@@ -95,12 +97,13 @@ class MoistAir:
     rotational_energy: Array
 
 
-def moist_air(molecules: int, vapour: int, rng: np.random.Generator) -> MoistAir:
+def moist_air(molecules: int, vapour: int, rng: Source) -> MoistAir:
     """Return so many molecules, so many of them vapour, at kT = 1 to rounding and without momentum.
 
     Examples
     --------
-    >>> air = moist_air(100, 2, np.random.default_rng(1))
+    >>> from atmosbox.engine import RandomNumbers
+    >>> air = moist_air(100, 2, RandomNumbers(1))
     >>> kinetic = 0.5 * float(np.sum(air.mass * np.sum(air.velocity**2, axis=1)))
     >>> round(kinetic, 9), round(float(air.rotational_energy.sum()), 9)
     (150.0, 101.0)

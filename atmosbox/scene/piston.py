@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.engine import Piston, Specular
 from atmosbox.scene.moisture import moist_air
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 
 if TYPE_CHECKING:
     from atmosbox.engine import FollowPressure, Liquid, Parcel
+    from atmosbox.engine.core.random import Source
     from atmosbox.scene.engines import EngineChoice
 
 __all__ = ["CLOSING", "FLATNESS", "moist_parcel", "size_of_parcel"]
@@ -73,7 +75,7 @@ def size_of_parcel(
         excess = float(law.gas_pressure(density, 1.0, 1.0)) - density
         excess *= 0.0 if ideal else law.contact_share(sides, 1.0, molecules)
         density *= wanted / (density + excess)
-    return density, sides, excess / density**2
+    return rounded(density), rounded(sides), rounded(excess / density**2)
 
 
 def moist_parcel(
@@ -84,7 +86,7 @@ def moist_parcel(
     *,
     driver: FollowPressure,
     liquid: Liquid,
-    rng: np.random.Generator,
+    rng: Source,
     seed: int,
 ) -> Parcel:
     """Return moist air at kT = 1 under a piston, with its liquid; the other walls are smooth.

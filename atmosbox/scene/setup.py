@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ class Setup:
     def __post_init__(self) -> None:
         if self.frames < 1 or self.samples < 1 or not 0 <= self.settle < self.frames or not self.duration > 0.0:
             raise ValueError("a run needs a duration, at least one frame, and frames left after it has settled")
+        object.__setattr__(self, "duration", rounded(self.duration))
 
     @property
     def frame(self) -> float:

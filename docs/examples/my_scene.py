@@ -7,7 +7,7 @@ without meeting. Each takes heat from the hot wall to the cold one; half as many
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Specular, maxwell_velocities
+from atmosbox.engine import HeatBath, RandomNumbers, Specular, maxwell_velocities
 from atmosbox.scene import Air, Headline, Line, Panel, Scale, SceneSettings, Setup, block_average, setting
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -37,7 +37,7 @@ def answer(settings):
 def build(settings, engine):
     """Return the box: a cube of points, which never meet, between the walls; the engine that was asked for makes it."""
     n, scale = settings.molecules, answer(settings)[1]
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     bath = [HeatBath(scale.reduced_temperature(wall)) for wall in (settings.si.hot, settings.si.cold)]
     start = rng.random((n, 3)), maxwell_velocities(1.0, np.ones(n), rng)
     parcel = engine.make(

@@ -2,6 +2,7 @@
 
 `state`         what is known of a molecule, of its box, of what lies ahead
 `motion`        free flight
+`elementary`    logarithms, exponentials and their like, the same bits everywhere
 `random`        random numbers
 `hard_sphere`   the law of hard spheres: when two touch, what becomes of their velocities
 `square_well`   the law of spheres that attract each other: edge and core of a well

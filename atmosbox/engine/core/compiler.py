@@ -29,7 +29,9 @@ __all__ = ["by_reference", "compiled", "prange", "prefetch", "type_of", "use_thr
 prange = numba.prange
 """The ``range`` of a loop whose turns a kernel that is ``parallel`` shares among threads."""
 
-_SHARED: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+# Nothing of "fastmath", not even the fusing of products and sums, which some processors have and some have not: what
+# is computed is the same to the last bit everywhere.
+_SHARED: dict[str, Any] = {"error_model": "numpy"}
 _CACHE = cache_folder()
 _LONGEST = 120.0  # seconds
 

@@ -6,9 +6,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine.core.inputs import number
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.refusal import RefusedError
 
-__all__ = ["Course"]
+__all__ = ["Course", "interpolate"]
+
+
+@kernel(plain=True)
+def interpolate(x, xs, ys):
+    """Return y at x of a polygon, constant beyond its ends.
+
+    Examples
+    --------
+    >>> float(interpolate(1.5, np.array([1.0, 2.0]), np.array([0.0, 4.0])))
+    2.0
+    """
+    if x <= xs[0]:
+        return ys[0]
+    high = xs.size - 1
+    if x >= xs[high]:
+        return ys[high]
+    low = 0
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if xs[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return ys[low] + (ys[high] - ys[low]) * ((x - xs[low]) / (xs[high] - xs[low]))
 
 
 class Course:
@@ -48,7 +73,7 @@ class Course:
         """Return the planned moment at a time [time]."""
         if not self.led:
             return min(time, self.end)
-        return float(np.interp(time, self._time, self._moment))
+        return float(interpolate(time, np.array(self._time), np.array(self._moment)))
 
     def corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the times and moments between which the way is straight; it rests after the last.

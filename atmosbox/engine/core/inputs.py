@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.refusal import RefusedError, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
 
@@ -159,7 +160,7 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
 
 def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
     """Return the time in which a molecule passes its neighbour's place [time]."""
-    spacing = float(np.cbrt(math.prod(sides) / max(n, 1)))
+    spacing = float(cbrt(math.prod(float(side) for side in sides) / max(n, 1)))
     total = sum(sum_of_squares(column) for column in v.T)
     speeds = [math.sqrt(total / n)] if n else []
     if n:

@@ -31,12 +31,15 @@ class Kernel:
         The function as it is written.
     compile
         Makes what runs.
+    plain
+        Whether Python runs it as it is written, so that only code that is compiled asks for it to be compiled.
     """
 
-    def __init__(self, function: Callable[..., Any], compile: Callable[[], Any]) -> None:
+    def __init__(self, function: Callable[..., Any], compile: Callable[[], Any], *, plain: bool = False) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
         self._compile = compile
+        self._run = np.errstate(all="ignore")(function) if plain else None
 
     @functools.cached_property
     def compiled(self) -> Any:
@@ -52,7 +55,7 @@ class Kernel:
 
     def __call__(self, *arguments: Any) -> Any:
         """Run it."""
-        return self.compiled(*arguments)
+        return self.compiled(*arguments) if self._run is None else self._run(*arguments)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # copy and pickle look for special methods, which numba's object need not have
@@ -67,6 +70,7 @@ def kernel(
     early: bool = False,
     allocates: bool = False,
     parallel: bool = False,
+    plain: bool = False,
 ) -> Any:
     """Compile a function of the engine.
 
@@ -86,6 +90,8 @@ def kernel(
     parallel
         Whether its `prange` loops share the work among threads. The cache tells two versions of one function apart by
         what they close over, not by this: give the serial and the parallel version different closure values.
+    plain
+        Whether Python runs the function as it is written: for short ones that Python needs before anything is compiled.
 
     Returns
     -------
@@ -93,7 +99,7 @@ def kernel(
         The function, compiled when it is first called.
     """
     if function is None:
-        return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel)
+        return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel, plain=plain)
     if not COMPILED:
         return np.errstate(all="ignore")(function)  # as compiled code is silent
 
@@ -102,7 +108,7 @@ def kernel(
 
         return compiler.compiled(function, entry=entry, early=early, allocates=allocates, parallel=parallel)
 
-    return Kernel(function, compile)
+    return Kernel(function, compile, plain=plain)
 
 
 def use_threads(number: int) -> None:

@@ -23,7 +23,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.course import Course
+from atmosbox.engine.core.course import Course, interpolate
+from atmosbox.engine.core.elementary import expm1, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.parcel import Parcel
 from atmosbox.engine.core.refusal import RefusedError
@@ -131,7 +132,7 @@ class FollowPressure:
             raise RefusedError("every pressure of a schedule must be finite and above 0")
         if not (math.isfinite(mean_free_time) and mean_free_time > 0.0):
             raise RefusedError(f"mean_free_time = {mean_free_time} must be finite and above 0")
-        self._log = np.log(values)
+        self._log = np.asarray(log_of_normal(values))
         self._relaxation = relaxation * mean_free_time
         self.interval = interval * mean_free_time
         self._memory = 100.0 * mean_free_time
@@ -140,7 +141,7 @@ class FollowPressure:
 
     def log_pressure(self, time: float) -> float:
         """Return the logarithm of the pressure to follow at a time [time]."""
-        return float(np.interp(self.course.moment(time), self._time, self._log))
+        return float(interpolate(self.course.moment(time), self._time, self._log))
 
     def pressure(self, parcel: Parcel) -> float:
         """Return the pressure of the parcel [energy/length^3]."""
@@ -171,28 +172,10 @@ class FollowPressure:
 
 
 @kernel
-def _interpolate(x, xs, ys):
-    """Return y at x of a polygon, constant beyond its ends."""
-    if x <= xs[0]:
-        return ys[0]
-    high = xs.size - 1
-    if x >= xs[high]:
-        return ys[high]
-    low = 0
-    while high - low > 1:
-        middle = (low + high) >> 1
-        if xs[middle] <= x:
-            low = middle
-        else:
-            high = middle
-    return ys[low] + (ys[high] - ys[low]) * ((x - xs[low]) / (xs[high] - xs[low]))
-
-
-@kernel
 def _log_pressure(time, lift):
     """Return the logarithm of the pressure to follow at a time [time]."""
-    moment = _interpolate(time, lift.course_time, lift.course_moment)
-    return _interpolate(moment, lift.time, lift.log_pressure)
+    moment = interpolate(time, lift.course_time, lift.course_moment)
+    return interpolate(moment, lift.time, lift.log_pressure)
 
 
 @kernel
@@ -216,8 +199,8 @@ def ceiling_velocity(at, lift):
     factor = 1.0 + lift.measured[_EXCESS] * at.density
     wanted = _log_pressure(at.time, lift)
     fall = wanted - _log_pressure(at.time + lift.interval, lift)
-    fall += lift.interval / lift.relaxation * (math.log(ideal * factor) - wanted)
-    return at.open_height * math.expm1(fall / stiffness(factor, at.freedom)) / lift.interval
+    fall += lift.interval / lift.relaxation * (log(ideal * factor) - wanted)
+    return at.open_height * expm1(fall / stiffness(factor, at.freedom)) / lift.interval
 
 
 @kernel(entry=True)

@@ -42,8 +42,8 @@ def packing_fraction(length: Sequence[float], diameter: ArrayLike, *, planar: bo
     """
     sigma = np.asarray(diameter, np.float64)
     if planar:
-        return float(np.sum(math.pi / 4.0 * sigma**2)) / (length[0] * length[2])
-    return float(np.sum(math.pi / 6.0 * sigma**3)) / math.prod(length)
+        return float(np.sum(math.pi / 4.0 * sigma * sigma)) / (length[0] * length[2])
+    return float(np.sum(math.pi / 6.0 * sigma * sigma * sigma)) / math.prod(length)
 
 
 def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bool], planar: bool) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from atmosbox.engine.core.account import Array, Snapshot
 from atmosbox.engine.core.adjustment import Adjustable
 from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, whole
+from atmosbox.engine.core.random import new_state
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.saved_state import SavedState, pack, restore, save, unpack
 from atmosbox.engine.core.state import Tallies
@@ -158,7 +159,7 @@ class Parcel(Adjustable):
             work=np.zeros(6),
             virial=np.zeros(layers),
             layer_scale=layers / float(self._sides[2]),
-            random=np.random.SeedSequence(self._seed).generate_state(1, np.uint64),
+            random=new_state(self._seed),
             progress=np.array([-math.inf, 0.0]),
         )
         self._now = 0.0
@@ -213,7 +214,7 @@ class Parcel(Adjustable):
     def restore(self, state: SavedState) -> None:
         """Put this box, which is made as the other one was, into a state of that one.
 
-        From then on it does what the other one did, bit for bit, on the same kind of processor.
+        From then on it does what the other one did, bit for bit, on any processor.
 
         Raises
         ------

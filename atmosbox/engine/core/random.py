@@ -1,5 +1,8 @@
 """Random numbers that depend on the seed and on nothing else: splitmix64, one 64-bit word of state.
 
+Word n of the sequence is a function of the state and n alone. So `RandomNumbers`, which makes many at once for the
+start of a run, returns the numbers that kernels draw one by one from the same state.
+
 References
 ----------
 Steele, G. L., Lea, D., Flood, C. H. (2014), doi:10.1145/2660193.2660195.
@@ -9,14 +12,93 @@ Marsaglia, G., Tsang, W. W. (2000), doi:10.1145/358407.358414 (gamma variates of
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
+from atmosbox.engine.core.elementary import circle, exp, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 
-__all__ = ["gamma", "gamma_of_shape", "gaussian_pair", "uniform"]
+__all__ = ["RandomNumbers", "Source", "gamma", "gamma_of_shape", "gaussian_pair", "new_state", "normal", "uniform"]
 
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
+_WORD = (1 << 64) - 1
+RUN, START = range(2)
+"""What a seed is used for: what happens in the box; where and how the molecules start."""
+
+
+@kernel(plain=True)
+def _mixed(z):
+    """Return a number from 0 to 1, both excluded, from a word of the sequence; of many at once from an array."""
+    z = (z ^ (z >> np.uint64(30))) * _MIX_1
+    z = (z ^ (z >> np.uint64(27))) * _MIX_2
+    z = z ^ (z >> np.uint64(31))
+    return (np.float64(z >> np.uint64(12)) + 0.5) * (1.0 / 4503599627370496.0)
+
+
+def new_state(seed: int, use: int = RUN) -> NDArray[np.uint64]:
+    """Return the first state for a seed of any length, another one for each use of it.
+
+    Examples
+    --------
+    >>> int(new_state(1)[0]) != int(new_state(1, START)[0])
+    True
+    """
+    state = 0x6A09E667F3BCC909 * (2 * use + 1) & _WORD
+    while True:
+        z = (state ^ (seed & _WORD)) + int(_STEP) & _WORD
+        for shift, factor in ((30, int(_MIX_1)), (27, int(_MIX_2))):
+            z = (z ^ (z >> shift)) * factor & _WORD
+        state = z ^ (z >> 31)
+        seed >>= 64
+        if not seed:
+            return np.array([state], np.uint64)
+
+
+class RandomNumbers:
+    """The random numbers of a start, of which there are as many as molecules.
+
+    Parameters
+    ----------
+    seed
+        A whole number, not below 0.
+
+    Examples
+    --------
+    >>> numbers = RandomNumbers(1)
+    >>> numbers.random((2, 3)).shape, bool(0.0 < numbers.random(5).min())
+    ((2, 3), True)
+    """
+
+    def __init__(self, seed: int) -> None:
+        self.state = new_state(seed, START)
+
+    def random(self, size: int | tuple[int, ...]) -> NDArray[np.float64]:
+        """Return the next numbers between 0 and 1, both excluded, in an array of this shape."""
+        number = math.prod(size) if isinstance(size, tuple) else size
+        words = self.state + _STEP * np.arange(1, number + 1, dtype=np.uint64)
+        self.state[:] = words[-1:] if number else self.state
+        return np.asarray(_mixed(words)).reshape(size)
+
+
+Source = RandomNumbers | np.random.Generator
+"""Where the random numbers of a start come from: numpy's own will do."""
+
+
+def normal(source: Source, size: int | tuple[int, ...]) -> NDArray[np.float64]:
+    """Return independent normal numbers of mean 0 and variance 1 in an array of this shape (Box and Muller).
+
+    Examples
+    --------
+    >>> numbers = normal(RandomNumbers(1), (1, 2))
+    >>> numbers[0].tolist() == list(gaussian_pair(new_state(1, START)))
+    True
+    """
+    number = math.prod(size) if isinstance(size, tuple) else size
+    pairs = source.random(((number + 1) // 2, 2))
+    radius = np.sqrt(-2.0 * log_of_normal(pairs[:, 0]))
+    cosine, sine = circle(pairs[:, 1])
+    return np.stack([radius * cosine, radius * sine], axis=1).reshape(-1)[:number].reshape(size)
 
 
 @kernel
@@ -34,11 +116,7 @@ def uniform(state):
     True
     """
     state[0] += _STEP
-    z = state[0]
-    z = (z ^ (z >> np.uint64(30))) * _MIX_1
-    z = (z ^ (z >> np.uint64(27))) * _MIX_2
-    z = z ^ (z >> np.uint64(31))
-    return (np.float64(z >> np.uint64(12)) + 0.5) * (1.0 / 4503599627370496.0)
+    return _mixed(state[0])
 
 
 @kernel
@@ -50,9 +128,9 @@ def gaussian_pair(state):
     >>> len(gaussian_pair(np.array([7], np.uint64)))
     2
     """
-    radius = math.sqrt(-2.0 * math.log(uniform(state)))
-    angle = 2.0 * math.pi * uniform(state)
-    return radius * math.cos(angle), radius * math.sin(angle)
+    radius = math.sqrt(-2.0 * log_of_normal(uniform(state)))
+    cosine, sine = circle(uniform(state))
+    return radius * cosine, radius * sine
 
 
 @kernel
@@ -73,12 +151,12 @@ def gamma(degrees, state):
     """
     energy = 0.0
     if degrees >= 4.0:
-        energy -= math.log(uniform(state) * uniform(state))
+        energy -= log_of_normal(uniform(state) * uniform(state))
     elif degrees >= 2.0:
-        energy -= math.log(uniform(state))
+        energy -= log_of_normal(uniform(state))
     if degrees == 1.0 or degrees == 3.0:
-        normal, _ = gaussian_pair(state)
-        energy += 0.5 * normal * normal
+        deviate, _ = gaussian_pair(state)
+        energy += 0.5 * deviate * deviate
     return energy
 
 
@@ -102,15 +180,15 @@ def gamma_of_shape(shape, state):
         return 0.0
     boost = 1.0
     if shape < 1.0:
-        boost = uniform(state) ** (1.0 / shape)
+        boost = exp(log_of_normal(uniform(state)) / shape)
         shape += 1.0
     d = shape - 1.0 / 3.0
     c = 1.0 / math.sqrt(9.0 * d)
     while True:
-        normal, _ = gaussian_pair(state)
-        v = 1.0 + c * normal
+        deviate, _ = gaussian_pair(state)
+        v = 1.0 + c * deviate
         if v <= 0.0:
             continue
         v = v * v * v
-        if math.log(uniform(state)) < 0.5 * normal * normal + d - d * v + d * math.log(v):
+        if log_of_normal(uniform(state)) < 0.5 * deviate * deviate + d - d * v + d * log(v):
             return boost * d * v

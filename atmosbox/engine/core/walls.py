@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
 from atmosbox.engine.core.refusal import RefusedError, shown
@@ -225,7 +226,7 @@ def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rot
     kT = wall_kT(walls, wall, time)
     thermal_speed = math.sqrt(kT / mass)
     outward = 1.0 if wall & 1 == 0 else -1.0
-    normal = outward * thermal_speed * math.sqrt(-2.0 * math.log(uniform(state)))
+    normal = outward * thermal_speed * math.sqrt(-2.0 * log_of_normal(uniform(state)))
     first, second = gaussian_pair(state)
     first *= thermal_speed
     second *= thermal_speed

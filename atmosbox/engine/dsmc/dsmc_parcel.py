@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.engine.core.box import new_box
+from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.inputs import number, sum_of_squares, whole
 from atmosbox.engine.core.jit import use_threads
 from atmosbox.engine.core.marching import MarchingParcel
@@ -151,7 +152,7 @@ class DsmcParcel(MarchingParcel):
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
         self._gas, kind = self._classify()
-        self._cross_section = math.pi * (2.0 * self._gas.radius) ** 2 if self._collisions else 0.0
+        self._cross_section = 4.0 * math.pi * self._gas.radius * self._gas.radius if self._collisions else 0.0
         self._low = [0.0 if turn else self._gas.radius for turn in self._periodic]
         self._box = new_box(
             self._sides,
@@ -213,7 +214,7 @@ class DsmcParcel(MarchingParcel):
         volume = math.prod(sides)
         edge = math.inf
         if self._cross_section > 0.0 and n > 1:
-            edge = math.cbrt(volume * self._occupancy / n) if self._cell is None else self._cell * self._path(volume)
+            edge = float(cbrt(volume * self._occupancy / n)) if self._cell is None else self._cell * self._path(volume)
         asked = f"occupancy = {self._occupancy:g}" if self._cell is None else f"cell = {self._cell:g} mean free paths"
         numbers = numbers_of_cells(n, sides, edge, asked)
         self._grid = new_grid(numbers, self._workers)

@@ -49,7 +49,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
 
     >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
     >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
-    >>> box = MoistDsmcParcel([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0))
+    >>> box = MoistDsmcParcel([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0), seed=1)
     >>> box.advance(50.0)
     >>> box.evaporated > 0, box.number + box.liquid, box.ledger() < 1e-12
     (True, 1, True)

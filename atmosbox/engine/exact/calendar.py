@@ -5,8 +5,6 @@ tournament whose nodes carry the winning time *and* its molecule, so the next ev
 and a change plays one match per level. There is nothing to tune.
 """
 
-import math
-
 import numpy as np
 
 from atmosbox.engine.core.jit import POSITIVE, kernel
@@ -25,7 +23,7 @@ def new_calendar(molecules: int) -> Calendar:
     inf
     """
     groups = -(-max(molecules, 1) // 8)
-    depth = max(1, math.ceil(math.log2(groups))) if groups > 1 else 1
+    depth = max(1, (groups - 1).bit_length())
     leaf = -(-(2 ** (depth + 1)) // 8) * 8
     buffer = np.full(leaf + 8 * groups + 8, np.inf)
     start = -(buffer.ctypes.data // 8) % 8

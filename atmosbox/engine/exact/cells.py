@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.core.elementary import cbrt, expm1, log, root
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import Cells, Copies, aligned_records
@@ -142,9 +143,10 @@ def choose_grid(
     most = [length[axis] / (2.002 * biggest) if biggest > 0.0 else math.inf for axis in range(3)]
     room = length[0] * (1.0 if planar else length[1]) * filled
     typical = float(radii.min())
-    share = molecules * (math.pi * typical**2 if planar else 4.0 / 3.0 * math.pi * typical**3) / room
+    size = math.pi * typical * typical * (1.0 if planar else 4.0 / 3.0 * typical)
+    share = molecules * size / room
     # measured (benchmarks): the pace is flat about this many molecules to a cell
-    occupancy = min(max(2.2 * (0.1 / share) ** (1.0 / 3.0), 1.5), 8.0) if share > 0.0 else 8.0
+    occupancy = min(max(2.2 * float(cbrt(0.1 / share)), 1.5), 8.0) if share > 0.0 else 8.0
     room_of = np.array([length[0], length[1], filled])
     chosen = None
     if rows and biggest > 0.0:
@@ -245,8 +247,8 @@ def _choose_for_rows(
     best: tuple[int, ...] = min(
         itertools.product(*near),
         key=lambda n: (
-            abs(math.log(math.prod(n) / max(wanted, 1.0)))
-            + 0.5 * float(np.std([math.log(n[a] * width[a] / length[a]) for a in range(3)]))
+            abs(float(log(math.prod(n) / max(wanted, 1.0))))
+            + 0.5 * float(np.std([float(log(n[a] * width[a] / length[a])) for a in range(3)]))
         ),
     )
     crowd = molecules / math.prod(best)
@@ -259,7 +261,7 @@ def _widths(length: NDArray[np.float64], number: float, planar: bool) -> NDArray
     free = [axis for axis in range(3) if not (planar and axis == 1)]
     cells = max(1.0, number)
     while free:
-        size = (math.prod(float(length[axis]) for axis in free) / cells) ** (1.0 / len(free))
+        size = float(root(math.prod(float(length[axis]) for axis in free) / cells, len(free)))
         short = [axis for axis in free if length[axis] < size]
         if not short:
             width[free] = size
@@ -272,14 +274,15 @@ def _layers(height: float, number: int, scale_height: float, thinnest: float) ->
     """Return the edges of layers that hold about equally many molecules of an isothermal column."""
     z = np.linspace(0.0, height, 20_001)
     a = min(height / scale_height, 700.0)
-    below = 0.9 * np.expm1(-a * z / height) / math.expm1(-a) + 0.1 * z / height
+    below = 0.9 * expm1(-a * z / height) / expm1(-a) + 0.1 * z / height
     if scale_height < height / 5_000:
         deep = min(40.0 * scale_height, height / 2)
         z = np.concatenate([np.linspace(0.0, deep, 20_001)[:-1], z[z >= deep]])
-        below = 0.9 * np.expm1(-z / scale_height) / math.expm1(-height / scale_height) + 0.1 * z / height
-    wanted = np.interp(np.linspace(0.0, 1.0, number + 1), below, z)
+        below = 0.9 * expm1(-z / scale_height) / expm1(-height / scale_height) + 0.1 * z / height
+    share = np.linspace(0.0, 1.0, number + 1)[1:-1]
+    k = np.searchsorted(below, share, side="right") - 1
     edges = [0.0]
-    for edge in wanted[1:-1]:
+    for edge in z[k] + (z[k + 1] - z[k]) * ((share - below[k]) / (below[k + 1] - below[k])):
         if edge - edges[-1] >= thinnest and height - edge >= thinnest:
             edges.append(float(edge))
     return np.array([*edges, height])

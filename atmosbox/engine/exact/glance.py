@@ -30,6 +30,9 @@ term is the fall.
    :math:`m = 2^{-14} W^2 = 1024\,u W^2`.
 5. *Approach.* r.v < 0 for the pair; as it is seen it may be larger by 2 V (e + 26 u W) < :math:`2^{-12} V W`.
 
+So it does not matter that some processors fuse product and sum and others do not, which nothing else in the engine may
+ask for: they may name other pairs, and double precision, the same everywhere, finds the same soonest contact in them.
+
 Nothing of this asks how large sigma is: a law of longer reach has the same slack. W grows with the cells, and with it
 the number of those that are named in vain, as if sigma were longer by W / 16384 and its square by the square of
 W / 128: in a cell some W wide that is always a small share.

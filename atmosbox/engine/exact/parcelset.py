@@ -69,7 +69,7 @@ class ParcelSet(Parcel):
             exchange=1.0 / self._collision_number,
             stall=1e-9 * self._spread,
         )
-        self._epoch_length = 2.0 ** math.floor(math.log2(1024.0 * self._spread))
+        self._epoch_length = math.ldexp(1024.0, math.frexp(self._spread)[1] - 1)
         self._cells: Cells
         self._grid: Grid
         self._places: int

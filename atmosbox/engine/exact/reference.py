@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.hard_sphere import share_energy
 from atmosbox.engine.core.pair import nearest_along, reach, resolve
-from atmosbox.engine.core.random import uniform
+from atmosbox.engine.core.random import new_state, uniform
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls, resolve_wall_hit
 
 __all__ = ["Event", "Reference", "time_to_close"]
@@ -159,7 +159,7 @@ class Reference:
         self.gravity = float(gravity)
         self.planar = planar
         self.exchange = 1.0 / collision_number
-        self.random: Any = np.random.SeedSequence(seed).generate_state(1, np.uint64)
+        self.random: Any = new_state(seed)
         for axis in range(3):
             if self.periodic[axis]:
                 self.position[:, axis] %= self.length[axis]
@@ -235,7 +235,7 @@ class Reference:
         """Move all molecules to a time, each along its own parabola."""
         dt = time - self.time
         self.position += dt * self.velocity
-        self.position[:, 2] -= 0.5 * self.gravity * dt**2
+        self.position[:, 2] -= 0.5 * self.gravity * dt * dt
         self.velocity[:, 2] -= self.gravity * dt
         self.time = time
 

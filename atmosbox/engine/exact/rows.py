@@ -96,7 +96,7 @@ def copies_of(
     layer = np.maximum(_farthest(edges[2], wraps=periodic[2]), max(width))
     slack = np.zeros((len(layer), 3))
     slack[:, DISTANCE] = SLACK * layer
-    slack[:, SQUARE] = SLACK * layer**2
+    slack[:, SQUARE] = SLACK * layer * layer
     slack[:, CLOSING] = 4.0 * SLACK * layer  # times V
     area = float(edges[0][-1]) * (1.0 if planar else float(edges[1][-1]))
     return Copies(
@@ -326,11 +326,13 @@ def _horizon(density, mean_square, gas):
     diameter = 2.0 * gas.cells.copies.radius
     if gas.box.planar:
         filled = min(0.25 * math.pi * density * diameter * diameter, 0.7)
-        excess = (1.0 - 0.4375 * filled) / (1.0 - filled) ** 2
+        free = 1.0 - filled
+        excess = (1.0 - 0.4375 * filled) / (free * free)
         rate = 2.0 * density * diameter * math.sqrt(0.5 * math.pi * mean_square) * excess
     else:
         filled = min(math.pi / 6.0 * density * diameter * diameter * diameter, 0.6)
-        excess = (1.0 - 0.5 * filled) / (1.0 - filled) ** 3
+        free = 1.0 - filled
+        excess = (1.0 - 0.5 * filled) / (free * free * free)
         rate = 4.0 * density * diameter * diameter * math.sqrt(math.pi / 3.0 * mean_square) * excess
     if filled < _DILUTE or not rate > 0.0:
         return math.inf

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from atmosbox.engine.core.elementary import cbrt, circle
 from atmosbox.engine.core.jit import by_reference, kernel
 from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.random import uniform
@@ -77,7 +78,7 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     # the new drop stands at the centre of mass of both, as far as the walls allow
     rx, ry, rz = nearest_image(two.x - one.x, two.y - one.y, two.z - one.z, box, modes)
     x, y, z = one.x + share * rx, one.y + share * ry, one.z + share * rz
-    radius = (drops.cube[a] + drops.cube[b] + (drops.held[a] + drops.held[b]) * drops.molecule_cube) ** (1.0 / 3.0)
+    radius = cbrt(drops.cube[a] + drops.cube[b] + (drops.held[a] + drops.held[b]) * drops.molecule_cube)
     x = within(x, radius, box.length_x, box.inverse_x)
     y = within(y, radius, box.length_y, box.inverse_y)
     z = within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
@@ -164,8 +165,8 @@ def _emit(t, gas, drops, reservoir, modes):
     distance = (table[modes.drops + k].radius + radius) * (1.0 + 1e-12)
     nz = 2.0 * uniform(state) - 1.0
     across = math.sqrt(1.0 - nz * nz)
-    angle = 2.0 * math.pi * uniform(state)
-    nx, ny = across * math.cos(angle), across * math.sin(angle)
+    cosine, sine = circle(uniform(state))
+    nx, ny = across * cosine, across * sine
     size, lowest = table[reservoir.kind].size_class, gas.cells.boundary
     x, inside_x = placed(drop.x + distance * nx, radius, box.length_x, box.inverse_x, lowest[size, 0, 0])
     y, inside_y = placed(drop.y + distance * ny, radius, box.length_y, box.inverse_y, lowest[size, 1, 0])

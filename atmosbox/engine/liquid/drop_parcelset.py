@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
@@ -56,9 +57,9 @@ class DropParcelSet(MoistParcelSet):
         held[: more % number] += 1
         self._append_liquid()
         waters = more + int(np.sum(self._is_vapour()[: len(position)]))
-        cube, ball = liquid.nucleus**3, liquid.molecule_radius**3
-        largest = (number * cube + waters * ball) ** (1.0 / 3.0)
-        radius: Array = np.cbrt(cube + held * ball)
+        cube, ball = (length * length * length for length in (liquid.nucleus, liquid.molecule_radius))
+        largest = float(cbrt(number * cube + waters * ball))
+        radius: Array = np.array([float(cbrt(cube + each * ball)) for each in held])
         where = self._checked(np.array(liquid.position, float), radius, largest)
         kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
         self._first_drop = len(kinds.table)

@@ -3,6 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
+from atmosbox.engine.core.elementary import cbrt, circle
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import uniform
 
@@ -40,7 +41,7 @@ class DropRecords(NamedTuple):
 @kernel
 def radius_of(drops, k, held):
     """Return the radius of drop k if it held so many molecules [length]."""
-    return (drops.cube[k] + held * drops.molecule_cube) ** (1.0 / 3.0)
+    return cbrt(drops.cube[k] + held * drops.molecule_cube)
 
 
 @kernel
@@ -69,12 +70,12 @@ def about(nx, ny, nz, state):
     """Return a direction by the cosine law about a normal."""
     rise = math.sqrt(uniform(state))
     across = math.sqrt(max(1.0 - rise * rise, 0.0))
-    angle = 2.0 * math.pi * uniform(state)
+    cosine, sine = circle(uniform(state))
     # two axes at right angles to the normal: Duff and others 2017, jcgt.org/published/0006/01/01
     sign = 1.0 if nz >= 0.0 else -1.0
     a = -1.0 / (sign + nz)
     b = nx * ny * a
-    c, s = across * math.cos(angle), across * math.sin(angle)
+    c, s = across * cosine, across * sine
     return (
         c * (1.0 + sign * nx * nx * a) + s * b + rise * nx,
         c * sign * b + s * (sign + ny * ny * a) + rise * ny,

@@ -79,7 +79,8 @@ def _volume(t, diameter, gas, reservoir, modes):
     volume *= box.length_y - (diameter if box.inverse_y == 0.0 else 0.0)
     volume *= height - (diameter if box.inverse_z == 0.0 else 0.0)
     filled = number * math.pi / 6.0 * reservoir.mean_cube / (box.length_x * box.length_y * height)
-    return volume * (1.0 - filled) ** 3 / (1.0 + filled + filled * filled - filled * filled * filled)
+    free = 1.0 - filled
+    return volume * free * free * free / (1.0 + filled + filled * filled - filled * filled * filled)
 
 
 @kernel

@@ -67,7 +67,7 @@ class MoistAccount(Parcel):
         liquid, substance = self._liquid, self._liquid.substance
         vapour = int(np.flatnonzero(alike)[0]) if alike.any() else -1
         self._vapours = int(np.sum(kind == vapour))
-        cube = float(np.mean(self._diameter**3)) if len(kind) else 0.0
+        cube = float(np.mean(self._diameter * self._diameter * self._diameter)) if len(kind) else 0.0
         sides = self._sides - np.where(self._periodic, 0.0, substance.diameter)
         area = 1.0  # that of drops changes
         if isinstance(liquid, Mist):

@@ -31,6 +31,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from atmosbox.engine.core.elementary import circle, exp, lgamma, log, log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gamma_of_shape, uniform
 from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
@@ -146,7 +147,7 @@ def new_reservoir(
         spectrum=np.zeros(_BINS, np.int64),
         surface=np.ones(1),
         bin_width=_WIDEST / _BINS * max(liquid.kT, 1e-300),
-        log_rate=math.log(flux),
+        log_rate=float(log(flux)),
         area=float(area),
         binding_energy=float(substance.binding_energy),
         molecule_capacity=float(substance.heat_capacity),
@@ -179,15 +180,15 @@ def evaporation_rate(reservoir):
     shape = 2.0 + 0.5 * reservoir.rotation
     capacity = heat_capacity(reservoir)
     rest = max(capacity - reservoir.molecule_capacity, 0.0)
-    logarithm = reservoir.log_rate + (rest + shape - 1.0) * math.log(left) - math.lgamma(rest + shape)
-    logarithm += math.lgamma(capacity) - (capacity - 1.0) * math.log(energy)
-    return reservoir.surface[0] * math.exp(min(logarithm, 600.0))
+    logarithm = reservoir.log_rate + (rest + shape - 1.0) * log(left) - lgamma(rest + shape)
+    logarithm += lgamma(capacity) - (capacity - 1.0) * log(energy)
+    return reservoir.surface[0] * exp(min(logarithm, 600.0))
 
 
 @kernel
 def wait(rate, state):
     """Return how long an event of this rate [1/time] lets itself be waited for [time]."""
-    return -math.log(uniform(state)) / rate if rate > 0.0 else math.inf
+    return -log_of_normal(uniform(state)) / rate if rate > 0.0 else math.inf
 
 
 @kernel
@@ -195,8 +196,8 @@ def direction(pool, state):
     """Return where a molecule leaves the liquid to: by the cosine law upwards from a pool, anywhere from a droplet."""
     rise = math.sqrt(uniform(state)) if pool else 2.0 * uniform(state) - 1.0
     across = math.sqrt(max(1.0 - rise * rise, 0.0))
-    angle = 2.0 * math.pi * uniform(state)
-    return across * math.cos(angle), across * math.sin(angle), rise
+    cosine, sine = circle(uniform(state))
+    return across * cosine, across * sine, rise
 
 
 @kernel

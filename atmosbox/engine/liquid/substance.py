@@ -1,8 +1,8 @@
 """What condenses, and in which form its liquid is in the box: a mist, drops or a pool."""
 
-import math
 from dataclasses import dataclass
 
+from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.inputs import number, whole
 from atmosbox.engine.core.refusal import RefusedError
 
@@ -64,7 +64,7 @@ class Substance:
     def saturation_pressure(self, kT: float) -> float:
         """Return the pressure of the vapour that a large body of the liquid at kT is in balance with."""
         power = self.vapour_heat_capacity - self.heat_capacity
-        pressure: float = self.volatility * math.exp(power * math.log(kT) - self.binding_energy / kT)
+        pressure: float = float(self.volatility * exp(power * log(kT) - self.binding_energy / kT))
         return pressure
 
 

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.elementary import root
 from atmosbox.engine.core.packing import packing_fraction, refuse_impossible
+from atmosbox.engine.core.random import Source
 from atmosbox.engine.core.refusal import PackingError
 
 __all__ = ["lattice_positions"]
@@ -20,7 +22,7 @@ def lattice_positions(
     *,
     periodic: tuple[bool, bool, bool] = (False, False, False),
     planar: bool = False,
-    rng: np.random.Generator | None = None,
+    rng: Source | None = None,
 ) -> Array:
     """Place molecules on a face-centred lattice (in a plane, a centred rectangular one) that fills the box.
 
@@ -59,8 +61,9 @@ def lattice_positions(
     room = np.where(periodic, sides, sides - biggest)
     best: tuple[float, tuple[int, int, int], Array] | None = None
     axes = [0, 2] if planar else [0, 1, 2]
-    ideal = (2.0 * n / math.prod(max(float(room[a]), 0.3 * biggest) for a in axes)) ** (1.0 / len(axes))
-    stretch = {0: 3.0 ** (0.25), 2: 3.0 ** (-0.25)} if planar else {}
+    ideal = float(root(2.0 * n / math.prod(max(float(room[a]), 0.3 * biggest) for a in axes), len(axes)))
+    wide = math.sqrt(math.sqrt(3.0))
+    stretch = {0: wide, 2: 1.0 / wide} if planar else {}
     choices = []
     for axis in range(3):
         if axis not in axes:
@@ -78,9 +81,9 @@ def lattice_positions(
                 step = np.array([room[a] / (g if periodic[a] else max(g - 1, 1)) for a, g in enumerate(grid)])
                 many = [a for a in axes if grid[a] > 1]
                 gaps = [2.0 * step[a] for a in many if grid[a] > 2]
-                gaps += [math.hypot(step[a], step[b]) for k, a in enumerate(many) for b in many[k + 1 :]]
+                gaps += [_diagonal(step[a], step[b]) for k, a in enumerate(many) for b in many[k + 1 :]]
                 if planar and len(many) == 2:
-                    gaps = [math.hypot(step[0], step[2]), *[2.0 * step[a] for a in many if grid[a] > 2]]
+                    gaps = [_diagonal(step[0], step[2]), *[2.0 * step[a] for a in many if grid[a] > 2]]
                 gap = min(gaps, default=math.inf)
                 if best is None or gap > best[0]:
                     best = (gap, grid, step)
@@ -95,5 +98,10 @@ def lattice_positions(
     sites = index[index.sum(axis=1) % 2 == 0] * step + np.where(periodic, 0.25 * step, 0.5 * biggest)
     if planar:
         sites[:, 1] = 0.5 * sides[1]
-    chosen = np.arange(n) if rng is None else np.sort(rng.choice(len(sites), n, replace=False))
+    chosen = np.arange(n) if rng is None else np.sort(np.argsort(rng.random(len(sites)), kind="stable")[:n])
     return np.asarray(sites[chosen], np.float64)
+
+
+def _diagonal(a: float, b: float) -> float:
+    """Return the hypotenuse over two sides; `math.hypot` may round differently elsewhere."""
+    return math.sqrt(a * a + b * b)

@@ -45,7 +45,7 @@ def _bins(radius: Array, low: Array, high: Array, turn: Array, gap: float) -> _B
     """Return bins that are wider than any pair in contact, and not many more than there are molecules."""
     n = radius.size
     widest = 2.0 * float(radius.max()) * (1.0 + gap)
-    most = max(int((2.0 * n) ** 0.5), 4)
+    most = max(math.isqrt(2 * n), 4)
     turns = turn > 0.0
     origin = np.where(turns, 0.0, low.min(axis=0))
     size = np.where(turns, turn, np.maximum(high.max(axis=0) - origin, 1e-300))
@@ -67,7 +67,8 @@ def _push_pair(i, j, gap, spheres):
     dz = nearest_along(x[j, 2] - x[i, 2], turn[2], 1.0 / turn[2] if turn[2] > 0.0 else 0.0)
     touching = radius[i] + radius[j]
     square = dx * dx + dy * dy + dz * dz
-    if square >= (touching * (1.0 + 0.5 * gap)) ** 2:
+    apart = touching * (1.0 + 0.5 * gap)
+    if square >= apart * apart:
         return 0
     distance = math.sqrt(square)
     wanted = touching * (1.0 + gap)
@@ -75,7 +76,8 @@ def _push_pair(i, j, gap, spheres):
         dx, dy, dz, distance = wanted * 1e-3, 0.0, wanted * 1e-3, wanted * 1.5e-3
     # a little more than needed, the larger sphere moving less
     push = 1.05 * (wanted - distance) / distance
-    share = radius[j] ** 3 / (radius[i] ** 3 + radius[j] ** 3)
+    other, own = radius[j] * radius[j] * radius[j], radius[i] * radius[i] * radius[i]
+    share = other / (own + other)
     for axis in range(3):
         d = dx if axis == 0 else (dy if axis == 1 else dz)
         x[i, axis] -= share * push * d

@@ -9,7 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.elementary import expm1, log1p
 from atmosbox.engine.core.packing import packing_fraction, refuse_impossible
+from atmosbox.engine.core.random import Source
 from atmosbox.engine.core.refusal import PackingError, RefusedError
 from atmosbox.engine.start.overlap import push_apart
 
@@ -26,7 +28,7 @@ _DENSEST_RANDOM_PLANE = 0.74
 def random_positions(
     length: Sequence[float],
     diameter: ArrayLike,
-    rng: np.random.Generator,
+    rng: Source,
     *,
     periodic: tuple[bool, bool, bool] = (False, False, False),
     planar: bool = False,
@@ -73,7 +75,8 @@ def random_positions(
 
     Examples
     --------
-    >>> where = random_positions((5, 5, 5), np.ones(20), np.random.default_rng(1))
+    >>> from atmosbox.engine.core.random import RandomNumbers
+    >>> where = random_positions((5, 5, 5), np.ones(20), RandomNumbers(1))
     >>> float(where.min()) >= 0.5, where.shape
     (True, (20, 3))
     """
@@ -90,7 +93,7 @@ def random_positions(
     x = low + rng.random((n, 3)) * (high - low)
     if scale_height is not None and math.isfinite(scale_height):
         reach = high[:, 2] - low[:, 2]
-        x[:, 2] = low[:, 2] - scale_height * np.log1p(rng.random(n) * np.expm1(-reach / scale_height))
+        x[:, 2] = low[:, 2] - scale_height * log1p(rng.random(n) * expm1(-reach / scale_height))
     if planar:
         x[:, 1] = low[:, 1] = high[:, 1] = 0.5 * sides[1]
     turn = sides * np.array(periodic)

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.packing import packing_fraction
+from atmosbox.engine.core.random import Source, normal
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.start.lattice import lattice_positions
 from atmosbox.engine.start.scatter import random_positions
@@ -25,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 def maxwell_velocities(
-    kT: ArrayLike, mass: ArrayLike, rng: np.random.Generator, *, planar: bool = False, exact: bool = False
+    kT: ArrayLike, mass: ArrayLike, rng: Source, *, planar: bool = False, exact: bool = False
 ) -> Array:
     """Draw velocities of a gas at rest in equilibrium.
 
@@ -54,7 +56,8 @@ def maxwell_velocities(
 
     Examples
     --------
-    >>> v = maxwell_velocities(2.0, np.ones(100), np.random.default_rng(1), exact=True)
+    >>> from atmosbox.engine.core.random import RandomNumbers
+    >>> v = maxwell_velocities(2.0, np.ones(100), RandomNumbers(1), exact=True)
     >>> round(float((v**2).sum()) / 300, 12)
     2.0
     """
@@ -62,7 +65,7 @@ def maxwell_velocities(
     energy = np.broadcast_to(np.asarray(kT, np.float64), m.shape)
     if not (np.isfinite(energy).all() and (energy >= 0.0).all()):
         raise RefusedError("kT of a start must be 0 or above and finite")
-    v = rng.standard_normal((m.size, 3)) * np.sqrt(energy / m)[:, None]
+    v = normal(rng, (m.size, 3)) * np.sqrt(energy / m)[:, None]
     if planar:
         v[:, 1] = 0.0
     if exact and m.size > 1 and energy.mean() > 0.0:
@@ -72,16 +75,17 @@ def maxwell_velocities(
     return v
 
 
-def equal_speeds(speed: float, number: int, rng: np.random.Generator, *, planar: bool = False) -> Array:
+def equal_speeds(speed: float, number: int, rng: Source, *, planar: bool = False) -> Array:
     """Return velocities of one speed [length/time] in random directions.
 
     Examples
     --------
-    >>> v = equal_speeds(3.0, 5, np.random.default_rng(1))
+    >>> from atmosbox.engine.core.random import RandomNumbers
+    >>> v = equal_speeds(3.0, 5, RandomNumbers(1))
     >>> np.allclose((v**2).sum(axis=1), 9.0)
     True
     """
-    v = rng.standard_normal((number, 3))
+    v = normal(rng, (number, 3))
     if planar:
         v[:, 1] = 0.0
     return np.asarray(speed * v / np.sqrt(np.sum(v * v, axis=1))[:, None])
@@ -98,13 +102,20 @@ def two_halves(position: Array, length: Sequence[float], kT: tuple[float, float]
     return np.where(position[:, 0] < 0.5 * length[0], kT[0], kT[1])
 
 
-def rotational_energies(kT: ArrayLike, rotation: ArrayLike, rng: np.random.Generator) -> Array:
-    """Draw rotational energies of equilibrium [energy]: gamma variates of half the degrees of freedom, times kT.
+def rotational_energies(kT: ArrayLike, rotation: ArrayLike, rng: Source) -> Array:
+    """Draw rotational energies of equilibrium [energy] of molecules with 0 to 3 rotational degrees of freedom.
+
+    They are gamma variates of half the degrees of freedom, times kT.
 
     Examples
     --------
-    >>> rotational_energies(1.0, np.array([0.0]), np.random.default_rng(1))
+    >>> from atmosbox.engine.core.random import RandomNumbers
+    >>> rotational_energies(1.0, np.array([0.0]), RandomNumbers(1))
     array([0.])
     """
-    degrees = np.asarray(rotation, np.float64)
-    return np.asarray(rng.standard_gamma(0.5 * degrees) * np.asarray(kT, np.float64))
+    degrees = np.atleast_1d(np.asarray(rotation, np.float64))
+    energy = np.where(degrees >= 2.0, -log_of_normal(rng.random(degrees.size)), 0.0)
+    odd = degrees % 2.0 == 1.0
+    deviate = normal(rng, int(odd.sum()))
+    energy[odd] += 0.5 * deviate * deviate
+    return np.asarray(energy * np.asarray(kT, np.float64))

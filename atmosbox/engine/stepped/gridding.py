@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from atmosbox.engine.core.elementary import expm1, root
 from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.stepped.filing import Grid
@@ -68,7 +69,7 @@ def choose_cells(
     if biggest > 0.0:
         depth = float(sides[2])
         if math.isfinite(scale_height):
-            depth = -scale_height * math.expm1(-depth / scale_height)
+            depth = -scale_height * float(expm1(-depth / scale_height))
         axes = [0, 2] if planar else [0, 1, 2]
         for axis in axes:
             if periodic[axis] and 0.45 * sides[axis] <= 1.001 * biggest:
@@ -111,7 +112,7 @@ def _width(sides: list[float], molecules: int, share: float) -> float:
     while True:
         space = math.prod(free) * share * _OCCUPANCY / molecules
         least = math.prod(free) / (_MOST_CELLS * molecules)
-        width = float(max(space, least) ** (1.0 / len(free)))
+        width = float(root(max(space, least), len(free)))
         if free[0] >= width or len(free) == 1:
             return width
         free = free[1:]

@@ -211,7 +211,8 @@ def specialise(modes: Modes, parallel: bool) -> Any:
         crude = motion != PARABOLA or rule != MIRROR
         fall_heat = 0.0
         if motion != PARABOLA:
-            fall_heat = 0.5 * (box.gravity * step_length) ** 2
+            fall = box.gravity * step_length
+            fall_heat = 0.5 * fall * fall
             if motion == SEMI_IMPLICIT:
                 fall_heat = -fall_heat
         for it in range(steps):

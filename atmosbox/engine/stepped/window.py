@@ -60,8 +60,8 @@ if COMPILED:
             squared = None
             for axis in range(3):
                 apart = builder.fsub(load(axis), spread(arguments[5 + axis]))
-                term = builder.fmul(apart, apart, flags=("contract",))
-                squared = term if squared is None else builder.fadd(squared, term, flags=("contract",))
+                term = builder.fmul(apart, apart)
+                squared = term if squared is None else builder.fadd(squared, term)
             reach = spread(arguments[8])
             if not alone:
                 reach = builder.fadd(reach, load(3))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.pair import nearest_along
 from atmosbox.engine.core.random import gaussian_pair, uniform
 from atmosbox.engine.core.square_well import BOUNCE, CAPTURE, CORE, RELEASE, resolve_crossing
@@ -79,7 +80,7 @@ class AttractingReference(Reference):
     def _wait(self) -> None:
         rate = self.bath.rate * self.number
         if rate > 0.0:
-            self.draws_at = self.time - math.log(uniform(self.random)) / rate
+            self.draws_at = self.time - float(log_of_normal(uniform(self.random))) / rate
 
     def energy(self) -> float:
         """Return kinetic and potential energy together, that of the wells included [energy]."""

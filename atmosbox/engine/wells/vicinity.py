@@ -26,6 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.core.elementary import root
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.square_well import Well
@@ -86,7 +87,7 @@ def new_vicinity(
     >>> vicinity.number_x, round(float(vicinity.width[0]), 3)
     (11, 0.875)
     """
-    spacing = float(np.prod(sides if not planar else sides[[0, 2]]) / max(number, 1)) ** (0.5 if planar else 1.0 / 3.0)
+    spacing = float(root(float(np.prod(sides if not planar else sides[[0, 2]])) / max(number, 1), 2 if planar else 3))
     widest = max(reach, spacing)
     # a path within two shells must not lead to another image than the nearest
     for axis in range(3):

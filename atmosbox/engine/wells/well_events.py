@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import POSITIVE, kernel, prefetch
 from atmosbox.engine.core.motion import time_to_leave, time_to_leave_in_gravity
 from atmosbox.engine.core.pair import nearest_image
@@ -168,7 +169,7 @@ def _draw_anew(t, gas, modes):
 def time_until_bath(number, gas):
     """Return how long until the bath acts next on one of so many molecules [time from now]."""
     rate = gas.bath.rate * number
-    return -math.log(uniform(gas.tallies.random)) / rate if rate > 0.0 else math.inf
+    return -log_of_normal(uniform(gas.tallies.random)) / rate if rate > 0.0 else math.inf
 
 
 @kernel

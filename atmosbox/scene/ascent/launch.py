@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine import FollowPressure, Mist
+from atmosbox.engine import FollowPressure, Mist, RandomNumbers
 from atmosbox.scene.ascent.finite_size import drift, least_cloud
 from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance
 from atmosbox.scene.ascent.way import RAIN, MoistAscent
@@ -15,6 +15,7 @@ from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
 from atmosbox.scene.knob import altitude, way
 from atmosbox.scene.moisture import water
 from atmosbox.scene.piston import CLOSING, moist_parcel
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.setup import Setup
 from atmosbox.theory.constants import DRY_AIR
 
@@ -51,7 +52,7 @@ def rise(
     seed
         Seed of all random numbers.
     """
-    rng = np.random.default_rng(seed)
+    rng = RandomNumbers(seed)
     scale, n = ascent.scale, ascent.molecules
     _, sides, excess = ascent.box(ideal=engine.ideal)
     mean_free_time = ascent.mean_free_time(ideal=engine.ideal)
@@ -59,7 +60,7 @@ def rise(
     shares, outside = np.linspace(0.0, 1.0, len(ascent.route)), np.array(ascent.route)
     driver = FollowPressure(
         list(shares * duration),
-        list(outside / scale.pressure),
+        list(rounded(outside / scale.pressure)),
         mean_free_time=mean_free_time,
         relaxation=CLOSING,
         excess=excess,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.scene.moisture import nuclei_heat_capacity, vapour_molecules
 from atmosbox.scene.piston import size_of_parcel
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -85,7 +86,7 @@ class MoistAscent:
         density = self.box(ideal=ideal)[0]
         time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
         # molecules without volume meet each other less often
-        return time * (float(law.contact_value(law.packing_fraction(density, 1.0))) if ideal else 1.0)
+        return rounded(time * (float(law.contact_value(law.packing_fraction(density, 1.0))) if ideal else 1.0))
 
     @property
     def vapour(self) -> int:

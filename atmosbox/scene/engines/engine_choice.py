@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from atmosbox.engine import Parcel
+    from atmosbox.engine.core.random import Source
 
 __all__ = ["EXACT", "EngineChoice", "choose", "names", "used"]
 
@@ -61,9 +62,7 @@ class EngineChoice:
         """Whether the pressure is n kT, without Z: the molecules of the engine have no excluded volume."""
         return self.engine.ideal or self.options.get("collisions") is False
 
-    def scatter(
-        self, length: Sequence[float], diameter: ArrayLike, rng: np.random.Generator, **options: Any
-    ) -> NDArray[np.float64]:
+    def scatter(self, length: Sequence[float], diameter: ArrayLike, rng: Source, **options: Any) -> NDArray[np.float64]:
         """Return centres at random in a box: `atmosbox.engine.random_positions`, for a box that `make` is to make."""
         from atmosbox.engine import random_positions
 

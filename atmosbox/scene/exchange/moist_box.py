@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox import theory as law
 from atmosbox.scene.moisture import vapour_molecules
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -65,7 +66,7 @@ class MoistBox:
     @property
     def side(self) -> float:
         """Side of the cube that centres can reach [diameter]."""
-        return float((self.molecules / self._packing[0]) ** (1.0 / 3.0))
+        return rounded(float((self.molecules / self._packing[0]) ** (1.0 / 3.0)))
 
     @property
     def face(self) -> float:

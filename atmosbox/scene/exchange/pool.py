@@ -13,6 +13,7 @@ from atmosbox import theory as law
 from atmosbox.engine.core.lift import stiffness
 from atmosbox.scene.moisture import vapour_molecules
 from atmosbox.scene.piston import size_of_parcel
+from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -74,7 +75,7 @@ class AirOverPool:
         )
         self.vapour = vapour_molecules(self.molecules, self.vapour_pressure, self.pressure)
         self.air = self.molecules - self.vapour
-        self.free_time = float(law.mean_free_time(self.density, 1.0, 1.0, 1.0))
+        self.free_time = rounded(float(law.mean_free_time(self.density, 1.0, 1.0, 1.0)))
         height = float(self.sides[2])
         speed = float(law.mean_speed(1.0, law.WATER_MASS_RATIO))
         self.exchange = 4.0 * height / speed
