@@ -158,6 +158,7 @@ class Case(NamedTuple):
 
 
 ROUNDING = frozenset({"largest_energy_change", "largest_momentum_residual"})
+COUNTS = frozenset({"last_largest_drop_molecule_count", "last_vapor_molecule_count"})
 METPY = frozenset({"metpy_lcl", "metpy_cape", "metpy_el"})
 CASES = [
     Case("temperature", {"duration": 10.0}, 24),
@@ -167,6 +168,8 @@ CASES = [
     Case("elastic-collisions", {"duration": 10.0}, 24, ROUNDING),
     Case("atmosphere", {"molecules": 100, "duration": 100.0}, 24),
     Case("atmosphere", {"molecules": 100, "duration": 100.0, "plane": True}, 24),
+    Case("attraction", {"molecules": 150, "density": 0.08, "temperature": 200.0, "duration": 2.0}, 12, COUNTS),
+    Case("attraction", {"molecules": 300, "start": "slab", "density": 1.0, "temperature": 130.0, "duration": 2.0}, 12),
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
     Case("lifting-dry", {"molecules": 200, "ascent": 400.0}, 24),
@@ -246,6 +249,8 @@ def test_every_headline_that_a_scene_names_is_seen_in_a_case(scene, seen):
 @pytest.mark.validate
 @pytest.mark.parametrize("scene", scenarios.names())
 def test_the_errors_of_sixty_runs_of_a_scene_as_it_comes_are_their_scatter(scene):
+    if scene == "attraction":
+        pytest.skip("as it comes it ends in two counts, which are what they are")
     outcomes = runs(scene, 60)
     assert_profiles_are_covered(outcomes, profiles_of(outcomes[0]))
     assert_headlines_are_covered(outcomes, ROUNDING | METPY)

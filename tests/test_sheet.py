@@ -31,6 +31,7 @@ ROOT = Path(__file__).resolve().parents[1]
 NAMES = scenarios.names()
 
 SMALL = {
+    "attraction": {"molecules": 100, "duration": "0.2 ns"},
     "atmosphere": {"molecules": 60, "duration": 20},
     "condensation": {"molecules": 500, "duration": "20 ns"},
     "elastic-collisions": {"duration": "6 s"},

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from atmosbox.scene.instruments import (
         LAWS,
         Air,
+        Clusters,
         Discs,
         DropSizes,
         Environment,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
         MoistLift,
         Molecules,
         Readings,
+        Slab,
         Speeds,
         Water,
         wall_laws,
@@ -52,8 +54,8 @@ _HOMES = {
     "engines": "EngineChoice",
     "headline": "Headline",
     "instruments": (
-        "LAWS Air Discs DropSizes Environment Instrument Layers Leaving "
-        "Lift MoistLift Molecules Readings Speeds Water wall_laws"
+        "LAWS Air Clusters Discs DropSizes Environment Instrument Layers Leaving "
+        "Lift MoistLift Molecules Readings Slab Speeds Water wall_laws"
     ),
     "panels": "Line Panel",
     "settings": "SceneSettings setting",
@@ -66,6 +68,7 @@ _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split
 __all__ = [
     "LAWS",
     "Air",
+    "Clusters",
     "Discs",
     "DropSizes",
     "EngineChoice",
@@ -84,6 +87,7 @@ __all__ = [
     "SceneSettings",
     "Series",
     "Setup",
+    "Slab",
     "Speeds",
     "Water",
     "block_average",

@@ -30,7 +30,7 @@ class Unit(NamedTuple):
 _UNITS = {
     "1": Unit("1"), "%": Unit("1", 1, 1e2), "kg kg-1": Unit("kg kg-1"), "g kg-1": Unit("kg kg-1", 1, 1e3),
     "K": Unit("K"), "degC": Unit("K", offset=273.15),
-    "Pa": Unit("Pa"), "hPa": Unit("Pa", 1e2), "kPa": Unit("Pa", 1e3),
+    "Pa": Unit("Pa"), "hPa": Unit("Pa", 1e2), "kPa": Unit("Pa", 1e3), "bar": Unit("Pa", 1e5),
     "m": Unit("m"), "km": Unit("m", 1e3), "cm": Unit("m", 1, 1e2), "mm": Unit("m", 1, 1e3),
     "um": Unit("m", 1, 1e6), "nm": Unit("m", 1, 1e9),
     "s": Unit("s"), "min": Unit("s", 60), "h": Unit("s", 3600), "ms": Unit("s", 1, 1e3),
@@ -40,6 +40,8 @@ _UNITS = {
     "J": Unit("J"), "zJ": Unit("J", 1, 1e21), "J-1": Unit("J-1"), "zJ-1": Unit("J-1", 1e21),
     "s-1": Unit("s-1"), "ns-1": Unit("s-1", 1e9), "kg m-3": Unit("kg m-3"), "g m-3": Unit("kg m-3", 1, 1e3),
     "kg": Unit("kg"), "g": Unit("kg", 1, 1e3),
+    "N m-1": Unit("N m-1"), "mN m-1": Unit("N m-1", 1, 1e3),
+    "J mol-1": Unit("J mol-1"), "kJ mol-1": Unit("J mol-1", 1e3), "m-3": Unit("m-3"), "nm-3": Unit("m-3", 1e27),
     "kg mol-1": Unit("kg mol-1"), "g mol-1": Unit("kg mol-1", 1, 1e3),
 }  # fmt: skip
 

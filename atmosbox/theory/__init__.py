@@ -9,6 +9,7 @@ file                what it answers
 =================== =====================================================================================
 equation_of_state   by how much the pressure of hard spheres exceeds that of points
 entropy             what their excluded volume does to the free energy and to the adiabat
+simple_fluid        argon and its like, and which square well they are
 well_gas            pressure and energy of a gas whose molecules attract each other
 disc                the same in two dimensions, and how often discs meet
 collision           how often molecules meet, and how far they fly between
@@ -125,6 +126,13 @@ from atmosbox.theory.saturation import (
     dewpoint,
     saturation_vapor_pressure,
 )
+from atmosbox.theory.simple_fluid import (
+    SIMPLE_FLUIDS,
+    WELL_CRITICAL_DENSITY,
+    WELL_CRITICAL_TEMPERATURE,
+    SimpleFluid,
+    well_vapor_pressure,
+)
 from atmosbox.theory.standard_atmosphere import isa_pressure, isa_temperature
 from atmosbox.theory.vapor_number import VaporNumber, isolated_vapor_number, isothermal_vapor_number
 from atmosbox.theory.wall_law import (
@@ -148,8 +156,11 @@ __all__ = [
     "FREEZING_PACKING_FRACTION_DISCS",
     "LEAVING_FREEDOM",
     "LIQUID_HEAT_CAPACITY",
+    "SIMPLE_FLUIDS",
     "VAPOR_HEAT_CAPACITY",
     "WATER_MASS_RATIO",
+    "WELL_CRITICAL_DENSITY",
+    "WELL_CRITICAL_TEMPERATURE",
     "Ascent",
     "CloudBase",
     "Convection",
@@ -157,6 +168,7 @@ __all__ = [
     "FreeMolecularSlab",
     "IsobaricWater",
     "ParcelPath",
+    "SimpleFluid",
     "VaporNumber",
     "adiabatic_index",
     "barometric_density",
@@ -229,5 +241,6 @@ __all__ = [
     "temperature_noise",
     "vapor_pressure",
     "virtual_temperature",
+    "well_vapor_pressure",
     "wet_bulb_temperature",
 ]

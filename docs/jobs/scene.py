@@ -19,7 +19,7 @@ def scene(name: str, found: Findings) -> None:
     if not outcome.ledger <= runner.LEDGER_LIMIT:
         found.failures.append(f"the ledger of {name} is off by {outcome.ledger:.1e}")
     for headline in outcome.headlines:
-        if not headline.agrees:
+        if headline.agrees is False:
             found.failures.append(
                 f"{name}: {headline.label} is {headline.value:.6g}, theory says {headline.theory:.6g}"
             )

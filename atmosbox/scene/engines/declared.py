@@ -36,6 +36,8 @@ class Engine:
         Where its method is published.
     moist
         Returns the class of its parcels with a liquid in them, if it has one.
+    attracting
+        Returns the class of its parcels of molecules that attract each other, if it has one.
     """
 
     name: str
@@ -45,12 +47,19 @@ class Engine:
     ideal: bool = False
     reference: str = ""
     moist: Callable[[Liquid], type[Parcel]] | None = None
+    attracting: Callable[[], type[Parcel]] | None = None
 
 
 def _exact() -> type[Parcel]:
     from atmosbox.engine import ParcelSet
 
     return ParcelSet
+
+
+def _attracting_exact() -> type[Parcel]:
+    from atmosbox.engine import AttractingParcelSet
+
+    return AttractingParcelSet
 
 
 def _moist_exact(liquid: Liquid) -> type[Parcel]:
@@ -118,6 +127,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 (_COLLISIONS,),
                 reference="https://doi.org/10.1007/s40571-014-0021-8 (event-driven hard spheres)",
                 moist=_moist_exact,
+                attracting=_attracting_exact,
             ),
             Engine(
                 "stepped",

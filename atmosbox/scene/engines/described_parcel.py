@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine import Liquid, Parcel, RefusedError, Snapshot
+from atmosbox.engine import Liquid, Parcel, RandomBath, RefusedError, Snapshot, SquareWell
 from atmosbox.engine.core.parcel import Arrangement, Array
 
 __all__ = ["DescribedParcel"]
@@ -23,6 +23,8 @@ class DescribedParcel(Parcel):
     ----------
     liquid
         The liquid in the box, of which nothing is asked.
+    well, species, strength, bath
+        What molecules that attract each other have besides, of which nothing is asked either.
 
     Examples
     --------
@@ -34,7 +36,16 @@ class DescribedParcel(Parcel):
     engine: ClassVar[str] = "none"
 
     def __init__(
-        self, position: ArrayLike, velocity: ArrayLike, *, liquid: Liquid | None = None, **box: Unpack[Arrangement]
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        *,
+        liquid: Liquid | None = None,
+        well: SquareWell | None = None,
+        species: ArrayLike = 0,
+        strength: float = 1.0,
+        bath: RandomBath | None = None,
+        **box: Unpack[Arrangement],
     ) -> None:
         super().__init__(position, velocity, **box)
 

@@ -76,7 +76,7 @@ class EngineChoice:
         RefusedError
             If the engine cannot do what the box asks for.
         SettingError
-            If there is a ``liquid`` in the box, and the engine knows none.
+            If there is a ``liquid`` in the box, or a ``well`` about its molecules, and the engine knows none.
         """
         parcel: Callable[..., Parcel] = self.engine.parcel()
         if "liquid" in box:
@@ -84,6 +84,10 @@ class EngineChoice:
                 able = " or ".join(f"--engine {engine.name}" for engine in ENGINES.values() if engine.moist is not None)
                 raise SettingError("engine", str(self), "knows no liquid water", f"give {able}")
             parcel = self.engine.moist(box["liquid"])
+        if "well" in box:
+            if self.engine.attracting is None:
+                raise SettingError("engine", str(self), "knows no attraction", "give --engine exact")
+            parcel = self.engine.attracting()
         if self.described:
             from atmosbox.scene.engines.described_parcel import DescribedParcel
 

@@ -6,6 +6,7 @@ units, by the names that `atmosbox.file.variables` declares.
 """
 
 from atmosbox.scene.instruments.air import Air
+from atmosbox.scene.instruments.condensate import Clusters
 from atmosbox.scene.instruments.disc_motion import Discs
 from atmosbox.scene.instruments.drop_size import DropSizes
 from atmosbox.scene.instruments.emitted import Leaving
@@ -14,12 +15,14 @@ from atmosbox.scene.instruments.layer import Layers
 from atmosbox.scene.instruments.lifted_air import Environment, Lift
 from atmosbox.scene.instruments.moist_lift import MoistLift
 from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
+from atmosbox.scene.instruments.slab import Slab
 from atmosbox.scene.instruments.speeds import Speeds
 from atmosbox.scene.instruments.water import Water
 
 __all__ = [
     "LAWS",
     "Air",
+    "Clusters",
     "Discs",
     "DropSizes",
     "Environment",
@@ -30,6 +33,7 @@ __all__ = [
     "MoistLift",
     "Molecules",
     "Readings",
+    "Slab",
     "Speeds",
     "Water",
     "wall_laws",

@@ -1,0 +1,119 @@
+"""Drops of molecules that attract each other: who belongs to one, and what energy and pressure they have."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Parcel, Snapshot
+from atmosbox.engine.core.measure import temperature
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["CROWDED", "Clusters", "drops_of"]
+
+CROWDED = 5
+"""In how many wells a molecule must be to count as liquid; one of the vapour is in one or two, one in a drop in ten."""
+
+
+def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:
+    """Return the drop of each molecule, 0 for the largest, and -1 for a molecule of the vapour.
+
+    Molecules in `CROWDED` wells or more are liquid; those in each other's well are of one drop, and so is a molecule
+    at its surface that is in the well of one of them.
+
+    Parameters
+    ----------
+    pairs : (pair, 2)
+        Who is in whose well.
+    number
+        How many molecules there are.
+
+    Returns
+    -------
+    (molecule,) ndarray
+        Numbers of drops.
+
+    Examples
+    --------
+    Six molecules that are all in each other's wells, one at the surface, and one alone:
+
+    >>> import itertools
+    >>> bound = [*itertools.combinations(range(6), 2), (0, 6)]
+    >>> drops_of(np.array(bound), 8).tolist()
+    [0, 0, 0, 0, 0, 0, 0, -1]
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    liquid = np.bincount(pairs.reshape(-1), minlength=number) >= CROWDED
+    first, second = pairs.T
+    inner = liquid[first] & liquid[second]
+    links = coo_array((np.ones(int(inner.sum())), (first[inner], second[inner])), shape=(number, number))
+    label = connected_components(links, directed=False)[1].astype(np.int64)
+    label[~liquid] = -1
+    for one, two in ((first, second), (second, first)):  # the surface
+        outer = liquid[one] & ~liquid[two]
+        label[two[outer]] = label[one[outer]]
+    found, size = np.unique(label[label >= 0], return_counts=True)
+    rank = np.full(number, -1, np.int64)
+    rank[found[np.argsort(-size, kind="stable")]] = np.arange(found.size)
+    return np.where(label >= 0, rank[label], -1)
+
+
+class Clusters:
+    """The largest drop, the free vapour, the energy of attraction, the heat of the bath, the pressure inside.
+
+    The pressure is that of the motion and of what pairs hand on, :math:`p = n k T + W / 3 V`; it needs no wall.
+
+    Parameters
+    ----------
+    molecules
+        How many of the molecules attract each other, the first ones.
+    """
+
+    def __init__(self, molecules: int) -> None:
+        self._molecules = molecules
+        self._kT: list[float] = []
+        self._rows: list[dict[str, float]] = []
+        self._virial = 0.0
+        self._time = 0.0
+
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Read the thermometer."""
+        self._kT.append(temperature(parcel, snapshot))
+
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Count the drops, and read what has been summed up."""
+        n = self._molecules
+        drop = drops_of(parcel.pairs(), parcel.number)[:n]
+        lasted = parcel.time - self._time
+        virial = float(parcel.virial.sum())
+        motion = parcel.number * float(np.mean(self._kT))
+        self._rows.append(
+            {
+                "largest_drop_molecule_count": float(np.sum(drop == 0)),
+                "vapor_molecule_count": float(np.sum(drop < 0)),
+                "drop_count": float(drop.max(initial=-1) + 1),
+                "attraction_energy": parcel.well_energy,
+                "molecular_energy": sum(parcel.energy()),
+                "heat_from_bath": parcel.bath_heat,
+                "work_by_attraction": parcel.attraction_work,
+                "virial_pressure": (motion + (virial - self._virial) / (3.0 * lasted)) / parcel.volume,
+                "well_count": float(parcel.number_of_wells),
+            }
+        )
+        self._kT = []
+        self._virial = virial
+        self._time = parcel.time
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series; see `Instrument`."""
+        if not self._rows:
+            return Readings()
+        energies = ("attraction_energy", "molecular_energy", "heat_from_bath", "work_by_attraction")
+        units = dict.fromkeys(energies, scale.total_energy) | {"virial_pressure": scale.pressure}
+        columns = {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
+        return Readings({name: values * units.get(name, 1.0) for name, values in columns.items()})

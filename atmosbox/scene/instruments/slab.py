@@ -1,0 +1,157 @@
+"""A layer of liquid with vapour on both sides, or on one: its density, its pressure, its surface."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Snapshot
+from atmosbox.engine.core.measure import temperature
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["Slab", "inner_and_outer"]
+
+Array = NDArray[np.float64]
+
+_BIN = 0.25
+_INSIDE, _OUTSIDE = 3.0, 4.0
+"""How far from the middle of its surface, in diameters, liquid and vapour count as such."""
+
+
+def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Tell which layers are well within the liquid, and which well outside of it.
+
+    Parameters
+    ----------
+    height, density : (layer,)
+        Of layers of equal thickness [diameter, diameter^-3]; the liquid is in the middle of a periodic box, else on
+        the floor.
+    periodic
+        Which of the two it is.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Both (layer,); none is chosen if there are no two sorts of them.
+
+    Examples
+    --------
+    >>> height = np.arange(0.125, 40.0, 0.25)
+    >>> inner, outer = inner_and_outer(height, np.where(abs(height - 20.0) < 6.0, 0.7, 0.02), True)
+    >>> [float(height[which].min()) for which in (inner, outer)], float(height[inner].max())
+    ([17.125, 0.125], 22.875)
+    """
+    middle = 0.5 * height[-1] if periodic else 0.0
+    away = np.abs(height - middle)
+    order = np.argsort(away, kind="stable")
+    part = max(len(order) // 8, 1)
+    dense, thin = float(density[order[:part]].mean()), float(density[order[-part:]].mean())
+    filled = density > 0.5 * (dense + thin)
+    none = np.zeros(len(height), np.bool_)
+    if not dense > 3.0 * thin or filled.all():
+        return none, none
+    surface = float(filled.sum()) * (height[1] - height[0]) * (0.5 if periodic else 1.0)
+    return away < surface - _INSIDE, away > surface + _OUTSIDE
+
+
+class Slab:
+    r"""Densities and energies of the liquid and of the vapour beside it, the pressure across, the surface tension.
+
+    A slab in a periodic box drifts, because a random bath keeps no momentum: heights are counted so that the middle of
+    its mass stands in the middle of the box. The pressure across the surface is the same in both, :math:`p = n k T +
+    W_{zz} / V`, and the surface tension is by how much that along the surface falls short of it,
+    :math:`\gamma = (W_{zz} - \tfrac12 (W_{xx} + W_{yy})) / 2 A t` for two surfaces [1]_.
+
+    Parameters
+    ----------
+    molecules
+        How many of the molecules attract each other, the first ones.
+
+    References
+    ----------
+    .. [1] Kirkwood, J. G., Buff, F. P. (1949), doi:10.1063/1.1747248.
+    """
+
+    def __init__(self, molecules: int) -> None:
+        self._molecules = molecules
+        self._kT: list[float] = []
+        self._sum = np.zeros((2, 0))
+        self._looks = 0
+        self._frames: list[Array] = []
+        self._series: list[tuple[float, float]] = []
+        self._stress = np.zeros(3)
+        self._time = 0.0
+        self._height = 1.0
+        self._area = 1.0
+        self._periodic = True
+
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Count molecules, and the wells they are in, by height."""
+        self._height = float(parcel.length[2])
+        self._area = float(parcel.length[0] * parcel.length[1])
+        self._periodic = bool(parcel.periodic[2])
+        layers = max(round(self._height / _BIN), 8)
+        if not self._sum.size:
+            self._sum = np.zeros((2, layers))
+        n = self._molecules
+        wells = parcel.neighbours()[:n].astype(np.float64)
+        z = snapshot.position[:n, 2]
+        if self._periodic:
+            angle = 2.0 * np.pi / self._height * z
+            middle = math.atan2(float(wells @ np.sin(angle)), float(wells @ np.cos(angle))) * self._height / 2.0 / np.pi
+            z = np.mod(z - middle + 0.5 * self._height, self._height)
+        layer = np.clip((z / self._height * layers).astype(np.int64), 0, layers - 1)
+        self._sum[0] += np.bincount(layer, minlength=layers)
+        self._sum[1] += np.bincount(layer, wells, minlength=layers)
+        self._looks += 1
+        self._kT.append(temperature(parcel, snapshot))
+
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Close the sums of a frame."""
+        lasted = parcel.time - self._time
+        stress = (parcel.stress - self._stress) / lasted
+        volume = float(parcel.volume)
+        pressure = (parcel.number * float(np.mean(self._kT)) + stress[2]) / volume
+        self._series.append((pressure, (stress[2] - 0.5 * (stress[0] + stress[1])) / (2.0 * self._area)))
+        self._frames.append(self._sum / self._looks)
+        self._sum = np.zeros_like(self._sum)
+        self._looks = 0
+        self._kT = []
+        self._stress = parcel.stress
+        self._time = parcel.time
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the profile, and the series of liquid and vapour; see `Instrument`."""
+        frames = np.array(self._frames)
+        if len(frames) <= settle + 1:
+            return Readings()
+        layers = frames.shape[2]
+        edges = np.linspace(0.0, self._height, layers + 1)
+        height = 0.5 * (edges[1:] + edges[:-1])
+        volume = self._area * self._height / layers
+        late = frames[settle:]
+        density = late[:, 0].mean(axis=0) / volume
+        error = late[:, 0].std(axis=0, ddof=1) / volume / math.sqrt(len(late))
+        found = Readings(
+            height=height * scale.length,
+            height_bnds=np.stack([edges[:-1], edges[1:]], axis=1) * scale.length,
+            number_density=density * scale.number_density,
+            number_density_se=error * scale.number_density,
+        )
+        pressure, tension = np.array(self._series).T
+        found["normal_pressure"] = pressure * scale.pressure
+        if self._periodic:
+            found["surface_tension"] = tension * scale.pressure * scale.length
+        for name, part in zip(("liquid", "vapor"), inner_and_outer(height, density, self._periodic), strict=True):
+            if not part.any():
+                continue
+            number, wells = frames[:, :, part].sum(axis=2).T
+            with np.errstate(invalid="ignore", divide="ignore"):
+                energy = np.where(number > 0.0, -0.5 * wells / number, np.nan)
+            found[f"{name}_number_density"] = number / (volume * part.sum()) * scale.number_density
+            found[f"{name}_well_energy"] = energy * scale.energy
+        return found

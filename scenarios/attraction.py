@@ -1,0 +1,471 @@
+"""A liquid out of nothing but attraction.
+
+Molecules of argon's size, and what attracts them to a neighbour: nothing else is put in, no liquid, no vapour
+pressure, no latent heat, no surface. Two molecules that come within one and a half diameters fall into each other's
+well and gain its depth in energy of motion; to part they must climb out of it. In a dense, cold vapour that is enough:
+they gather in drops, the drops merge, and what the wells give warms the vapour.
+
+Modelled: hard spheres with a square well of range 1.5, whose diameter and depth give it the critical point of argon
+(or nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. What is seen is therefore
+like argon: its vapour pressure comes out a quarter too low, its latent heat a tenth too large. It is not water: a
+molecule of water sticks four times as strongly, mostly by hydrogen bonds, which point in directions and which this
+model has not; at 20 degC water of this model would be frozen. The law of its vapour pressure is of the same shape.
+
+At the density of the default run there is several times as much vapour as is stable: this is a quench, with many
+clusters that merge, and not one rare nucleus.
+"""
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine import HeatBath, Periodic, RandomBath, Specular, SquareWell, Wall, lattice_positions
+from atmosbox.errors import SettingError
+from atmosbox.scene import (
+    Air,
+    Clusters,
+    EngineChoice,
+    Headline,
+    Line,
+    Panel,
+    Scale,
+    SceneSettings,
+    Series,
+    Setup,
+    Slab,
+    block_average,
+    setting,
+)
+from atmosbox.scene.engines import EXACT
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.knob import Knob
+from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Attraction"
+ladder = (Series("exact", "molecules", (200, 400, 800)),)
+"""What is worth comparing: only the exact engine knows an attraction; fewer molecules make fewer clusters."""
+FRAMES = 150
+SETTLE = 50
+BLOCKS = 20
+RANGE = 1.5
+RATE = 0.1
+"""How often the random bath draws a velocity anew where a vapour condenses [1/time]: seldom, so that it warms."""
+FAST_RATE = 0.5
+"""The same where liquid and vapour are there from the start."""
+GRAVITY = 0.08
+"""Of a pool [depth / (mass diameter)]: the vapour thins out by 1/e over some twelve diameters."""
+TALL = 4.0
+"""Height of the box of a slab or a pool, in widths."""
+THIN = 0.03
+"""Up to this density [diameter^-3] the pressure of a gas is held to its first three virial coefficients."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(800, "1", "number of molecules that attract each other", low=50, high=20_000)
+    temperature: float = setting(105.0, "K", "temperature of the bath and at the start", low=10.0, high=20_000.0)
+    density: float = setting(0.26, "1", "density of these molecules, over the critical one", low=1e-4, high=2.3)
+    attraction: float = setting(1.0, "1", "strength of the attraction; at 0 nothing condenses", low=0.0, high=1.0)
+    start: str = setting("vapour", "", "what is there first", choices=("vapour", "slab", "drop", "pool"))
+    bath: str = setting("random", "", "what keeps it at its temperature", choices=("random", "walls", "none"))
+    air: float = setting(0.0, "1", "density of molecules that attract none, over the critical one", low=0.0, high=1.0)
+    substance: str = setting(
+        "argon", "", "whose size and attraction the molecules have", choices=("argon", "nitrogen", "methane")
+    )
+    duration: float = setting(1.0, "ns", "how long to watch", low=1e-4, high=1e4)
+
+    def check(self) -> None:
+        """Refuse a liquid where there is none, and a box too small for two surfaces."""
+        warmth = _warmth(self)
+        if self.start != "vapour" and not warmth < 0.97 * law.WELL_CRITICAL_TEMPERATURE:
+            most = 0.97 * law.SIMPLE_FLUIDS[self.substance].critical_temperature * self.attraction
+            raise SettingError(
+                "temperature",
+                f"{self.temperature:g} K",
+                f"is too warm for a {self.start} of this {self.substance}",
+                f"give --set temperature={math.floor(most)} or less, or --set start=vapour",
+            )
+        sides, _ = _sides(self)
+        if min(sides) < 2.2 * RANGE:
+            raise SettingError(
+                "molecules",
+                self.molecules,
+                "are too few for a box in which none attracts its own image",
+                "give more of them, or --set start=vapour",
+            )
+        held = math.prod(sides) * math.pi / 6.0 * law.WELL_CRITICAL_DENSITY * (self.density + self.air)
+        if self.start == "vapour" and held > 0.45 * math.prod(sides):
+            raise SettingError(
+                "density", self.density + self.air, "with the air is too dense to be mixed", "give less of either"
+            )
+
+
+def _scale(settings: Settings) -> Scale:
+    fluid = law.SIMPLE_FLUIDS[settings.substance]
+    return Scale(fluid.well_diameter, fluid.molecule_mass, fluid.well_depth)
+
+
+def _warmth(settings: Settings) -> float:
+    """Return T*, the temperature over the depth of the wells as the attraction makes it."""
+    kT = _scale(settings).reduced_temperature(settings.temperature)
+    return kT / settings.attraction if settings.attraction > 0.0 else math.inf
+
+
+def _sides(settings: Settings) -> tuple[tuple[float, float, float], int]:
+    """Return the sides of the box [diameter], and how many molecules of air are in it."""
+    volume = settings.molecules / (settings.density * law.WELL_CRITICAL_DENSITY)
+    air = round(settings.air * law.WELL_CRITICAL_DENSITY * volume)
+    tall = TALL if settings.start in ("slab", "pool") else 1.0
+    side = (volume / tall) ** (1.0 / 3.0)
+    return (side, side, tall * side), air
+
+
+def _densities(warmth: float) -> tuple[float, float]:
+    """Return about how dense liquid and vapour are [diameter^-3], to begin with: not read by any measurement."""
+    below = max(1.0 - warmth / law.WELL_CRITICAL_TEMPERATURE, 0.0)
+    vapour = 1.3 * float(law.well_vapor_pressure(warmth)) / warmth
+    return law.WELL_CRITICAL_DENSITY + 0.57 * below**0.35, vapour
+
+
+def _places(settings: Settings, engine: EngineChoice, rng: np.random.Generator) -> np.ndarray:
+    """Return where the molecules stand at the start, those that attract each other first."""
+    sides, air = _sides(settings)
+    n = settings.molecules
+    around = (True, True, not _walled(settings))
+    if settings.start == "vapour":
+        mixed = engine.scatter(sides, np.ones(n + air), rng, periodic=around)
+        return np.asarray(rng.permutation(mixed))
+    # sites as dense as the liquid; it takes those next to its middle, vapour and air some of the others
+    dense, thin = _densities(_warmth(settings))
+    volume = math.prod(sides)
+    sites = lattice_positions(sides, np.ones(int(dense * volume)), periodic=around)
+    liquid = min(max((n - thin * volume) / (1.0 - thin / dense), 0.1 * n), n)
+    if settings.start == "drop":
+        away = np.linalg.norm(sites - 0.5 * np.array(sides), axis=1)
+    else:
+        away = np.abs(sites[:, 2] - (0.5 * sides[2] if settings.start == "slab" else 0.0))
+    order = np.argsort(away + 1e-6 * rng.random(len(away)))
+    inner, outer = order[: int(liquid)], order[int(1.1 * liquid) :]
+    others = n - len(inner) + air
+    if others > len(outer):
+        raise SettingError(
+            "density", settings.density, f"leaves no vapour beside a {settings.start}", "give less, or less air"
+        )
+    return np.asarray(sites[np.concatenate([inner, rng.choice(outer, others, replace=False)])])
+
+
+def _walled(settings: Settings) -> bool:
+    return settings.start == "pool" or settings.bath == "walls"
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the molecules in their box."""
+    scale = _scale(settings)
+    kT = scale.reduced_temperature(settings.temperature)
+    rng = np.random.default_rng(settings.seed)
+    sides, air = _sides(settings)
+    n = settings.molecules
+    place = _places(settings, engine, rng)
+    velocity = rng.normal(size=(n + air, 3)) * math.sqrt(kT)
+    ends: Wall = Periodic()
+    if _walled(settings):
+        ends = HeatBath(kT) if settings.bath == "walls" else Specular()
+    rate = RATE if settings.start == "vapour" else FAST_RATE
+    parcel = engine.make(
+        place,
+        velocity,
+        length=sides,
+        walls=(Periodic(),) * 4 + (ends, ends),
+        gravity=GRAVITY if settings.start == "pool" else 0.0,
+        well=SquareWell(RANGE, [[1.0, 0.0], [0.0, 0.0]]),
+        species=np.repeat([0, 1], [n, air]),
+        strength=settings.attraction,
+        bath=RandomBath(kT, rate) if settings.bath == "random" else None,
+        seed=settings.seed,
+    )
+    slab = (Slab(n),) if settings.start in ("slab", "pool") else ()
+
+    def warm(kelvin: float) -> None:
+        if settings.bath == "random":
+            parcel.set_bath_kT(scale.reduced_temperature(kelvin))  # type: ignore[attr-defined]
+        else:
+            parcel.set_wall_kT(scale.reduced_temperature(kelvin))
+
+    def attract(strength: float) -> None:
+        parcel.set_strength(strength)  # type: ignore[attr-defined]
+
+    knobs = [Knob("attraction", "strength of the attraction", "1", 0.0, 1.0, settings.attraction, attract)]
+    if settings.bath != "none":
+        low, high = min(60.0, settings.temperature), max(250.0, settings.temperature)
+        knobs.append(Knob("temperature", "temperature of the bath", "K", low, high, settings.temperature, warm))
+    fluid = law.SIMPLE_FLUIDS[settings.substance]
+    warmth = _warmth(settings)
+    cold = (
+        (f"Below T* = 0.65 the stable state of this model is a crystal, and {warmth:.2f} is colder.",)
+        if warmth < 0.65
+        else ()
+    )
+    return Setup(
+        parcel,
+        scale,
+        settings.si.duration / scale.time,
+        FRAMES,
+        (Air(), Clusters(n), *slab),
+        samples=10 if slab else 4,
+        settle=SETTLE,
+        facts={
+            "molecules": f"spheres of {scale.length * 1e9:.3f} nm, with a well of {fluid.name}: "
+            f"{scale.temperature * settings.attraction:.1f} K deep, out to {RANGE:g} diameters",
+            "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
+            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
+            "units": f"of time {scale.time * 1e12:.2f} ps, of pressure {scale.pressure / 1e5:.0f} bar",
+            "not water": "it sticks four times as strongly, by hydrogen bonds that this model has not",
+        },
+        knobs=tuple(knobs),
+        doubts=cold,
+    )
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return the temperature of the bath, the pressure of saturation, and that of the free vapour by the gas law."""
+    scale = _scale(settings)
+    frames = dataset.sizes["elapsed_time"]
+    found = {}
+    if settings.bath != "none":
+        found["air_temperature_theory"] = np.full(frames, settings.temperature)
+    if "normal_pressure" in dataset:
+        saturated = float(law.well_vapor_pressure(_warmth(settings))) * settings.attraction * scale.pressure
+        found["normal_pressure_theory"] = np.full(frames, saturated)
+    elif not settings.air:
+        free = dataset.vapor_molecule_count.values / settings.molecules * settings.density * law.WELL_CRITICAL_DENSITY
+        kT = dataset.air_temperature.values / scale.temperature
+        depth = max(settings.attraction, 1e-9)
+        factor = law.square_well_compressibility(free, kT / depth)
+        found["virial_pressure_theory"] = free * kT * factor * scale.pressure
+    return found
+
+
+def _gas_pressure(settings: Settings) -> float:
+    """Return the pressure of the molecules if they stay a gas, with B2 and B3 [Pa]."""
+    density = settings.density * law.WELL_CRITICAL_DENSITY
+    scale = _scale(settings)
+    factor = float(law.square_well_compressibility(density, min(_warmth(settings), 1e9)))
+    return density * factor * scale.reduced_temperature(settings.temperature) * scale.pressure
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return what has condensed; of a gas its pressure; of a slab, what vapour and liquid are like."""
+    late = dataset.isel(elapsed_time=slice(SETTLE, None))
+    if late.sizes["elapsed_time"] < 2 * BLOCKS:
+        return ()
+    if settings.start == "slab" and "vapor_number_density" in dataset:
+        return _of_slab(late, settings)
+    found = []
+    for name, label in (
+        ("largest_drop_molecule_count", "molecules in the largest drop"),
+        ("vapor_molecule_count", "molecules of the vapour"),
+    ):
+        found.append(Headline(f"last_{name}", float(dataset[name][-1]), 0.0, None, 0.0, "", "1", "1", label))
+    gas = float(dataset.largest_drop_molecule_count.max()) < 10 + 0.02 * settings.molecules
+    thin = settings.density * law.WELL_CRITICAL_DENSITY <= THIN
+    if gas and thin and settings.bath != "none" and not settings.air and settings.start == "vapour":
+        mean = block_average(late.virial_pressure.values, BLOCKS)
+        theory = _gas_pressure(settings)
+        # the next coefficient is some times larger than that of hard spheres, and multiplies the cube of the density
+        density = settings.density * law.WELL_CRITICAL_DENSITY
+        third = float(law.square_well_third_virial(min(_warmth(settings), 1e9)))
+        left_out = 4.0 * abs(third) * density**3 * theory
+        reason = "further virial coefficients are left out"
+        found.append(
+            Headline(
+                "mean_virial_pressure",
+                float(mean.mean),
+                float(mean.standard_error),
+                theory,
+                left_out,
+                reason,
+                "Pa",
+                "bar",
+                "pressure",
+            )
+        )
+    return tuple(found)
+
+
+def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return densities, pressure, latent heat and surface tension of liquid and vapour beside each other.
+
+    The number of molecules in the vapour forgets itself as they meet the liquid: after 4 V / A c in the vapour's volume
+    V with surfaces A, at the mean speed c. Shorter blocks would make the errors too small.
+    """
+    scale, warmth = _scale(settings), _warmth(settings)
+    kT = scale.reduced_temperature(settings.temperature)
+    (_, _, height), _ = _sides(settings)
+    dense, thin = (float(late[name].mean()) for name in ("liquid_number_density", "vapor_number_density"))
+    mean = settings.density * law.WELL_CRITICAL_DENSITY * scale.number_density
+    share = min(max((dense - mean) / (dense - thin), 0.0), 1.0)
+    memory = 2.0 * share * height / math.sqrt(8.0 * kT / math.pi)
+    frame = float(late.elapsed_time[1] - late.elapsed_time[0]) * 1e-9 / scale.time
+    units = {
+        "vapor_number_density": scale.number_density,
+        "liquid_number_density": scale.number_density,
+        "normal_pressure": scale.pressure,
+        "vapor_well_energy": scale.energy,
+        "liquid_well_energy": scale.energy,
+        "surface_tension": scale.pressure * scale.length,
+    }
+    series = {}
+    for name, unit in units.items():
+        values = late[name].values / unit
+        series[name] = np.where(np.isfinite(values), values, np.nanmean(values))
+
+    def of(function: Callable[..., float]) -> tuple[float, float]:
+        """Return a function of the means, and its standard error to first order."""
+        means = {name: float(values.mean()) for name, values in series.items()}
+        value = function(**means)
+        linear = np.zeros(len(series["normal_pressure"]))
+        for name, values in series.items():
+            step = 1e-6 * max(abs(means[name]), 1e-3)
+            slope = (function(**(means | {name: means[name] + step})) - value) / step
+            linear += slope * (values - means[name])
+        return value, float(block_average(linear, BLOCKS, memory / frame).standard_error)
+
+    def volume(vapor_number_density: float, liquid_number_density: float, **_: float) -> float:
+        return 1.0 / vapor_number_density - 1.0 / liquid_number_density
+
+    def latent(vapor_well_energy: float, liquid_well_energy: float, normal_pressure: float, **rest: float) -> float:
+        return vapor_well_energy - liquid_well_energy + normal_pressure * volume(**rest)
+
+    def slope(normal_pressure: float, **rest: float) -> float:
+        return latent(normal_pressure=normal_pressure, **rest) * kT / (normal_pressure * volume(**rest))
+
+    def of_gas(vapor_number_density: float, **_: float) -> float:
+        factor = law.square_well_compressibility(vapor_number_density, warmth)
+        return vapor_number_density * kT * float(factor)
+
+    def beyond_gas(normal_pressure: float, **rest: float) -> float:
+        return normal_pressure - of_gas(**rest)
+
+    published = float(law.well_vapor_pressure(warmth)) * settings.attraction
+    pressure, energy = scale.pressure, scale.energy * AVOGADRO
+    gas, difference = of(of_gas)[0], of(beyond_gas)
+    third = abs(float(law.square_well_third_virial(warmth))) * series["vapor_number_density"].mean() ** 3
+    rows = (
+        ("liquid_density", of(lambda liquid_number_density, **_: liquid_number_density), None, 0.0, "",
+         scale.mass_density, "kg m-3", "kg m-3", "liquid"),
+        ("vapor_density", of(lambda vapor_number_density, **_: vapor_number_density), None, 0.0, "",
+         scale.mass_density, "kg m-3", "kg m-3", "vapour"),
+        ("vapor_pressure", of(lambda normal_pressure, **_: normal_pressure), published, 0.05 * published,
+         "published simulations, a line through all temperatures", pressure, "Pa", "bar", "vapour pressure"),
+        ("gas_law", (gas + difference[0], difference[1]), gas, 6.0 * third * gas,
+         "further virial coefficients are left out", pressure, "Pa", "bar", "the same, and by the vapour's density"),
+        ("latent_heat", of(latent), None, 0.0, "", energy, "J mol-1", "kJ mol-1", "latent heat L"),
+        ("clapeyron_slope", of(slope), 7.1939 * settings.attraction, 0.05 * 7.1939,
+         "published simulations, a line through all temperatures", scale.energy / BOLTZMANN, "K", "K",
+         "L/ΔZ, the slope of ln p against 1/T"),
+        ("mean_surface_tension", of(lambda surface_tension, **_: surface_tension), None, 0.0, "",
+         pressure * scale.length, "N m-1", "mN m-1", "surface tension"),
+    )  # fmt: skip
+    found = []
+    for name, (value, error), answer, allowed, reason, unit, si, shown, label in rows:
+        expected = None if answer is None else answer * unit
+        found.append(Headline(name, value * unit, error * unit, expected, allowed * unit, reason, si, shown, label))
+    temperature = block_average(late.air_temperature.values, BLOCKS)
+    if settings.bath != "none":
+        found.append(
+            Headline(
+                "mean_temperature",
+                float(temperature.mean),
+                float(temperature.standard_error),
+                settings.temperature,
+                0.0,
+                CHANCE_ALONE,
+                "K",
+                "K",
+                "temperature",
+            )
+        )
+    return tuple(found)
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return how the drop grows, what becomes of the energy, and the pressure; of a slab its profile."""
+    time = "elapsed_time"
+    grown = Panel(
+        "line",
+        "A drop that nobody put in" if settings.start == "vapour" else "Drop and vapour",
+        (
+            Line(time, "largest_drop_molecule_count", "largest drop"),
+            Line(time, "vapor_molecule_count", "free vapour"),
+        ),
+        x_label="time",
+        y_label="molecules",
+        headlines=("last_largest_drop_molecule_count",) if settings.start != "slab" else (),
+    )
+    energies = Panel(
+        "line",
+        "What the wells give becomes motion",
+        (
+            Line(time, "kinetic_energy", "kinetic"),
+            Line(time, "attraction_energy", "of attraction"),
+            Line(time, "molecular_energy", "both"),
+        ),
+        x_label="time",
+        y_label="energy",
+        y_unit="zJ",
+    )
+    bath = (Line(time, "air_temperature_theory", "bath", "theory"),) if settings.bath != "none" else ()
+    warm = Panel(
+        "line",
+        "Condensation warms" if settings.start == "vapour" else "Temperature",
+        (Line(time, "air_temperature", "molecules"), *bath),
+        x_label="time",
+        y_label="temperature",
+        y_unit="K",
+        headlines=("mean_temperature",) if settings.start == "slab" and settings.bath != "none" else (),
+    )
+    if settings.start in ("slab", "pool"):
+        profile = Panel(
+            "profile",
+            "Liquid beside its vapour" if settings.start == "slab" else "A pool, and vapour that thins out",
+            (Line("number_density", "height", "molecules", error="number_density_se"),),
+            x_label="molecules per volume",
+            x_unit="nm-3",
+            y_unit="nm",
+            x_scale="log",
+            headlines=("liquid_density", "vapor_density") if settings.start == "slab" else (),
+        )
+        pressure = Panel(
+            "line",
+            "Its vapour pressure, which was not put in",
+            (
+                Line(time, "normal_pressure", "across the surface"),
+                Line(time, "normal_pressure_theory", "published simulations", "theory"),
+            ),
+            x_label="time",
+            y_label="pressure",
+            y_unit="bar",
+            averages=30,
+            headlines=("vapor_pressure",),
+        )
+        return (profile, pressure, warm) if settings.start == "slab" else (profile, grown, energies, warm)
+    gas = (
+        () if settings.air else (Line(time, "virial_pressure_theory", "free vapour: gas law with B2 and B3", "theory"),)
+    )
+    pressure = Panel(
+        "line",
+        "Molecules in a drop hardly press",
+        (Line(time, "virial_pressure", "molecules"), *gas),
+        x_label="time",
+        y_label="pressure",
+        y_unit="bar",
+        averages=50,
+    )
+    return (grown, energies, warm, pressure)

@@ -1,0 +1,107 @@
+"""The scene of attraction: a drop out of a vapour, and a slab whose vapour pressure was not put in."""
+
+import numpy as np
+import pytest
+
+from atmosbox import theory
+from atmosbox.errors import SettingError
+from atmosbox.scene.instruments.condensate import drops_of
+from atmosbox.simulation import runner
+
+HARD = {"attraction": 0.0}
+
+
+def run(**settings):
+    """Run the scene; return what it gives and its headlines by name."""
+    outcome = runner.execute(runner.prepare("attraction", settings))
+    return outcome.dataset, {headline.name: headline for headline in outcome.headlines}, outcome
+
+
+def test_a_drop_grows_that_nobody_put_in_and_none_without_attraction():
+    with_it, _, outcome = run(molecules=400, duration="0.8 ns")
+    without, *_ = run(molecules=400, duration="0.2 ns", **HARD)
+    assert with_it.largest_drop_molecule_count[0] < 40
+    assert with_it.largest_drop_molecule_count[-1] > 200
+    assert with_it.largest_drop_molecule_count[-1] + with_it.vapor_molecule_count[-1] <= 400
+    assert without.largest_drop_molecule_count.max() < 40
+    assert outcome.ledger < 1e-12
+
+
+def test_without_a_bath_motion_gains_what_attraction_loses():
+    data, *_ = run(molecules=300, duration="0.2 ns", bath="none")
+    lost = data.attraction_energy[0] - data.attraction_energy
+    gained = data.kinetic_energy - data.kinetic_energy[0]
+    assert lost[-1] > 0.1 * data.kinetic_energy[0]
+    np.testing.assert_allclose(gained[1:], lost[1:], rtol=1e-9)
+    assert np.ptp(data.molecular_energy.values) < 1e-12 * float(data.kinetic_energy[0])
+    assert (data.heat_from_bath == 0.0).all()
+
+
+def test_the_heat_of_the_bath_is_what_becomes_of_the_energy():
+    data, *_ = run(molecules=300, duration="0.2 ns")
+    change = (data.molecular_energy - data.heat_from_bath).values
+    assert np.ptp(change) < 1e-12 * float(np.abs(data.heat_from_bath).max() + data.kinetic_energy[0])
+
+
+def test_a_gas_has_the_pressure_of_its_virial_coefficients():
+    _, found, _ = run(molecules=300, density=0.06, temperature="180 K", duration="4 ns")
+    pressure = found["mean_virial_pressure"]
+    assert pressure.agrees
+    assert pressure.standard_error < 0.02 * pressure.value
+    density = 0.06 * theory.WELL_CRITICAL_DENSITY
+    ideal = density * 180.0 / theory.SIMPLE_FLUIDS["argon"].well_depth * 1.380649e-23
+    ideal *= theory.SIMPLE_FLUIDS["argon"].well_depth / theory.SIMPLE_FLUIDS["argon"].well_diameter ** 3
+    assert ideal - pressure.value > 3.0 * pressure.standard_error  # attraction is seen
+
+
+@pytest.mark.parametrize("kelvin", [124.0, 136.0])
+def test_a_slab_has_the_vapour_pressure_of_published_simulations(kelvin):
+    data, found, outcome = run(start="slab", density=1.0, molecules=500, temperature=f"{kelvin} K", duration="4 ns")
+    for headline in found.values():
+        assert headline.agrees is not False, headline
+        assert headline.standard_error > 0.0
+    assert found["vapor_pressure"].standard_error < 0.15 * found["vapor_pressure"].value
+    assert found["liquid_density"].value > 8.0 * found["vapor_density"].value
+    assert found["mean_surface_tension"].value > 0.0
+    # the slab stands in the middle of the box wherever it drifts
+    density = data.number_density.values
+    assert density[len(density) // 2] > 8.0 * density[[0, -1]].max()
+    assert outcome.ledger < 1e-12
+
+
+def test_air_stays_outside_of_a_drop_and_molecules_of_every_start_are_all_there():
+    data, *_ = run(start="drop", density=0.15, air=0.1, molecules=300, duration="0.05 ns")
+    assert data.largest_drop_molecule_count[-1] > 150
+    pool, *_ = run(start="pool", density=0.8, molecules=300, duration="0.05 ns", bath="walls")
+    # on the floor, and nearly nothing at the ceiling
+    assert pool.number_density[:8].mean() > 10.0 * pool.number_density[-8:].mean()
+
+
+def test_two_touching_clusters_are_one_drop_and_a_pair_is_vapour():
+    first = [(i, j) for i in range(6) for j in range(i)]
+    second = [(i + 6, j + 6) for i, j in first]
+    assert drops_of(np.array([*first, *second]), 14).tolist() == [0] * 6 + [1] * 6 + [-1] * 2
+    assert set(drops_of(np.array([*first, *second, (0, 6)]), 12).tolist()) == {0}
+    assert drops_of(np.array([(0, 1)]), 3).tolist() == [-1] * 3
+    assert drops_of(np.zeros((0, 2), np.int64), 2).tolist() == [-1] * 2
+
+
+@pytest.mark.parametrize(
+    ("settings", "word"),
+    [
+        ({"start": "slab", "temperature": "200 K"}, "temperature"),
+        ({"start": "slab", "attraction": 0.3}, "temperature"),
+        ({"start": "slab", "density": 2.0, "molecules": 50}, "molecules"),
+        ({"density": 1.9, "air": 1.0}, "density"),
+        ({"substance": "water"}, "substance"),
+    ],
+)
+def test_what_cannot_be_is_refused(settings, word):
+    with pytest.raises(SettingError, match=word):
+        runner.prepare("attraction", settings)
+
+
+def test_a_fluid_boils_where_it_is_measured_to_boil():
+    """Normal boiling points: 87.302, 77.355 and 111.667 K (the equations of state named in the module)."""
+    for name, kelvin in (("argon", 87.302), ("nitrogen", 77.355), ("methane", 111.667)):
+        assert float(theory.SIMPLE_FLUIDS[name].vapor_pressure(kelvin)) == pytest.approx(101325.0, rel=2e-3)
