@@ -103,7 +103,7 @@ def new_vicinity(
         entry=np.zeros(0, np.uint32),
         stride=0,
         anchor=np.zeros((number, 4)),
-        width=widest * _RATIO ** np.arange(_WIDTHS),
+        width=widest * np.cumprod(np.r_[1.0, np.full(_WIDTHS - 1, _RATIO)]),
         cell=np.full(number, _END, np.int32),
         next=np.full(number, _END, np.int32),
         previous=np.full(number, _END, np.int32),
