@@ -46,6 +46,7 @@ LAYERS = {
     ),
     "trade": Layer("engine errors theory file scenarios scene simulation", "numpy xarray"),
     "live": Layer("version engine errors theory file scene simulation page", "numpy websockets", lazily="xarray"),
+    "lab": Layer("version engine errors theory file scene simulation page live", "numpy", lazily="xarray"),
     "text": Layer("errors scene", "rich", lazily="simulation plot"),
     "callable_room": Layer(),
     "interface": Layer(

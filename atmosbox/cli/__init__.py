@@ -24,8 +24,8 @@ import warnings
 from atmosbox.cli.application import app
 
 # In the order in which ``--help`` lists them.
-from atmosbox.cli import tour, list_scenes, info, run, sweep, tradeoff, plot, view, live, animate, compare  # isort: skip
-from atmosbox.cli import export, sheet, check, prepare  # isort: skip
+from atmosbox.cli import tour, list_scenes, info, run, sweep, tradeoff, plot, view, live, lab  # isort: skip
+from atmosbox.cli import animate, compare, export, sheet, check, prepare  # isort: skip
 
 __all__ = [
     "animate",
@@ -34,6 +34,7 @@ __all__ = [
     "compare",
     "export",
     "info",
+    "lab",
     "list_scenes",
     "live",
     "main",

@@ -9,14 +9,15 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["readings"]
+__all__ = ["GAUGES", "readings"]
 
 _FRAMES = 20
-_GAUGES = (
+GAUGES = (
     ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
     ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
     ("hygrometer", ("relative_humidity",), "%", 100.0, 0.0),
 )
+"""Of each gauge its name, the variables that it may show, and how it shows them: unit, factor and offset from SI."""
 
 
 def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
@@ -43,7 +44,7 @@ def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
     [{'name': 'thermometer', 'value': 25.0, 'unit': '°C'}]
     """
     made = []
-    for name, variables, unit, factor, offset in _GAUGES:
+    for name, variables, unit, factor, offset in GAUGES:
         known = next((each for each in variables if each in found and found[each].dims == ("elapsed_time",)), None)
         if known is None:
             continue

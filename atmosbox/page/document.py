@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-__all__ = ["LANGUAGES", "MODULES", "THEMES", "live_page", "view_page", "words"]
+__all__ = ["LANGUAGES", "MODULES", "THEMES", "lab_page", "live_page", "view_page", "words"]
 
 THEMES = ("auto", "light", "dark")
 
@@ -44,10 +44,8 @@ MODULES = (
 )
 """Our scripts, each after those that it imports."""
 
-_ENTRIES = {
-    "view": ("view.js",),
-    "live": ("link.js", "controls.js", "notes.js", "pulse.js", "gauges.js", "lesson.js", "live.js"),
-}
+_LIVE = ("link.js", "controls.js", "notes.js", "pulse.js", "gauges.js", "lesson.js", "live.js")
+_ENTRIES = {"view": ("view.js",), "live": _LIVE, "lab": (*_LIVE, "lab.js")}
 _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 
 
@@ -107,6 +105,40 @@ def live_page(*, theme: str = "auto", language: str = "auto") -> str:
     return _document("live", "atmosbox live", theme, language, [])
 
 
+def lab_page(plan: Mapping[str, Any], module: str, image: str, *, theme: str = "auto", language: str = "auto") -> str:
+    """Return the page in which a box runs, complete.
+
+    Parameters
+    ----------
+    plan : mapping
+        What the page must know of its engine: see `atmosbox.lab`.
+    module, image : str
+        The engine and its memory, each compressed and in base64.
+    theme : {"auto", "light", "dark"}
+        Its colours.
+    language : {"auto", "en", "de", "es"}
+        Its words.
+
+    Returns
+    -------
+    str
+        The HTML, which needs no other file and no network.
+
+    Examples
+    --------
+    >>> "WebAssembly" in lab_page({"told": {"stage": {"title": "Air"}}}, "AA==", "AA==")
+    True
+    """
+    engine = "\n".join(_text("web", name) for name in ("lab_machine.js", "lab_worker.js"))
+    data = [
+        _block("plan", "application/json", _json(plan)),
+        _block("module", "text/plain", module),
+        _block("image", "text/plain", image),
+        _block("worker", "text/plain", _inline(engine)),
+    ]
+    return _document("lab", str(plan["told"]["stage"]["title"]), theme, language, data)
+
+
 @functools.cache
 def words(language: str) -> dict[str, Any]:
     """Return the words of a page in a language: see ``language/en.toml``.
@@ -135,6 +167,8 @@ def _document(entry: str, title: str, theme: str, language: str, data: Iterable[
         "THEME": theme,
         "ENTRY": entry,
         "CONNECT": "ws: wss:" if entry == "live" else "'none'",
+        "KIND": "live lab" if entry == "lab" else entry,
+        "ALSO": " 'wasm-unsafe-eval'" if entry == "lab" else "",
         "STYLE": "\n".join((_text("vendor", "uplot", "uPlot.min.css"), _text("web", "theme.css"))),
         "UPLOT": _inline(_text("vendor", "uplot", "uPlot.iife.min.js")),
         "MODULES": "\n".join(scripts),

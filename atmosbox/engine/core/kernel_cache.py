@@ -18,13 +18,13 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-__all__ = ["announce", "cache_folder", "compilations", "source_digest"]
+__all__ = ["announce", "cache_folder", "code_of", "compilations", "source_digest"]
 
 
 _DIGEST = re.compile(rb"[0-9a-f]{16}")
 
 
-def _code_of(source: str) -> str:
+def code_of(source: str) -> str:
     """Return what a source says to the compiler: its syntax tree without docstrings, comments and line numbers."""
     tree = ast.parse(source)
     for node in ast.walk(tree):
@@ -62,7 +62,7 @@ def source_digest(folder: Path | None = None, memory: Path | None = None) -> str
         held = known.read_bytes()
         if _DIGEST.fullmatch(held):  # a power failure may leave anything in a file
             return held.decode()
-    digest = _digest([version, *(f"{name} {_code_of(text.decode())}" for name, text in sources.items())])
+    digest = _digest([version, *(f"{name} {code_of(text.decode())}" for name, text in sources.items())])
     if known:
         new = known.with_suffix(f".{os.getpid()}")
         new.write_text(digest, encoding="ascii")

@@ -23,9 +23,9 @@ const LOOK = 200; // ms between two updates of the graphs
 const find = (name) => document.getElementById(name);
 
 class Live {
-  constructor() {
-    this.link = new Link({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer), state: (state) => this.line(state) });
-    this.pulse = new Pulse(find("transport"), (told) => this.link.say(told));
+  constructor(Connection, offers) {
+    this.link = new Connection({ hear: (told) => this.hear(told), see: (buffer) => this.see(buffer), state: (state) => this.line(state) });
+    this.pulse = new Pulse(find("transport"), (told) => this.link.say(told), offers);
     this.lesson = new Lesson(find("lesson"), (told) => this.link.say(told));
     this.gauges = new Gauges(find("gauges"), find("voice"));
     this.controls = new Controls(find("controls"), (name, value) => this.link.say({ type: "set", name, value }));
@@ -154,9 +154,10 @@ class Live {
   }
 }
 
-export function begin() {
+// `Connection` is where the box runs: elsewhere, unless the page brings it along.
+export function begin(Connection = Link, offers = {}) {
   spell();
-  const live = new Live();
+  const live = new Live(Connection, offers);
   const { pulse } = live;
   listen({
     " ": () => pulse.toggle(),
@@ -178,4 +179,5 @@ export function begin() {
     requestAnimationFrame(beat);
   };
   requestAnimationFrame(beat);
+  return live.link;
 }

@@ -7,8 +7,9 @@ import { phrase, word } from "./words.js";
 const SLOWEST = 0.25, FASTEST = 16;
 
 export class Pulse {
-  constructor(parent, say) {
-    Object.assign(this, { say, state: { playing: false, pace: 1, recording: null }, unit: "" });
+  // `saves` where nothing can be recorded, but what has been measured can be saved.
+  constructor(parent, say, { saves = false } = {}) {
+    Object.assign(this, { say, saves, state: { playing: false, pace: 1, recording: null }, unit: "" });
     parent.innerHTML = `
       <button type="button" id="play" class="main" title="${word("play_title")}"></button>
       <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
@@ -19,6 +20,10 @@ export class Pulse {
       <label class="seed" title="${word("seed_title")}">${word("seed")} <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
       <span class="group"><input type="text" id="file" aria-label="${word("file")}" spellcheck="false"><button type="button" id="record"></button></span>`;
     this.part = (name) => parent.querySelector(`#${name}`);
+    if (saves) {
+      parent.querySelector(".seed").hidden = this.part("file").hidden = true;
+      this.part("record").title = word("save_title");
+    }
     this.part("play").onclick = () => this.toggle();
     this.part("on").onclick = () => this.step();
     this.part("slower").onclick = () => this.accelerate(0.5);
@@ -46,7 +51,8 @@ export class Pulse {
   }
 
   record() {
-    if (this.state.recording) this.say({ type: "stop_record" });
+    if (this.saves) this.say({ type: "save" });
+    else if (this.state.recording) this.say({ type: "stop_record" });
     else this.say({ type: "record", file: this.part("file").value.trim() || null });
   }
 
@@ -63,7 +69,7 @@ export class Pulse {
     this.part("play").innerHTML = icon(playing ? "pause" : "play");
     this.part("play").setAttribute("aria-label", word(playing ? "pause" : "play"));
     this.part("pace").textContent = pace < 1 ? `1/${Math.round(1 / pace)}×` : `${pace}×`;
-    this.part("record").textContent = recording ? `■ ${word("stop_record")}` : `● ${word("record")}`;
+    this.part("record").textContent = this.saves ? word("save") : recording ? `■ ${word("stop_record")}` : `● ${word("record")}`;
     this.part("record").setAttribute("aria-pressed", Boolean(recording));
     this.part("file").disabled = Boolean(recording);
     if (recording) this.part("file").value = recording;

@@ -1,0 +1,76 @@
+"""The command ``lab``: a page in which a scene runs, without a server and without Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from atmosbox.cli.application import app, examples
+from atmosbox.cli.option import (
+    Accuracy,
+    Config,
+    Engine,
+    Force,
+    Language,
+    SceneName,
+    Seed,
+    Source,
+    Tongue,
+    Values,
+    Verbose,
+    out_option,
+)
+from atmosbox.cli.output_name import for_scene
+from atmosbox.cli.request import gather
+from atmosbox.cli.terminal import guarded, prints_to_stderr, say
+from atmosbox.cli.view import Colours
+from atmosbox.text.progress import progress
+
+
+@app.command(
+    epilog=examples(
+        "atmosbox lab temperature",
+        "atmosbox lab temperature --set molecules=800 --out warm.html",
+    )
+)
+@guarded
+def lab(
+    scene: Annotated[str | None, SceneName] = None,
+    values: Values = None,
+    config: Config = None,
+    source: Source = None,
+    seed: Seed = None,
+    engine: Engine = None,
+    accuracy: Accuracy = None,
+    out: Annotated[str | None, out_option("The page.  [default: SCENE-lab.html in this folder]")] = None,
+    theme: Annotated[
+        Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
+    ] = Colours.auto,
+    language: Language = Tongue.auto,
+    force: Force = False,
+    verbose: Verbose = False,
+) -> None:
+    """Write a page in which a scene runs: the engine itself, in the browser.
+
+    The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed that
+    it was written with, and gives the same numbers as run. Some knobs of live act in it; what else is to be changed is
+    set when the page is written.
+    """
+    from atmosbox.simulation import runner
+
+    asked = gather(scene, values or (), config, source, seed, False, engine, accuracy)
+    with progress("lab", quiet=False) as show:
+        with prints_to_stderr():
+            prepared = runner.prepare(**asked._asdict())
+        path = Path(out) if out is not None else for_scene(prepared.scene, "-lab.html")
+        from atmosbox.file.output_path import check_writable
+
+        check_writable(path, force)
+        show(0.1, "building the box")
+        from atmosbox.lab import save_lab
+
+        with prints_to_stderr():
+            written = save_lab(prepared, path, theme=theme.value, language=language.value, force=force)
+    say(str(written))

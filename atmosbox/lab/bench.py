@@ -1,0 +1,202 @@
+"""A box with all that a page needs beside it, as the arrays that its kernels work on."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine import ParcelSet
+from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
+from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.exact.rows import MOST, row_stride
+from atmosbox.errors import SettingError
+from atmosbox.lab.kernels.averaging import BLOCKS, Average
+from atmosbox.lab.kernels.gauging import Gauges, Reading
+from atmosbox.lab.kernels.passing import Book
+from atmosbox.lab.kernels.sight import Sight
+from atmosbox.scene.instruments import Air, Discs, Layers, Speeds
+from atmosbox.simulation.preparation import Prepared, build
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from atmosbox.page import Stage
+    from atmosbox.scene.setup import Setup
+    from atmosbox.scene.units import Scale
+
+__all__ = ["Bench", "bench", "refuse"]
+
+_CORNERS = 4
+
+
+class Bench(NamedTuple):
+    """A box at its start, as a page gets it.
+
+    ``layers`` is the average of the profiles of three quantities, one after the other, ``speeds`` that of the shares of
+    molecules by speed; both are empty in a scene that shows neither.
+    """
+
+    prepared: Prepared
+    setup: Setup
+    gas: Gas
+    ascent: Any
+    book: Book
+    gauges: Gauges
+    speeds: Average
+    layers: Average
+    sight: Sight
+
+    @property
+    def modes(self) -> Modes:
+        """What the scene requires of the engine."""
+        modes: Modes = self.setup.parcel._modes  # type: ignore[attr-defined]
+        return modes
+
+
+def refuse(prepared: Prepared, setup: Setup) -> None:
+    """Refuse a box that no module is made for.
+
+    Raises
+    ------
+    SettingError
+        With what to use instead.
+    """
+    parcel: Any = setup.parcel
+    why = None
+    if str(prepared.engine) != "exact":
+        why = "runs in the page with the exact engine alone"
+    elif type(parcel) is not ParcelSet:
+        why = "has liquid water, whose laws are not compiled for the page"
+    elif not parcel._modes.rows:
+        why = "has cells too crowded, or too small, for the rows that the page works with"
+    elif parcel._driver is not None:
+        why = "has a piston, under which cells are laid out anew, and that is not compiled for the page"
+    if why is not None:
+        raise SettingError(
+            "scene", prepared.scene, why, f"let it run with atmosbox live {prepared.scene}, or show a run with view"
+        )
+
+
+def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> Bench:
+    """Return the box of a scene as a page gets it.
+
+    Parameters
+    ----------
+    prepared
+        The scene.
+    picture
+        Tells what the page shows of a box; without it three molecules are shown, which is enough to compile.
+
+    Raises
+    ------
+    AtmosboxError
+        If the box cannot be built, or cannot run in a page.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> bench(prepare("temperature", {"molecules": 20})).gauges.counts.size
+    36
+    """
+    setup = build(prepared)
+    refuse(prepared, setup)
+    parcel: Any = setup.parcel
+    stage = None if picture is None else picture(setup)
+    return Bench(
+        prepared,
+        setup,
+        _gas(parcel),
+        _ascent(parcel),
+        Book(np.array([parcel._now]), np.array([parcel._cells.stride]), _longest(parcel), parcel._epoch_length),
+        _gauges(setup),
+        *_averages(setup),
+        _sight(parcel, setup.scale, stage),
+    )
+
+
+def _longest(parcel: Any) -> int:
+    return row_stride(MOST, mixed=parcel._modes.mixed)
+
+
+def _gas(parcel: Any) -> Gas:
+    """Return the gas before its molecules are placed among the cells, with memory for the longest rows there can be."""
+    cells, number = parcel._cells, parcel.number
+    row = aligned_records(cells.number_x * cells.number_y * cells.number_z * _longest(parcel), np.dtype("u4"))
+    row = row.view(np.ndarray)
+    events = aligned_records(number, EVENT)
+    slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
+    place = events.view(np.ndarray).view(np.uint8)
+    copies = cells.copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
+    cells = cells._replace(row=row, slot=slot, copies=copies)
+    gas: Gas = parcel._gas()._replace(events=events, cells=cells, calendar=new_calendar(number))
+    return gas
+
+
+def _ascent(parcel: Any) -> Any:
+    """Return what turns the piston, with memory for a course that is changed by hand; 0 for a box without."""
+    if not parcel._ascends:
+        return 0
+    (ascent,) = parcel._ascent()
+    lift = ascent.lift
+    time, moment = np.full(_CORNERS, math.inf), np.full(_CORNERS, lift.course_moment[-1])
+    time[: lift.course_time.size], moment[: lift.course_time.size] = lift.course_time, lift.course_moment
+    return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment))
+
+
+def _of(setup: Setup, kind: type) -> Any:
+    return next((each for each in setup.instruments if type(each) is kind), None)
+
+
+def _gauges(setup: Setup) -> Gauges:
+    air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
+    edges = np.zeros(1) if speeds is None else speeds._edges
+    number = 0 if layers is None else layers._number
+    half = np.zeros(0, np.int64)
+    if discs is not None:
+        mass = setup.parcel.mass
+        half = np.ones(mass.size, np.int64)
+        half[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
+    return Gauges(
+        reading=np.zeros(len(Reading) + 5),
+        warmth=np.zeros(2),
+        before=np.zeros(8),
+        barometer=0 if air is None or air._barometer == slice(None) else 4,
+        edges=edges,
+        counts=np.zeros(edges.size - 1),
+        speeds=np.zeros(edges.size - 1),
+        sums=np.zeros((4, number)),
+        layers=np.zeros(4 * number),
+        scratch=np.zeros((6, number)),
+        half=half,
+        running=np.zeros(8),
+    )
+
+
+def _averages(setup: Setup) -> tuple[Average, Average]:
+    """Return the averages of the shares by speed, and of the profiles.
+
+    A block of the latter is twice as long as the energy of the column remembers, so that blocks know little of each
+    other.
+    """
+    speeds, layers = _of(setup, Speeds), _of(setup, Layers)
+    shares = 0 if speeds is None else speeds._edges.size - 1
+    profiles = 0 if layers is None else 4 * layers._number
+    memory = 0.0 if layers is None else layers._memory
+    return _average(shares, 1), _average(profiles, max(1, math.ceil(2.0 * memory / setup.frame)))
+
+
+def _average(number: int, frames: int) -> Average:
+    return Average(
+        np.zeros((BLOCKS + 1, number)),
+        np.array([0, 0, frames, frames]),
+        np.full(number, np.nan),
+        np.full(number, np.nan),
+    )
+
+
+def _sight(parcel: Any, scale: Scale, stage: Stage | None) -> Sight:
+    shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
+    highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
+    return Sight(shown, np.zeros(3), np.zeros((shown.size, 3), np.uint16), np.zeros(shown.size, np.uint8), highest)

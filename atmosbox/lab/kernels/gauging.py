@@ -1,0 +1,294 @@
+"""What is read off a box in a page: thermometer, barometer, layers, speeds, unlike discs, a parcel that rises.
+
+These are the sums of `atmosbox.scene.instruments`, as kernels. What is shown of them, and in which unit, the room's
+`reading` says; the averages of many frames are in `averaging`.
+"""
+
+import functools
+import math
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
+from atmosbox.engine.exact.encounter import kind_of, motion_at
+from atmosbox.engine.exact.turning import gauges as ledger_gauges
+
+__all__ = ["Gauges", "Reading", "gauging"]
+
+
+class Gauges(NamedTuple):
+    """What the instruments of a box keep.
+
+    ``reading : (Reading,)`` the last ones. ``warmth : (2,)`` the sum of kT over the samples of a frame [energy], and
+    their number; ``before : (8,)`` impulse of the walls and time at the end of the last frame, and the energy at the
+    start of all frames [energy]. ``barometer`` whose walls' impulses are the pressure: 0 all, 4 the floor alone.
+
+    ``edges : (bin + 1,)`` [velocity], ``counts : (bin,)`` and ``speeds : (bin,)`` the share of molecules by speed
+    [1/velocity]. ``sums : (4, layer)`` number, energy, degrees of freedom and, at the end of the last frame, virial;
+    ``layers : (4 layer,)`` of the last frame: the same, and virials per time; ``scratch : (6, layer)``. All are
+    empty in a scene that does not show them.
+
+    ``half : (molecule,)`` 0 for a light disc, 1 for a heavy one, empty where molecules are alike; ``running : (8,)``
+    sums of the mean energies of both halves [energy], the frames, the first energy, and the first momentum.
+    """
+
+    reading: Any
+    warmth: Any
+    before: Any
+    barometer: int
+    edges: Any
+    counts: Any
+    speeds: Any
+    sums: Any
+    layers: Any
+    scratch: Any
+    half: Any
+    running: Any
+
+
+class Reading(IntEnum):
+    """Where in ``Gauges.reading`` a number stands; all in reduced units."""
+
+    TIME = 0
+    KT = 1
+    PRESSURE = 2
+    LEDGER = 3
+    CONTACTS = 4
+    LIGHT = 5
+    HEAVY = 6
+    ENERGY_CHANGE = 7
+    MOMENTUM = 8
+    PARCEL_KT = 9
+    PARCEL_PRESSURE = 10
+    MOMENT = 11
+    KINETIC = 12
+    WALL_KT = 13
+
+
+_TIME, _ENERGY = 6, 7
+
+
+@functools.cache
+def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``begin``, ``sample`` and ``end_frame`` of one set of modes."""
+
+    @kernel
+    def ceiling(gas, now):
+        """Return the height of the ceiling [length]."""
+        piston = gas.walls.piston
+        return piston[0] + piston[1] * (now - piston[2])
+
+    @kernel
+    def energies(gas, now):
+        """Return kinetic, rotational and potential energy [energy], and their sum over the three momenta."""
+        kinetic = rotational = potential = px = py = pz = 0.0
+        for i in range(gas.molecules.size):
+            at = motion_at(i, now, gas, modes)
+            mass, _, _ = kind_of(i, gas, modes)
+            kinetic += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
+            potential += mass * gas.box.gravity * at.z
+            px += mass * at.vx
+            py += mass * at.vy
+            pz += mass * at.vz
+            if modes.rotation:
+                rotational += gas.kinds.rotational_energy[i]
+        return kinetic, rotational, potential, px, py, pz
+
+    @kernel
+    def sample_layers(gas, now, sums, scratch):
+        """Count the molecules of each layer, and the energy of their disordered motion: see `layer_sample`."""
+        layers = sums.shape[1]
+        height = ceiling(gas, now)
+        planes = 2.0 if gas.box.planar else 3.0
+        scratch[:] = 0.0
+        for i in range(gas.molecules.size):
+            at = motion_at(i, now, gas, modes)
+            mass, _, _ = kind_of(i, gas, modes)
+            layer = min(max(int(at.z / height * layers), 0), layers - 1)
+            scratch[0, layer] += 1.0
+            scratch[1, layer] += mass
+            scratch[2, layer] += mass * at.vx
+            scratch[3, layer] += mass * at.vy
+            scratch[4, layer] += mass * at.vz
+            scratch[5, layer] += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
+        for layer in range(layers):
+            number, weight, energy = scratch[0, layer], scratch[1, layer], scratch[5, layer]
+            px, py, pz = scratch[2, layer], scratch[3, layer], scratch[4, layer]
+            if number > 0.0:
+                sums[0, layer] += number
+                sums[1, layer] += energy - 0.5 * (px * px + py * py + pz * pz) / weight
+                sums[2, layer] += planes * (number - 1.0)
+
+    @kernel
+    def sample(gas, book, gauges):
+        """Read what a frame takes its mean of."""
+        now = book.now[0]
+        twice = 0.0
+        bins = gauges.counts.size
+        for i in range(gas.molecules.size):
+            at = motion_at(i, now, gas, modes)
+            mass, _, _ = kind_of(i, gas, modes)
+            square = at.vx * at.vx + at.vy * at.vy + at.vz * at.vz
+            twice += mass * square
+            if bins > 0:
+                speed = math.sqrt(square)
+                low, high = gauges.edges[0], gauges.edges[bins]
+                if low <= speed <= high:
+                    gauges.counts[min(int((speed - low) / (high - low) * bins), bins - 1)] += 1.0
+        planes = 2.0 if gas.box.planar else 3.0
+        gauges.warmth[0] += twice / (planes * gas.molecules.size)
+        gauges.warmth[1] += 1.0
+        if gauges.sums.shape[1] > 0:
+            sample_layers(gas, now, gauges.sums, gauges.scratch)
+        return 0
+
+    @kernel
+    def open_faces(gas, now):
+        """Return the areas of the walls across x, y and z that centres can reach: see `open_faces`."""
+        mean = 0.0
+        for i in range(gas.molecules.size):
+            _, radius, _ = kind_of(i, gas, modes)
+            mean += 2.0 * radius
+        mean /= max(gas.molecules.size, 1)
+        box = gas.box
+        x = box.length_x - (mean if box.inverse_x == 0.0 else 0.0)
+        y = 1.0 if box.planar else box.length_y - (mean if box.inverse_y == 0.0 else 0.0)
+        z = ceiling(gas, now) - (mean if box.inverse_z == 0.0 else 0.0)
+        ax = y * z if box.inverse_x == 0.0 else 0.0
+        ay = x * z if box.inverse_y == 0.0 and not box.planar else 0.0
+        az = x * y if box.inverse_z == 0.0 else 0.0
+        return ax, ay, az
+
+    @kernel
+    def pressure(gas, now, lasted, gauges):
+        """Return the pressure of the frame by the impulses of the walls [energy/length^3]."""
+        ax, ay, az = open_faces(gas, now)
+        impulse = area = 0.0
+        for wall in range(6):
+            if gauges.barometer == 0 or gauges.barometer == wall:
+                impulse += gas.tallies.impulse[wall] - gauges.before[wall]
+                area += ax if wall < 2 else (ay if wall < 4 else az)
+        return impulse / (area * lasted) if area > 0.0 and lasted > 0.0 else math.nan
+
+    @kernel
+    def end_halves(gas, book, total, px, py, pz, gauges):
+        """Read the energies of the light and of the heavy discs, and the account of their momentum."""
+        light = heavy = mass_sum = 0.0
+        lighter = heavier = 0
+        for i in range(gas.molecules.size):
+            at = motion_at(i, book.now[0], gas, modes)
+            mass, _, _ = kind_of(i, gas, modes)
+            mass_sum += mass
+            energy = 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
+            if gauges.half[i] == 0:
+                light += energy
+                lighter += 1
+            else:
+                heavy += energy
+                heavier += 1
+        outward = gas.tallies.impulse
+        px -= outward[0] - outward[1]
+        py -= outward[2] - outward[3]
+        pz -= outward[4] - outward[5]
+        running = gauges.running
+        if running[2] == 0.0:
+            running[3], running[4], running[5], running[6] = total, px, py, pz
+        running[0] += light / max(lighter, 1)
+        running[1] += heavy / max(heavier, 1)
+        running[2] += 1.0
+        size = math.sqrt(2.0 * mass_sum * running[3])
+        gone = (px - running[4]) ** 2 + (py - running[5]) ** 2 + (pz - running[6]) ** 2
+        gauges.reading[Reading.LIGHT] = running[0] / running[2]
+        gauges.reading[Reading.HEAVY] = running[1] / running[2]
+        gauges.reading[Reading.ENERGY_CHANGE] = total / running[3] - 1.0
+        gauges.reading[Reading.MOMENTUM] = math.sqrt(gone) / size if size > 0.0 else 0.0
+
+    if modes.ascends:
+
+        @kernel
+        def end_lift(gas, ascent, book, gauges):
+            """Read the state of a parcel that rises, by the ledger of its energy: see `instruments.Lift`."""
+            lift = ascent.lift
+            at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
+            kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
+            gauges.reading[Reading.PARCEL_KT] = kT
+            gauges.reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)
+            time, turns = gauges.reading[Reading.TIME], lift.course_time
+            moment = lift.course_moment[0]
+            for k in range(1, turns.size):
+                if time >= turns[k]:
+                    moment = lift.course_moment[k]
+                elif time > turns[k - 1]:
+                    share = (time - turns[k - 1]) / (turns[k] - turns[k - 1])
+                    moment = lift.course_moment[k - 1] + share * (lift.course_moment[k] - lift.course_moment[k - 1])
+            gauges.reading[Reading.MOMENT] = moment
+
+    else:
+
+        @kernel
+        def end_lift(gas, ascent, book, gauges):
+            """Read nothing: this box does not rise."""
+
+    @kernel
+    def begin(gas, ascent, book, gauges):
+        """Begin to measure now."""
+        now = book.now[0]
+        kinetic, rotational, potential, _, _, _ = energies(gas, now)
+        for wall in range(6):
+            gauges.before[wall] = gas.tallies.impulse[wall]
+        gauges.before[_TIME] = gas.walls.epoch[0] + now
+        gauges.before[_ENERGY] = kinetic + rotational + potential
+        gauges.warmth[:] = 0.0
+        gauges.counts[:] = 0.0
+        gauges.sums[:] = 0.0
+        for layer in range(gauges.sums.shape[1]):
+            gauges.sums[3, layer] = gas.tallies.virial[layer]
+        gauges.running[:] = 0.0
+        return 0
+
+    @kernel
+    def end_frame(gas, ascent, book, gauges):
+        """Read what stands at the end of a frame, and finish its means."""
+        reading, now = gauges.reading, book.now[0]
+        time = gas.walls.epoch[0] + now
+        lasted = time - gauges.before[_TIME]
+        kinetic, rotational, potential, px, py, pz = energies(gas, now)
+        total = kinetic + rotational + potential
+        given = passed = 0.0
+        for wall in range(6):
+            given += gas.tallies.heat[wall] + gas.tallies.work[wall]
+            passed += abs(gas.tallies.heat[wall]) + abs(gas.tallies.work[wall])
+        largest = max(abs(total), abs(gauges.before[_ENERGY]), passed)
+        reading[Reading.TIME] = time
+        reading[Reading.KT] = gauges.warmth[0] / max(gauges.warmth[1], 1.0)
+        reading[Reading.PRESSURE] = pressure(gas, now, lasted, gauges)
+        reading[Reading.LEDGER] = abs(total - gauges.before[_ENERGY] - given) / largest if largest > 0.0 else 0.0
+        reading[Reading.CONTACTS] = gas.tallies.count[0]
+        reading[Reading.KINETIC] = kinetic
+        for wall in range(6):
+            warm = gas.walls.law[wall] == HEAT_BATH
+            reading[Reading.WALL_KT + wall] = wall_kT(gas.walls, wall, time) if warm else math.nan
+            gauges.before[wall] = gas.tallies.impulse[wall]
+        gauges.before[_TIME] = time
+        samples = max(gauges.warmth[1], 1.0)
+        for k in range(gauges.counts.size):
+            width = gauges.edges[k + 1] - gauges.edges[k]
+            gauges.speeds[k] = gauges.counts[k] / (samples * gas.molecules.size) / width
+        layers = gauges.sums.shape[1]
+        for layer in range(layers):
+            for k in range(3):
+                gauges.layers[k * layers + layer] = gauges.sums[k, layer] / samples
+                gauges.sums[k, layer] = 0.0
+            gauges.layers[3 * layers + layer] = (gas.tallies.virial[layer] - gauges.sums[3, layer]) / lasted
+            gauges.sums[3, layer] = gas.tallies.virial[layer]
+        if gauges.half.size > 0:
+            end_halves(gas, book, total, px, py, pz, gauges)
+        end_lift(gas, ascent, book, gauges)
+        gauges.warmth[:] = 0.0
+        gauges.counts[:] = 0.0
+        return 0
+
+    return begin, sample, end_frame

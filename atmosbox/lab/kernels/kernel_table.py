@@ -1,0 +1,60 @@
+"""What a page calls, by name: the kernels for one set of modes, among them those that a hand on a knob needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.lab.kernels.averaging import average, forget
+from atmosbox.lab.kernels.gauging import gauging
+from atmosbox.lab.kernels.height_profile import end_profile
+from atmosbox.lab.kernels.passing import passing
+from atmosbox.lab.kernels.sight import sight
+
+__all__ = ["kernels"]
+
+
+@kernel
+def warm_walls(walls, kT):
+    """Keep all heat baths at a temperature [energy] from now on: see `ParcelSet.set_wall_kT`."""
+    for wall in range(6):
+        if walls.law[wall] == HEAT_BATH:
+            for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
+                walls.schedule_kT[k] = kT
+    return 0
+
+
+@kernel
+def begin_averages_anew(speeds, layers):
+    """Forget all frames."""
+    forget(speeds)
+    forget(layers)
+    return 0
+
+
+@kernel
+def note_frame(gas, gauges, speeds, layers):
+    """Add the frame that has ended to the averages."""
+    average(gauges.speeds, speeds)
+    end_profile(gas, gauges, layers)
+    return 0
+
+
+def kernels(modes: Modes) -> dict[str, Callable[..., Any]]:
+    """Return the kernels for one set of modes by name."""
+    pass_time, place = passing(modes)
+    begin, sample, end_frame = gauging(modes)
+    return {
+        "place": place,
+        "pass_time": pass_time,
+        "begin": begin,
+        "sample": sample,
+        "end_frame": end_frame,
+        "note_frame": note_frame,
+        "begin_averages_anew": begin_averages_anew,
+        "look": sight(modes),
+        "warm_walls": warm_walls,
+    }

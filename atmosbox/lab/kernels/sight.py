@@ -1,0 +1,61 @@
+"""What is seen of a box in a page: where its molecules are, written as the page reads a frame."""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.encounter import motion_at
+
+__all__ = ["Sight", "sight"]
+
+_FINEST, _FASTEST = 65535, 255
+
+
+class Sight(NamedTuple):
+    """What a picture is made of.
+
+    ``shown : (shown,)`` which molecules are drawn; ``length : (3,)`` sides of the box now [length]; ``place :
+    (shown, 3)`` uint16 and ``colour : (shown,)`` uint8, as `atmosbox.page.frame` says; ``highest`` the speed
+    at the top of the scale of colours [velocity].
+    """
+
+    shown: Any
+    length: Any
+    place: Any
+    colour: Any
+    highest: float
+
+
+@functools.cache
+def sight(modes: Modes) -> Callable[..., Any]:
+    """Return the kernel ``look`` of one set of modes."""
+
+    @kernel
+    def share(u, length, inverse):
+        """Return a coordinate over a side of the box, in steps of a 16-bit number."""
+        part = u / length
+        if inverse != 0.0:
+            part -= math.floor(part)
+        return math.floor(min(max(part, 0.0), 1.0) * _FINEST + 0.5)
+
+    @kernel
+    def look(gas, book, sight):
+        """Write where all molecules are, and how fast."""
+        now, box = book.now[0], gas.box
+        piston = gas.walls.piston
+        sight.length[0] = box.length_x
+        sight.length[1] = box.length_y
+        sight.length[2] = piston[0] + piston[1] * (now - piston[2])
+        for k in range(sight.shown.size):
+            at = motion_at(sight.shown[k], now, gas, modes)
+            sight.place[k, 0] = int(share(at.x, sight.length[0], box.inverse_x))
+            sight.place[k, 1] = int(share(at.y, sight.length[1], box.inverse_y))
+            sight.place[k, 2] = int(share(at.z, sight.length[2], box.inverse_z))
+            speed = math.sqrt(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
+            sight.colour[k] = math.floor(min(speed / sight.highest, 1.0) * _FASTEST + 0.5)
+        return 0
+
+    return look  # type: ignore[no-any-return]

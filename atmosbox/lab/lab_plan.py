@@ -1,0 +1,204 @@
+"""What a page must know of its engine, as JSON: where everything stands in memory, in which unit, what it means."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox.lab.bench import Bench, bench
+from atmosbox.lab.kernels.gauging import Reading
+from atmosbox.lab.memory_image import BASE, Image, image
+from atmosbox.lab.theory_table import short_run, tables
+from atmosbox.lab.work import arguments
+from atmosbox.live.control import controls
+from atmosbox.live.experiment import Experiment
+from atmosbox.live.gauge import GAUGES
+from atmosbox.live.lesson import lesson_of
+from atmosbox.live.picture import Picture
+from atmosbox.live.summary import while_it_runs
+from atmosbox.live.trace import plain
+from atmosbox.scene.conversion import to_si
+from atmosbox.simulation.preparation import Prepared
+
+if TYPE_CHECKING:
+    from atmosbox.page import Stage
+    from atmosbox.scene.panels import Panel
+    from atmosbox.scene.setup import Setup
+
+__all__ = ["STATE", "lab_plan"]
+
+STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
+"""What makes two boxes the same, to the last bit."""
+
+_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
+
+
+def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
+    """Return the plan of the page of a scene, the memory of its engine, and the box.
+
+    Raises
+    ------
+    AtmosboxError
+        If the box cannot be built, or cannot run in a page.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> plan, memory, _ = lab_plan(prepare("temperature", {"molecules": 20}))
+    >>> plan["molecules"], plan["size"] == memory.size, sorted(plan["knobs"])
+    (20, True, ['temperature'])
+    """
+    panels: list[tuple[Panel, ...]] = []
+    pictures: list[Picture] = []
+
+    def look(setup: Setup) -> Stage:
+        module = prepared.module
+        all_panels = module.panels(prepared.settings) if callable(module.panels) else module.panels
+        panels.append(tuple(panel for panel in map(while_it_runs, all_panels) if panel is not None))
+        pictures.append(Picture(prepared, setup, panels[-1]))
+        return pictures[-1].stage
+
+    box = bench(prepared, look)
+    setup, stage = box.setup, pictures[0].stage
+    named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
+    memory = image(arguments(box), named)
+    wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *STATE}
+    wanted |= {"sight.place", "sight.colour", "sight.length"}
+    found, numbers = _knobs(setup)
+    readings = _readings(box)
+    shown = controls(found, [], {}, collisions=None)
+    plan = {
+        "told": {
+            "stage": stage.record,
+            "controls": [control.record() for control in shown],
+            "lesson": _lesson(prepared, readings),
+        },
+        "base": BASE,
+        "size": memory.size,
+        "pieces": [[place, len(content)] for place, content in memory.pieces],
+        "blocks": memory.blocks,
+        "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
+        "arrays": {name: memory.arrays[name] for name in sorted(wanted)},
+        "state": STATE,
+        "molecules": setup.parcel.number,
+        "frame": setup.frame,
+        "frames": setup.frames,
+        "samples": setup.samples,
+        "settle": 0 if setup.ends else setup.settle,
+        "ends": setup.ends,
+        "whole": setup.ends,
+        "rate": Experiment(prepared, lambda: 0.0).rate,
+        "time": setup.scale.time / _SECONDS[setup.time_unit],
+        "length": setup.scale.length * stage.record["metre"],
+        "fastest": stage.record["speed"]["high"],
+        "ledger": Reading.LEDGER.value,
+        "readings": readings,
+        "gauges": _gauges([name for name, _, _ in readings]),
+        "profiles": _profiles(box),
+        "fixed": _fixed(box),
+        "tables": tables(prepared, setup, short_run(prepared)),
+        "knobs": numbers,
+        "command": _command(prepared),
+    }
+    return plan, memory, box
+
+
+def _readings(box: Bench) -> list[tuple[str, int, float]]:
+    """Return which readings are shown: the name of each, its place, and its factor to SI or to the unit of the page."""
+    setup = box.setup
+    scale = setup.scale
+    found: list[tuple[str, int, float]] = [
+        ("elapsed_time", Reading.TIME, scale.time / _SECONDS[setup.time_unit]),
+        ("air_temperature", Reading.KT, scale.temperature),
+        ("air_pressure", Reading.PRESSURE, scale.pressure),
+        ("collision_count", Reading.CONTACTS, 1.0),
+    ]
+    if box.gauges.half.size:
+        found += [
+            ("running_energy_light", Reading.LIGHT, scale.energy),
+            ("running_energy_heavy", Reading.HEAVY, scale.energy),
+            ("energy_change", Reading.ENERGY_CHANGE, 1.0),
+            ("momentum_residual", Reading.MOMENTUM, 1.0),
+        ]
+    if box.modes.ascends:
+        found += [
+            ("parcel_temperature", Reading.PARCEL_KT, scale.temperature),
+            ("parcel_pressure", Reading.PARCEL_PRESSURE, scale.pressure),
+            ("moment", Reading.MOMENT, 1.0),
+        ]
+    warm = np.isfinite(setup.parcel.wall_kT())
+    found += [
+        (f"wall_temperature[{name}]", Reading.WALL_KT + wall, scale.temperature)
+        for wall, name in enumerate(_WALLS)
+        if warm[wall]
+    ]
+    return [(name, int(place), float(factor)) for name, place, factor in found]
+
+
+def _gauges(names: list[str]) -> list[dict[str, Any]]:
+    """Return the gauges beside the box: of each what it shows of which variable."""
+    return [
+        {"name": name, "variable": known, "unit": unit, "factor": factor, "offset": offset}
+        for name, variables, unit, factor, offset in GAUGES
+        if (known := next((each for each in variables if each in names), None)) is not None
+    ]
+
+
+def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[str, Any]:
+    """Return the challenges of the scene that can be met here; other settings than the page's own it cannot take."""
+    names = {name for name, _, _ in readings}
+    told = lesson_of(prepared.module).record()
+    met = [each for each in told["challenges"] if names.issuperset(goal["name"] for goal in each["reach"])]
+    return {"presets": [], "pump": False, "challenges": met}
+
+
+def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
+    """Return which averages are shown: name, array, first, how many, and their factor to SI."""
+    scale = box.setup.scale
+    bins, layers = box.gauges.counts.size, box.gauges.sums.shape[1]
+    found = [("speed_probability_density", "speeds", 0, bins, 1.0 / scale.velocity)] if bins else []
+    if layers:
+        found += [
+            ("number_density", "layers", 0, layers, scale.number_density),
+            ("layer_temperature", "layers", layers, layers, scale.temperature),
+            ("layer_pressure", "layers", 2 * layers, layers, scale.pressure),
+        ]
+    return [
+        (name + end, f"{array}.{part}", first, count, float(factor))
+        for name, array, first, count, factor in found
+        for end, part in (("", "mean"), ("_se", "error"))
+    ]
+
+
+def _fixed(box: Bench) -> dict[str, Any]:
+    """Return what does not change: the middles of bins and of layers, in SI."""
+    edges, layers = box.gauges.edges * box.setup.scale.velocity, box.gauges.sums.shape[1]
+    found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
+    if layers:
+        height = np.linspace(0.0, float(box.setup.parcel.length[2]), layers + 1) * box.setup.scale.length
+        found["height"] = plain(0.5 * (height[1:] + height[:-1]))
+    return found
+
+
+def _knobs(setup: Setup) -> tuple[list[Any], dict[str, Any]]:
+    """Return the knobs that act in a page, and what each does with its value."""
+    kept = [knob for knob in setup.knobs if knob.name == "temperature"]
+    numbers = {}
+    for knob in kept:
+        zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)
+        numbers[knob.name] = {
+            "kernel": "warm_walls",
+            "argument": "1",
+            "factor": (one - zero) / setup.scale.temperature,
+            "offset": zero / setup.scale.temperature,
+        }
+    return kept, numbers
+
+
+def _command(prepared: Prepared) -> str:
+    """Return the command that begins the same run."""
+    changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
+    sets = "".join(f" --set {name}={value}" for name, value in changed.items())
+    return f"atmosbox run {prepared.scene}{sets} --seed {prepared.settings.seed}"

@@ -1,0 +1,145 @@
+"""The memory of a module: every array of a box at its place, and beside them the arguments of each kernel.
+
+::
+
+    0           stack and constants of the module
+    BASE        arrays, each at a multiple of 64 bytes; views of one piece of memory keep their distance
+    ...         for each kernel a block: 128 bytes for what it returns, 128 that nobody reads, then its arguments,
+                8 bytes each, as numba passes them
+    size        the end
+
+An array is passed as seven or more words: two that only Python needs, its number of elements, the size of one, its
+address, then its shape and its strides. A NamedTuple is passed as its fields. What is all zero, as the rows of cells
+are before the molecules have been placed, is not stored.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["BASE", "Image", "image"]
+
+BASE = 0x20000
+_LINE = 64
+_HEAD = 256
+
+Works = Mapping[str, tuple[Any, ...]]
+
+
+class Image(NamedTuple):
+    """The memory of a module before its first call.
+
+    Attributes
+    ----------
+    pieces : list of (int, bytes)
+        What is not zero, and where.
+    size : int
+        How many bytes there are, those before ``BASE`` included.
+    blocks : dict of str to int
+        Where the arguments of each kernel stand.
+    slots : dict of str to dict of str to int
+        Where the numbers among the arguments of a kernel stand, by their path: "4" is the fifth argument.
+    arrays : dict of str to (int, int, str)
+        Address, number of elements and type of each array, by the path of its name: "gas.molecules".
+    """
+
+    pieces: list[tuple[int, bytes]]
+    size: int
+    blocks: dict[str, int]
+    slots: dict[str, dict[str, int]]
+    arrays: dict[str, tuple[int, int, str]]
+
+
+def _parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
+    """Return what numba passes of an argument, in order: kind, value, and the path of its name."""
+    if isinstance(value, np.ndarray):
+        yield "word", 0, name
+        yield "word", 0, name
+        yield "word", value.size, name
+        yield "word", value.itemsize, name
+        yield "array", value, name
+        for number in (*value.shape, *value.strides):
+            yield "word", number, name
+    elif isinstance(value, tuple):
+        for field, part in zip(getattr(value, "_fields", range(len(value))), value, strict=True):
+            yield from _parts(part, f"{name}.{field}" if name else str(field))
+    elif isinstance(value, float | np.floating):
+        yield "number", float(value), name
+    else:
+        yield "word", int(value), name
+
+
+def _address(array: NDArray[Any]) -> int:
+    return int(array.__array_interface__["data"][0])
+
+
+def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
+    """Return the pieces of memory, from and to, that hold all arrays; views of one buffer share one."""
+    spans = sorted((np.lib.array_utils.byte_bounds(each) for each in arrays if each.size), key=lambda s: (s[0], -s[1]))
+    found: list[tuple[int, int]] = []
+    for low, high in spans:
+        if found and low < found[-1][1]:
+            found[-1] = found[-1][0], max(found[-1][1], high)
+        else:
+            found.append((low, high))
+    return found
+
+
+def image(works: Works, named: Mapping[str, Any]) -> Image:
+    """Return the memory for some kernels.
+
+    Parameters
+    ----------
+    works
+        The arguments of the kernels, by their names.
+    named
+        Arrays, or NamedTuples of them, that are to be found by name.
+
+    Examples
+    --------
+    >>> made = image({"double": (np.arange(3.0), 2)}, {"numbers": np.arange(1)})
+    >>> made.blocks["double"] % 64, made.slots["double"]
+    (0, {'1': 131400})
+    """
+    arrays = [part for given in works.values() for kind, part, _ in _parts(given, "") if kind == "array"]
+    known = [(name, part) for kind, part, name in _parts(tuple(named.values()), "") if kind == "array"]
+    titles = list(named)
+    held = _pieces_of_memory([*arrays, *(part for _, part in known)])
+    place: dict[tuple[int, int], int] = {}
+    at = BASE
+    for low, high in held:
+        at = -(-at // _LINE) * _LINE
+        place[low, high] = at
+        at += high - low
+
+    def where(array: NDArray[Any]) -> int:
+        low = _address(array)
+        return next((to + low - first for (first, last), to in place.items() if first <= low < last), BASE)
+
+    table: dict[str, tuple[int, int, str]] = {}
+    for name, array in known:
+        first, _, rest = name.partition(".")
+        title = ".".join(part for part in (titles[int(first)], rest) if part)
+        kind = "uint8" if array.dtype.names else str(array.dtype)
+        table[title] = where(array), array.nbytes if array.dtype.names else array.size, kind
+    stored = ((to, ctypes.string_at(low, high - low)) for (low, high), to in place.items())
+    pieces = [(to, content) for to, content in stored if any(content)]
+    blocks: dict[str, int] = {}
+    slots: dict[str, dict[str, int]] = {}
+    for name, given in works.items():
+        at = -(-at // _LINE) * _LINE
+        blocks[name], slots[name] = at, {}
+        words = bytearray(_HEAD)
+        for kind, part, path in _parts(given, ""):
+            if kind != "array" and path.isdigit() and not isinstance(given[int(path)], np.ndarray):
+                slots[name][path] = at + len(words)
+            number = np.float64(part) if kind == "number" else np.int64(where(part) if kind == "array" else part)
+            words += number.tobytes()
+        pieces.append((at, bytes(words)))
+        at += len(words)
+    return Image(pieces, at, blocks, slots, table)

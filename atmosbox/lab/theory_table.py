@@ -1,0 +1,132 @@
+"""The curves of theory, tabulated: a page cannot ask a scene's formulas, so they are asked beforehand."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox.errors import SettingError
+from atmosbox.live.experiment import Experiment
+from atmosbox.live.trace import plain
+from atmosbox.scene.conversion import to_si
+from atmosbox.scene.instruments import Lift
+from atmosbox.simulation.preparation import Prepared
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.scene.setup import Setup
+
+__all__ = ["short_run", "tables"]
+
+_FRAMES = 3
+_POINTS = 121
+_WAY = 401
+
+
+def short_run(prepared: Prepared) -> xr.Dataset:
+    """Return what is known after three frames, which theory is asked about.
+
+    Raises
+    ------
+    SettingError
+        If the cells of the box must be laid out anew so early, which a page cannot do.
+    """
+    box = Experiment(prepared, time.perf_counter)
+    parcel: Any = box.setup.parcel
+    modes, gauge = parcel._modes, box.gauges[0]
+    while gauge.frames < _FRAMES:
+        box.pass_time((box.frame + 1) * box.setup.frame, math.inf, tuple, lambda: True)
+    if parcel._modes != modes:
+        raise SettingError(
+            "scene",
+            prepared.scene,
+            "crowds so many molecules together that the page runs out of room for them",
+            f"let it run with atmosbox live {prepared.scene}, or begin it where it comes to rest, as atmosphere with "
+            "--set start=equilibrium",
+        )
+    found, _ = gauge.dataset("lab", settle=0, judged=False)
+    return found
+
+
+def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the curves of theory as functions of what is measured or turned.
+
+    Parameters
+    ----------
+    prepared, setup
+        The scene and its box.
+    found
+        From `short_run`.
+
+    Returns
+    -------
+    list of dict
+        ``along`` the variable that a table goes along, ``grid`` its values, and ``rows`` the values of the curves at
+        each of them; between two the page takes the straight line.
+
+    Examples
+    --------
+    A wall's temperature is that of theory:
+
+    >>> from atmosbox.simulation.preparation import build, prepare
+    >>> scene = prepare("temperature", {"molecules": 20})
+    >>> (warmth,) = tables(scene, build(scene), short_run(scene))
+    >>> warmth["along"], warmth["rows"][0]["air_temperature_theory"] == warmth["grid"][0]
+    ('wall_temperature[z_low]', True)
+    """
+    lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
+    if lift is not None:
+        return [_way(setup, lift), _adiabat(setup, lift, prepared)]
+    return [_walls(prepared, setup, found)]
+
+
+def _walls(prepared: Prepared, setup: Setup, found: xr.Dataset) -> dict[str, Any]:
+    """Return what the scene's theory says at each temperature that the walls can have."""
+    knob = next((knob for knob in setup.knobs if knob.name == "temperature"), None)
+    if knob is None:
+        grid = [0.0]
+    else:
+        grid = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS).tolist()
+    rows = []
+    for kelvin in grid:
+        here = found
+        if knob is not None:
+            here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
+        told = prepared.module.theory(here, prepared.settings)
+        rows.append({name: _at_last(np.asarray(values), found) for name, values in told.items()})
+    return {"along": "elapsed_time" if knob is None else "wall_temperature[z_low]", "grid": plain(grid), "rows": rows}
+
+
+def _at_last(values: Any, found: xr.Dataset) -> Any:
+    """Return the last value of a series, or all of what is none."""
+    if values.shape == (found.sizes["elapsed_time"],):
+        return plain(values[-1:])[0]
+    return plain(values)
+
+
+def _way(setup: Setup, lift: Lift) -> dict[str, Any]:
+    """Return height, pressure and temperature of the environment at each moment of the way."""
+    moments = np.linspace(0.0, setup.duration, _WAY)
+    around, second = lift.environment, setup.scale.time
+    rows = [
+        {
+            "parcel_height": float(around.height(t * second)),
+            "environment_temperature": float(around.temperature(t * second)),
+            "environment_pressure": float(around.pressure(t * second)),
+        }
+        for t in moments.tolist()
+    ]
+    return {"along": "moment", "grid": moments.tolist(), "rows": rows}
+
+
+def _adiabat(setup: Setup, lift: Lift, prepared: Prepared) -> dict[str, Any]:
+    """Return the temperature of the adiabat at each pressure that the parcel may come to."""
+    around, second = lift.environment, setup.scale.time
+    ends = [around.pressure(t * second) for t in np.linspace(0.0, setup.duration, _WAY)]
+    pressures = np.geomspace(0.8 * min(ends), 1.25 * max(ends), _WAY)
+    rows = [{"adiabat_temperature": float(around.adiabat(p))} for p in pressures.tolist()]
+    return {"along": "parcel_pressure", "grid": pressures.tolist(), "rows": rows}

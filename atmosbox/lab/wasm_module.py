@@ -1,0 +1,83 @@
+"""The modules of the package: which box needs which, and of which sources each was made."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import sys
+from pathlib import Path
+from typing import Any
+
+from atmosbox.engine.core.kernel_cache import code_of
+from atmosbox.errors import EngineError
+
+__all__ = ["FOLDER", "SCENES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
+
+FOLDER = Path(__file__).parent / "modules"
+SCENES: dict[str, dict[str, Any]] = {
+    "temperature": {},
+    "elastic-collisions": {},
+    "atmosphere": {"start": "equilibrium"},
+}
+"""The shipped scenes that a page can run, with the settings that they need for it."""
+
+
+def module_name(modes: Any) -> str:
+    """Return the name of the module for one set of modes.
+
+    Examples
+    --------
+    >>> from atmosbox.engine.core.state import Modes
+    >>> module_name(Modes(True, False, False, False, False, False, False, rows=True))
+    'contacts-rows'
+    """
+    return "-".join(name for name, is_on in modes._asdict().items() if is_on)
+
+
+def source_stamp() -> str:
+    """Return what a module that is made now must carry: a digest of the code of the engine and of `kernels`.
+
+    Comments and docstrings do not count. The minor version of Python stands before it, because the syntax trees of two
+    versions differ.
+
+    Examples
+    --------
+    >>> len(source_stamp().split()[1])
+    16
+    """
+    package = Path(__file__).parents[1]
+    files = sorted([*(package / "engine").rglob("*.py"), *(package / "lab" / "kernels").glob("*.py")])
+    said = "\n".join(f"{file.relative_to(package).as_posix()} {code_of(file.read_text('utf-8'))}" for file in files)
+    return f"{sys.version_info.major}.{sys.version_info.minor} {hashlib.sha256(said.encode()).hexdigest()[:16]}"
+
+
+def stamp_of(content: bytes) -> str:
+    """Return the stamp that a module carries, as it lies in the package: its last section.
+
+    Examples
+    --------
+    >>> stamp_of(gzip.compress(b"...sources3.11 0123456789abcdef"))
+    '3.11 0123456789abcdef'
+    """
+    return gzip.decompress(content).rpartition(b"sources")[2].decode("ascii")
+
+
+def module_bytes(modes: Any, scene: str) -> bytes:
+    """Return the module for one set of modes, as it lies in the package: gzip.
+
+    Raises
+    ------
+    EngineError
+        If the package has none, or one of another version of the engine.
+    """
+    path = FOLDER / f"{module_name(modes)}.wasm.gz"
+    if not path.is_file():
+        if not any(FOLDER.glob("*.wasm.gz")):
+            problem = "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
+        else:
+            problem = (
+                f"The settings of {scene} need kernels that no WebAssembly module of this version has "
+                f"({module_name(modes)}): leave them as they are, or let the scene run with atmosbox live {scene}."
+            )
+        raise EngineError(problem)
+    return path.read_bytes()

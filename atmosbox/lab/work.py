@@ -1,0 +1,35 @@
+"""The arguments of what a page calls, by the names of `kernels.kernel_table`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from atmosbox.lab.bench import Bench
+
+__all__ = ["arguments"]
+
+
+def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
+    """Return the arguments of the kernels of a box by name.
+
+    Examples
+    --------
+    >>> from atmosbox.lab.bench import bench
+    >>> from atmosbox.lab.kernels.kernel_table import kernels
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> box = bench(prepare("temperature", {"molecules": 20}))
+    >>> set(arguments(box)) == set(kernels(box.modes))
+    True
+    """
+    gas, ascent, book, gauges = box.gas, box.ascent, box.book, box.gauges
+    return {
+        "place": (gas, book),
+        "pass_time": (gas, ascent, book, 0.0, 0),
+        "begin": (gas, ascent, book, gauges),
+        "sample": (gas, book, gauges),
+        "end_frame": (gas, ascent, book, gauges),
+        "note_frame": (gas, gauges, box.speeds, box.layers),
+        "begin_averages_anew": (box.speeds, box.layers),
+        "look": (gas, book, box.sight),
+        "warm_walls": (gas.walls, 1.0),
+    }

@@ -1,0 +1,80 @@
+// The engine of a lab: memory, kernels by name, tables of theory, and series that can grow for ever.
+
+"use strict";
+
+const TYPES = { float64: Float64Array, int64: BigInt64Array, uint8: Uint8Array, uint16: Uint16Array, uint32: Uint32Array,
+  uint64: BigUint64Array, float32: Float32Array, int32: Int32Array };
+const MOST = 4000; // points of a series; then every second one goes
+
+const bytesOf = (text) => Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
+const inflated = async (bytes) =>
+  new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
+
+// The kernels in their memory.
+class Machine {
+  static async of({ plan, module, image }) {
+    const memory = new WebAssembly.Memory({ initial: Math.ceil(plan.size / 65536) });
+    const { instance } = await WebAssembly.instantiate(await inflated(bytesOf(module)), { env: { memory } });
+    return Object.assign(new Machine(), { memory, plan, kernels: instance.exports, view: new DataView(memory.buffer),
+      stored: await inflated(bytesOf(image)) });
+  }
+
+  // Write the box as it was at its start.
+  restore() {
+    const all = new Uint8Array(this.memory.buffer);
+    all.fill(0, this.plan.base);
+    let from = 0;
+    for (const [place, length] of this.plan.pieces) {
+      all.set(this.stored.subarray(from, from + length), place);
+      from += length;
+    }
+  }
+
+  array(name) {
+    const [place, length, type] = this.plan.arrays[name];
+    return new TYPES[type](this.memory.buffer, place, length);
+  }
+
+  set(kernel, argument, value) {
+    const place = this.plan.slots[kernel][argument];
+    if (typeof value === "bigint") this.view.setBigInt64(place, value, true);
+    else this.view.setFloat64(place, value, true);
+  }
+
+  call(kernel) {
+    const block = this.plan.blocks[kernel];
+    if (this.kernels[kernel](block)) throw new Error(`${kernel} has failed`);
+    return Number(this.view.getBigInt64(block, true));
+  }
+}
+
+// A row of a table between two others.
+function between({ grid, rows }, value) {
+  let high = grid.findIndex((each) => each >= value);
+  if (high <= 0) return rows[high === 0 ? 0 : rows.length - 1];
+  const low = high - 1, share = (value - grid[low]) / (grid[high] - grid[low]);
+  const mix = (a, b) => (Array.isArray(a) ? a.map((each, place) => mix(each, b[place])) : a + share * (b - a));
+  return Object.fromEntries(Object.keys(rows[low]).map((name) => [name, mix(rows[low][name], rows[high][name])]));
+}
+
+const brief = (value) => (Number.isFinite(value) ? Number(value.toPrecision(7)) : null);
+
+// Series that can grow for ever, in so many points as a graph can show.
+class Trace {
+  constructor() {
+    Object.assign(this, { rows: [], every: 1, count: 0, sent: 0, reset: true });
+  }
+
+  add(row) {
+    this.count += 1;
+    if (this.count % this.every) return;
+    this.rows.push(row);
+    if (this.rows.length <= MOST) return;
+    this.rows = this.rows.filter((_, place) => place % 2);
+    Object.assign(this, { every: 2 * this.every, sent: 0, reset: true });
+  }
+
+  column(name, from = 0) {
+    return this.rows.slice(from).map((row) => brief(row[name]));
+  }
+}

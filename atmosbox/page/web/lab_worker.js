@@ -1,0 +1,284 @@
+// The box in a worker, which sends the same messages as `atmosbox live`. It stands behind lab_machine.js, in one script.
+//
+// Nothing of the physics stands here. What a kernel returns, and where its numbers are, the plan says, which Python has
+// written; so do the factors from the units of the engine to SI, and the curves of theory, which are read off tables.
+
+const PERIOD = 1000 / 60, SHARE = 0.8; // ms between two pictures, and the share of them that the engine may take
+const MEASURE = 250, STATE = 500; // ms between two messages
+const EVENTS = 4000; // between two looks at the clock
+const FRAMES = 20; // that a gauge takes the mean of
+const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
+const DRAG = 1500; // ms within which a slider that moves is one change
+const STEP = 0.04; // s of a class that one step shows
+const SLOWEST = 0.25, FASTEST = 16;
+const [DONE, BUSY, STALLED] = [0, 1, 2];
+
+const say = (message) => postMessage(message);
+const refuse = (text) => say({ type: "note", level: "error", text });
+
+class Box {
+  constructor(machine, told) {
+    Object.assign(this, { machine, plan: machine.plan, told, playing: false, pace: 1, watched: true, turned: [] });
+    this.begin();
+    this.greet();
+    const beat = () => {
+      const begun = performance.now();
+      this.beat(begun);
+      setTimeout(beat, Math.max(0, PERIOD - (performance.now() - begun)));
+    };
+    beat();
+  }
+
+  // ---------------------------------------------------------------- a box
+
+  begin() {
+    const { machine } = this;
+    machine.restore();
+    if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
+    machine.call("begin");
+    machine.call("begin_averages_anew");
+    Object.assign(this, { now: 0, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],
+      trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
+    this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
+  }
+
+  greet() {
+    say({ type: "stage", ...this.told, controls: this.controls(), state: this.state() });
+    this.look();
+    say(this.state());
+  }
+
+  controls() {
+    return this.told.controls.map((each) => ({ ...each, value: this.knobs[each.name] }));
+  }
+
+  state() {
+    const reading = this.machine.array("gauges.reading"), { pictures } = this;
+    const rate = pictures.length > 2 ? (pictures.length - 1) / (pictures.at(-1) - pictures[0]) * 1000 : 0;
+    return { type: "state", playing: this.playing, pace: this.pace, recording: null, time: this.now * this.plan.time,
+      frame: this.frame, seed: this.told.stage.seed, finished: this.finished, ledger: reading[this.plan.ledger],
+      molecules: this.plan.molecules, rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
+      undo: this.past.length > 0 };
+  }
+
+  // The temperatures of the walls now [K].
+  walls() {
+    const found = this.trace.rows.at(-1) ?? {};
+    return WALLS.map((wall, place) => brief(found[`wall_temperature[${wall}]`] ?? NaN) ?? this.told.stage.box.wall_temperature[place]);
+  }
+
+  // What the gauges say: on a way what was measured last, else the mean of some frames, as molecules are few.
+  gauges() {
+    const rows = this.trace.rows.slice(this.plan.ends ? -1 : -FRAMES);
+    if (!rows.length) return [];
+    return this.plan.gauges.map(({ name, variable, unit, factor, offset }) => {
+      const mean = rows.reduce((sum, row) => sum + row[variable], 0) / rows.length;
+      return { name, unit, value: Number((mean * factor + offset).toPrecision(4)) };
+    });
+  }
+
+  // ---------------------------------------------------------------- time
+
+  // The time of a sample of the frame that is under way.
+  moment() {
+    const { frame: length, samples } = this.plan;
+    return this.sample === samples ? (this.frame + 1) * length : (this.frame + this.sample / samples) * length;
+  }
+
+  // Let time pass, until then or until the clock says so.
+  pass(goal, deadline) {
+    const { machine } = this;
+    while (this.now < goal) {
+      const due = this.moment(), until = Math.min(goal, due);
+      machine.set("pass_time", "3", until);
+      machine.set("pass_time", "4", BigInt(EVENTS));
+      const passed = machine.call("pass_time");
+      if (passed === BUSY) {
+        if (performance.now() > deadline) return;
+        continue;
+      }
+      if (passed !== DONE) {
+        this.playing = false;
+        this.failed = true;
+        refuse(passed === STALLED ? "The box cannot go on: events pile up without end. Begin anew."
+          : "The box cannot go on: more molecules have come together than its cells have room for. Begin anew.");
+        return;
+      }
+      this.now = until;
+      if (until === due && !this.measure()) return;
+      if (performance.now() > deadline) return;
+    }
+  }
+
+  // Let the instruments sample the box; tell whether to go on.
+  measure() {
+    const { machine, plan } = this;
+    machine.call("sample");
+    this.sample += 1;
+    if (this.sample <= plan.samples) return true;
+    machine.call("end_frame");
+    Object.assign(this, { frame: this.frame + 1, sample: 1, fresh: true });
+    if (this.frame - this.since > plan.settle) machine.call("note_frame");
+    const reading = machine.array("gauges.reading"), row = {};
+    for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
+    for (const { along, ...table } of plan.tables) {
+      for (const [name, value] of Object.entries(between(table, row[along]))) if (!Array.isArray(value)) row[name] = value;
+    }
+    this.trace.add(row);
+    if (!plan.ends || this.frame < plan.frames) return true;
+    Object.assign(this, { playing: false, finished: true });
+    say({ type: "note", level: "info", text: "The parcel has come to the end of its way, or begin anew." });
+    return false;
+  }
+
+  // ---------------------------------------------------------------- what is shown
+
+  beat(now) {
+    const passed = Math.min(now - (this.before ?? now), 100) / 1000;
+    this.before = now;
+    if (!this.playing || !this.watched) return;
+    this.pass(this.now + passed * this.plan.rate * this.pace, now + SHARE * PERIOD);
+    this.look();
+    this.pictures = this.pictures.filter((time) => time > now - 2000).concat(now);
+    if (now - this.measured > MEASURE) {
+      this.tell();
+      this.measured = now;
+    }
+    if (now - this.stated > STATE || !this.playing) {
+      say(this.state());
+      this.stated = now;
+    }
+  }
+
+  // Send where everything is: see atmosbox/page/frame.py.
+  look() {
+    const { machine, plan } = this;
+    machine.call("look");
+    const place = machine.array("sight.place"), colour = machine.array("sight.colour"), count = colour.length;
+    const buffer = new ArrayBuffer(32 + 8 * count + 4), view = new DataView(buffer);
+    view.setUint32(0, (this.sequence += 1), true);
+    view.setFloat64(4, this.now * plan.time, true);
+    machine.array("sight.length").forEach((side, axis) => view.setFloat32(12 + 4 * axis, side * plan.length, true));
+    view.setUint32(24, count, true);
+    view.setFloat32(28, plan.fastest, true);
+    new Uint16Array(buffer, 32, 3 * count).set(place);
+    new Uint8Array(buffer, 32 + 6 * count, count).set(colour);
+    postMessage(buffer, [buffer]);
+  }
+
+  // Send what is new to the graphs.
+  tell() {
+    const { plan, trace, machine } = this;
+    if (!this.fresh) return;
+    this.fresh = false;
+    const values = { ...plan.fixed }, last = trace.rows.at(-1) ?? {};
+    for (const [name, array, from, count, factor] of plan.profiles) {
+      const shown = Array.from(machine.array(array).subarray(from, from + count), (value) => brief(value * factor));
+      if (shown.some((value) => value !== null)) values[name] = shown;
+    }
+    for (const { along, ...table } of plan.tables) {
+      for (const [name, row] of Object.entries(between(table, last[along]))) if (Array.isArray(row)) values[name] = row.map(brief);
+    }
+    if (plan.whole) {
+      for (const name of Object.keys(last)) values[name] = trace.column(name);
+    } else {
+      const told = Object.keys(last).filter((name) => name !== "elapsed_time");
+      say({ type: "series", reset: trace.reset, time: trace.column("elapsed_time", trace.sent),
+        values: Object.fromEntries(told.map((name) => [name, trace.column(name, trace.sent)])) });
+      Object.assign(trace, { sent: trace.rows.length, reset: false });
+    }
+    if (Object.keys(values).length) say({ type: "arrays", values });
+  }
+
+  // ---------------------------------------------------------------- what the page asks for
+
+  obey(message) {
+    const { type, value, name } = message;
+    if (type === "play") {
+      if (this.failed || this.finished) this.again();
+      this.playing = true;
+    } else if (type === "pause") this.playing = false;
+    else if (type === "step") {
+      this.playing = false;
+      this.pass(this.now + STEP * this.plan.rate * this.pace, Infinity);
+      this.look();
+      this.tell();
+    } else if (type === "reset") this.again();
+    else if (type === "pace") this.pace = Math.min(Math.max(Number(value) || 1, SLOWEST), FASTEST);
+    else if (type === "set") this.turn(name, value);
+    else if (type === "undo") this.undo();
+    else if (type === "save") this.save();
+    else if (type === "watched") this.watched = message.is;
+    else if (type === "frames") {
+      while (this.frame < value && !this.failed) this.pass(this.moment(), Infinity);
+      this.look();
+      this.tell();
+    } else if (type === "digest") this.digest();
+    say(this.state());
+  }
+
+  again() {
+    this.begin();
+    this.greet();
+  }
+
+  turn(name, asked) {
+    const control = this.told.controls.find((each) => each.name === name);
+    const value = typeof asked === "string" && asked.trim() === "" ? NaN : Number(asked);
+    if (!control || !(value >= control.low && value <= control.high)) {
+      refuse(control ? `${name} = ${asked} is no number from ${control.low} to ${control.high} ${control.unit}: give one of these.`
+        : `${name} is nothing that can be changed here.`);
+      return;
+    }
+    const last = this.past.at(-1), now = performance.now();
+    if (last?.name === name && now - last.when < DRAG) last.when = now;
+    else this.past.push({ name, value: this.knobs[name], when: now });
+    if (this.past.length > 200) this.past.shift();
+    this.act(control, value);
+  }
+
+  act(control, value) {
+    const { name, unit } = control, knob = this.plan.knobs[name];
+    this.machine.set(knob.kernel, knob.argument, value * knob.factor + knob.offset);
+    this.machine.call(knob.kernel);
+    this.machine.call("begin_averages_anew");
+    this.since = this.frame + 1;
+    this.knobs[name] = value;
+    this.turned.push(`# at time ${this.now * this.plan.time}: ${name} = ${value} ${unit}`);
+    if (this.turned.length > 5000) this.turned.shift();
+    say({ type: "controls", controls: this.controls() });
+  }
+
+  undo() {
+    const last = this.past.pop();
+    if (last) this.act(this.told.controls.find(({ name }) => name === last.name), last.value);
+  }
+
+  save() {
+    const { rows, every } = this.trace, { command } = this.plan, names = Object.keys(rows[0] ?? {});
+    const about = this.turned.length ? [`# ${command}`, "# begins like this run, in which then by hand", ...this.turned]
+      : [`# ${command}`, "# repeats this run"];
+    if (every > 1) about.push(`# every ${every}th frame`);
+    const lines = [...about, "# all in SI units; elapsed_time in the unit of the page", names.join(","),
+      ...rows.map((row) => names.map((name) => row[name]).join(","))];
+    say({ type: "file", name: `${this.told.stage.scene}-lab.csv`, text: `${lines.join("\n")}\n` });
+  }
+
+  async digest() {
+    const parts = this.plan.state.map((name) => { const a = this.machine.array(name); return new Uint8Array(a.buffer, a.byteOffset, a.byteLength); });
+    const found = await crypto.subtle.digest("SHA-256", await new Blob(parts).arrayBuffer());
+    say({ type: "digest", sha256: Array.from(new Uint8Array(found), (byte) => byte.toString(16).padStart(2, "0")).join("") });
+  }
+}
+
+let box = null;
+
+onmessage = async ({ data }) => {
+  try {
+    if (data.type === "begin") box = new Box(await Machine.of(data), data.plan.told);
+    else box?.obey(data);
+  } catch (error) {
+    refuse(`The engine of this page has stopped: ${error.message}`);
+    console.error(error);
+  }
+};

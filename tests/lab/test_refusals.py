@@ -1,0 +1,23 @@
+"""What cannot run in a page is refused in one sentence that says what to use instead."""
+
+import pytest
+
+from atmosbox.errors import SettingError
+from atmosbox.lab import save_lab
+from atmosbox.simulation.preparation import prepare
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings", "engine", "reason"),
+    [
+        ("condensation", {"molecules": 500}, None, "liquid water"),
+        ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
+        ("lifting-dry", {"molecules": 100}, None, "piston"),
+        ("atmosphere", {"start": "uniform"}, None, "start=equilibrium"),
+    ],
+)
+def test_a_box_without_a_module_names_the_reason_and_the_way_out(tmp_path, scene, settings, engine, reason):
+    with pytest.raises(SettingError, match=reason) as refused:
+        save_lab(prepare(scene, settings, engine=engine), tmp_path / "lab.html")
+    assert f"atmosbox live {scene}" in str(refused.value)
+    assert not list(tmp_path.iterdir())

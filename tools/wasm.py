@@ -1,0 +1,223 @@
+"""Compile the kernels of the lab to WebAssembly: one module for each set of modes that the shipped scenes need.
+
+    python tools/wasm.py            # all of them, into atmosbox/lab/modules/
+    python tools/wasm.py --check    # say which are stale, and fail if any is
+
+numba makes LLVM code of the kernels, for the processor it runs on; here that code is taken before it is optimised,
+given the data layout of a machine of 32-bit addresses, and one more function for each kernel, which reads the
+arguments from a block in memory. LLVM then makes WebAssembly of it, and the linker of ``ziglang`` a module that imports
+memory, and nothing else. ``pip install "atmosbox[lab-build]"`` brings the linker; only this script needs it.
+"""
+
+import argparse
+import gzip
+import importlib
+import multiprocessing
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import llvmlite.binding as llvm
+import numba
+from numba.core import codegen, compiler
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
+
+from atmosbox.engine.core.constant_modes import KernelCompiler
+from atmosbox.engine.core.state import Modes
+from atmosbox.lab.bench import bench
+from atmosbox.lab.kernels.kernel_table import kernels
+from atmosbox.lab.wasm_module import FOLDER, SCENES, module_name, source_stamp, stamp_of
+from atmosbox.lab.work import arguments
+from atmosbox.simulation.preparation import prepare
+
+TRIPLE = "wasm32-unknown-unknown"
+FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint,+mutable-globals,+multivalue,+simd128"
+STACK = 65_536
+
+
+class Source:
+    """The LLVM code of kernels as numba writes it: in this block numba neither optimises it nor makes machine code.
+
+    What numba has made machine code of carries the marks of this machine, and must not be compiled for another one. So
+    boxes are built in a process of their own, and here no kernel can be called.
+    """
+
+    def __init__(self) -> None:
+        self._text: dict[str, str] = {}
+        self._usual: list[tuple[type, str, object]] = []
+
+    def __enter__(self) -> "Source":
+        def keep(library) -> None:
+            self._text[library.name] = str(library._final_module)
+
+        nothing = {
+            (codegen.CPUCodeLibrary, "_optimize_functions"): lambda library, module: None,
+            (codegen.CPUCodeLibrary, "_optimize_final_module"): keep,
+            (codegen.JITCPUCodegen, "_add_module"): lambda made, module: None,
+            (codegen.JITCPUCodegen, "set_env"): lambda made, name, env: None,
+            (codegen.JITCodeLibrary, "_finalize_specific"): lambda library: None,
+            (codegen.JITCodeLibrary, "get_pointer_to_function"): lambda library, name: 1,
+        }
+        for (owner, name), instead in nothing.items():
+            self._usual.append((owner, name, getattr(owner, name)))  # fails where numba has changed
+            setattr(owner, name, instead)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for owner, name, usual in self._usual:
+            setattr(owner, name, usual)
+
+    def of(self, kernel, types) -> tuple[str, str]:
+        """Return the code of a kernel for some types of arguments, with all that it calls, and its name there."""
+        flags = compiler.Flags()
+        flags.no_cpython_wrapper = True
+        flags.no_cfunc_wrapper = True
+        flags.nrt = False
+        flags.error_model = "numpy"
+        cpu_target.typing_context.refresh()
+        cpu_target.target_context.refresh()
+        made = compiler.compile_extra(
+            cpu_target.typing_context,
+            cpu_target.target_context,
+            kernel.py_func,
+            types,
+            None,
+            flags,
+            {},
+            pipeline_class=KernelCompiler,
+        )
+        with global_compiler_lock:
+            made.library._ensure_finalized()
+        return self._text[made.library.name], made.fndesc.llvm_func_name
+
+
+def machine() -> llvm.TargetMachine:
+    """Return what makes WebAssembly."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    return llvm.Target.from_triple(TRIPLE).create_target_machine(cpu="generic", features=FEATURES, opt=3)
+
+
+def object_of(text: str, native: str, export: str, target: llvm.TargetMachine) -> bytes:
+    """Return one kernel as an object file: a function that takes the place of its arguments in memory."""
+    text = re.sub(r'target triple = ".*"', f'target triple = "{TRIPLE}"', text)
+    text = re.sub(r'target datalayout = ".*"', f'target datalayout = "{target.target_data}"', text)
+    text = re.sub(r'"target-(cpu|features)"="[^"]*"', "", text)
+    text = with_root(text) + door(text, native, export)
+    module = llvm.parse_assembly(text)
+    for function in module.functions:
+        if not function.is_declaration:
+            function.linkage = "external" if function.name == export else "internal"
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = "internal"
+    module.verify()
+    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    options.loop_vectorization = options.slp_vectorization = False
+    builder = llvm.create_pass_builder(target, options)
+    builder.getModulePassManager().run(module, builder)
+    return target.emit_object(module)
+
+
+def with_root(text: str) -> str:
+    """Return code in which the square root is the instruction that it is."""
+    root = (
+        "define internal double @sqrt(double %x) alwaysinline {\n"
+        "  %r = call double @llvm.sqrt.f64(double %x)\n  ret double %r\n}"
+    )
+    text, found = re.subn(r"^declare double @sqrt\(double[^)]*\).*$", root, text, flags=re.M)
+    missing = found and "declare double @llvm.sqrt.f64" not in text
+    return text + ("\ndeclare double @llvm.sqrt.f64(double)\n" if missing else "")
+
+
+def door(text: str, native: str, export: str) -> str:
+    """Return a function that calls a kernel with the arguments that stand in a block of memory: see `memory_image`."""
+    head = re.search(rf'^define [^@]*@"?{re.escape(native)}"?\((.*?)\)[^()]*\{{?$', text, re.M)
+    kinds = [each.strip().split()[0] for each in re.findall(r"(?:\([^()]*\)|[^,()])+", head.group(1))]
+    lines, call = [], []
+    for k, kind in enumerate(kinds):
+        # the first two are where the answer goes, and a place for an exception, of which there is none
+        offset = (0, 128)[k] if k < 2 else 256 + 8 * (k - 2)
+        lines.append(f"  %p{k} = getelementptr i8, ptr %block, i32 {offset}")
+        if k >= 2:
+            lines.append(f"  %v{k} = load {kind}, ptr %p{k}")
+        call.append(f"ptr %p{k}" if k < 2 else f"{kind} %v{k}")
+    body = "\n".join([*lines, f'  %r = call i32 @"{native}"({", ".join(call)})', "  ret i32 %r"])
+    return f"\ndefine i32 @{export}(ptr %block) {{\n{body}\n}}\n"
+
+
+def link(objects: dict[str, bytes]) -> bytes:
+    """Return the module that exports all of these, and the end of its own memory."""
+    zig = Path(importlib.import_module("ziglang").__file__).parent / "zig"
+    with tempfile.TemporaryDirectory() as folder:
+        files = []
+        for name, content in objects.items():
+            files.append(Path(folder) / f"{name}.o")
+            files[-1].write_bytes(content)
+        made = Path(folder) / "made.wasm"
+        options = ["--no-entry", "--import-memory", "--stack-first", "-z", f"stack-size={STACK}", "--strip-all"]
+        exports = [f"--export={name}" for name in (*objects, "__heap_base")]
+        command = [zig, "wasm-ld", *options, "--gc-sections", *exports, *files, "-o", made]
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+        if done.returncode:
+            raise SystemExit(done.stderr)
+        return made.read_bytes()
+
+
+def needed(scenes: list[str]) -> dict[str, tuple[Modes, dict[str, tuple]]]:
+    """Return what is to be compiled for some scenes: by the name of a module its modes, and the types of arguments."""
+    found = {}
+    for scene in scenes:
+        box = bench(prepare(scene, SCENES[scene]))
+        types = {name: tuple(map(numba.typeof, given)) for name, given in arguments(box).items()}
+        found[module_name(box.modes)] = box.modes, types
+    return found
+
+
+def module_of(modes: Modes, types: dict[str, tuple]) -> bytes:
+    """Return the module for one set of modes."""
+    target = machine()
+    with Source() as source:
+        works = kernels(modes)
+        return link({name: object_of(*source.of(works[name], types[name]), name, target) for name in types})
+
+
+def main() -> None:
+    """Compile what is stale, or all."""
+    asked = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    asked.add_argument("--check", action="store_true", help="only say which modules are stale")
+    asked.add_argument("scenes", nargs="*", default=[*SCENES], help="only those that these scenes need")
+    options = asked.parse_args()
+    stamp = source_stamp()
+    if options.check:
+        stale = [path.name for path in FOLDER.glob("*.wasm.gz") if stamp_of(path.read_bytes()) != stamp]
+        sys.exit(f"stale: {', '.join(stale)}; run python tools/wasm.py" if stale else 0)
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as apart:
+        wanted = apart.submit(needed, options.scenes).result()
+    FOLDER.mkdir(exist_ok=True)
+    for path in FOLDER.glob("*.wasm.gz"):
+        if stamp_of(path.read_bytes()) != stamp:
+            path.unlink()
+    for name, (modes, types) in wanted.items():
+        begun = time.perf_counter()
+        content = module_of(modes, types)
+        path = FOLDER / f"{name}.wasm.gz"
+        path.write_bytes(gzip.compress(content + stamped(stamp), 9, mtime=0))
+        size = path.stat().st_size / 1000
+        print(f"{name}: {len(content) / 1000:.0f} kB, {size:.0f} kB in the wheel, {time.perf_counter() - begun:.0f} s")
+
+
+def stamped(stamp: str) -> bytes:
+    """Return a section of a module that says which sources it was made of."""
+    name = b"sources"
+    body = bytes([len(name)]) + name + stamp.encode()
+    return bytes([0, len(body)]) + body
+
+
+if __name__ == "__main__":
+    main()
