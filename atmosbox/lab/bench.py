@@ -14,6 +14,7 @@ from atmosbox.engine.exact.rows import MOST, row_stride
 from atmosbox.errors import SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
 from atmosbox.lab.kernels.gauging import Gauges, Reading
+from atmosbox.lab.kernels.laying_out import Layout
 from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
 from atmosbox.scene.instruments import Air, Discs, Layers, Speeds
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["Bench", "bench", "refuse"]
 
 _CORNERS = 4
+_SPARE = 1.5
+_PLACES = 32
 
 
 class Bench(NamedTuple):
@@ -43,6 +46,7 @@ class Bench(NamedTuple):
     gas: Gas
     ascent: Any
     book: Book
+    layout: Layout
     gauges: Gauges
     speeds: Average
     layers: Average
@@ -71,8 +75,8 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = "has liquid water, whose laws are not compiled for the page"
     elif not parcel._modes.rows:
         why = "has cells too crowded, or too small, for the rows that the page works with"
-    elif parcel._driver is not None:
-        why = "has a piston, under which cells are laid out anew, and that is not compiled for the page"
+    elif parcel._driver is not None and not parcel._ascends:
+        why = "moves its piston in a way that is not compiled for the page"
     if why is not None:
         raise SettingError(
             "scene", prepared.scene, why, f"let it run with atmosbox live {prepared.scene}, or show a run with view"
@@ -109,29 +113,61 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         setup,
         _gas(parcel),
         _ascent(parcel),
-        Book(np.array([parcel._now]), np.array([parcel._cells.stride]), _longest(parcel), parcel._epoch_length),
+        Book(np.array([parcel._now]), parcel._epoch_length),
+        _layout(parcel),
         _gauges(setup),
         *_averages(setup),
         _sight(parcel, setup.scale, stage),
     )
 
 
-def _longest(parcel: Any) -> int:
-    return row_stride(MOST, mixed=parcel._modes.mixed)
+def _layout(parcel: Any) -> Layout:
+    """Return how the cells are laid out now, with memory for other cells."""
+    c = parcel._cells
+    shape = [c.stride, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
+    most = int(_SPARE * max(shape[1:4])) + 2
+    places = (_PLACES, MOST)
+    shortest, longest = (row_stride(number, mixed=parcel._modes.mixed) for number in places)
+    return Layout(
+        np.array(shape),
+        np.array([float(parcel._filled)]),
+        np.zeros(3),
+        np.zeros((3, most + 1)),
+        float(parcel._size_radius[0]),
+        shortest,
+        longest,
+    )
 
 
 def _gas(parcel: Any) -> Gas:
-    """Return the gas before its molecules are placed among the cells, with memory for the longest rows there can be."""
-    cells, number = parcel._cells, parcel.number
-    row = aligned_records(cells.number_x * cells.number_y * cells.number_z * _longest(parcel), np.dtype("u4"))
-    row = row.view(np.ndarray)
+    """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if they move."""
+    cells, number, copies = parcel._cells, parcel.number, parcel._cells.copies
+    many = cells.number_x * cells.number_y * cells.number_z
+    if parcel._modes.piston:
+        many = int(_SPARE * many)
+        most = int(_SPARE * max(cells.number_x, cells.number_y, cells.number_z)) + 2
+        cells = cells._replace(boundary=_larger(cells.boundary, (1, 3, 2 * most), math.inf))
+        copies = copies._replace(
+            centre=_larger(copies.centre, (3, most), 0.0),
+            horizon=_larger(copies.horizon, (most,), math.inf),
+            slack=_larger(copies.slack, (most, 3), math.inf),
+            room=_larger(copies.room, (most,), 1.0),
+        )
+    row = aligned_records(many * row_stride(MOST, mixed=parcel._modes.mixed), np.dtype("u4")).view(np.ndarray)
     events = aligned_records(number, EVENT)
     slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
     place = events.view(np.ndarray).view(np.uint8)
-    copies = cells.copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
+    copies = copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
     cells = cells._replace(row=row, slot=slot, copies=copies)
     gas: Gas = parcel._gas()._replace(events=events, cells=cells, calendar=new_calendar(number))
     return gas
+
+
+def _larger(table: Any, shape: tuple[int, ...], rest: float) -> Any:
+    """Return a table in memory of another shape; the rest of it says nothing."""
+    made = np.full(shape, rest)
+    made[tuple(slice(0, number) for number in table.shape)] = table
+    return made
 
 
 def _ascent(parcel: Any) -> Any:

@@ -19,6 +19,7 @@ from atmosbox.live.picture import Picture
 from atmosbox.live.summary import while_it_runs
 from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
+from atmosbox.scene.instruments import Lift
 from atmosbox.simulation.preparation import Prepared
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "g
 """What makes two boxes the same, to the last bit."""
 
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_WAY = 401
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
@@ -184,17 +186,25 @@ def _fixed(box: Bench) -> dict[str, Any]:
 
 def _knobs(setup: Setup) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and what each does with its value."""
-    kept = [knob for knob in setup.knobs if knob.name == "temperature"]
-    numbers = {}
+    kept = [knob for knob in setup.knobs if knob.name in ("temperature", "altitude")]
+    numbers: dict[str, Any] = {}
     for knob in kept:
         zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)
-        numbers[knob.name] = {
-            "kernel": "warm_walls",
-            "argument": "1",
-            "factor": (one - zero) / setup.scale.temperature,
-            "offset": zero / setup.scale.temperature,
-        }
+        if knob.name == "temperature":
+            unit = setup.scale.temperature
+            told = {"kernel": "warm_walls", "argument": "1", "factor": (one - zero) / unit, "offset": zero / unit}
+        else:  # a height becomes a moment of the way
+            told = {"kernel": "lead", "argument": "3", "factor": one - zero, "offset": zero, **_moments(setup)}
+        numbers[knob.name] = told
     return kept, numbers
+
+
+def _moments(setup: Setup) -> dict[str, Any]:
+    """Return at which moment of its way a parcel is how high [m]."""
+    moments = np.linspace(0.0, setup.duration, _WAY)
+    around = next(each.environment for each in setup.instruments if isinstance(each, Lift))
+    heights = [around.height(t * setup.scale.time) for t in moments.tolist()]
+    return {"grid": plain(heights), "curves": {"to": plain(moments)}}
 
 
 def _command(prepared: Prepared) -> str:

@@ -104,7 +104,7 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
     --------
     >>> made = image({"double": (np.arange(3.0), 2)}, {"numbers": np.arange(1)})
     >>> made.blocks["double"] % 64, made.slots["double"]
-    (0, {'1': 131400})
+    (0, {'1': 131512})
     """
     arrays = [part for given in works.values() for kind, part, _ in _parts(given, "") if kind == "array"]
     known = [(name, part) for kind, part, name in _parts(tuple(named.values()), "") if kind == "array"]

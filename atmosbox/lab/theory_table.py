@@ -65,8 +65,8 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     Returns
     -------
     list of dict
-        ``along`` the variable that a table goes along, ``grid`` its values, and ``rows`` the values of the curves at
-        each of them; between two the page takes the straight line.
+        ``along`` the variable that a table goes along, ``grid`` its values, and ``curves`` by name their values at each
+        of them; between two the page takes the straight line.
 
     Examples
     --------
@@ -75,12 +75,12 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> scene = prepare("temperature", {"molecules": 20})
     >>> (warmth,) = tables(scene, build(scene), short_run(scene))
-    >>> warmth["along"], warmth["rows"][0]["air_temperature_theory"] == warmth["grid"][0]
+    >>> warmth["along"], warmth["curves"]["air_temperature_theory"] == warmth["grid"]
     ('wall_temperature[z_low]', True)
     """
     lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
     if lift is not None:
-        return [_way(setup, lift), _adiabat(setup, lift, prepared)]
+        return [_way(setup, lift), _adiabat(setup, lift)]
     return [_walls(prepared, setup, found)]
 
 
@@ -91,14 +91,16 @@ def _walls(prepared: Prepared, setup: Setup, found: xr.Dataset) -> dict[str, Any
         grid = [0.0]
     else:
         grid = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS).tolist()
-    rows = []
+    curves: dict[str, list[Any]] = {}
     for kelvin in grid:
         here = found
         if knob is not None:
             here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
         told = prepared.module.theory(here, prepared.settings)
-        rows.append({name: _at_last(np.asarray(values), found) for name, values in told.items()})
-    return {"along": "elapsed_time" if knob is None else "wall_temperature[z_low]", "grid": plain(grid), "rows": rows}
+        for name, values in told.items():
+            curves.setdefault(name, []).append(_at_last(np.asarray(values), found))
+    along = "elapsed_time" if knob is None else "wall_temperature[z_low]"
+    return {"along": along, "grid": plain(grid), "curves": curves}
 
 
 def _at_last(values: Any, found: xr.Dataset) -> Any:
@@ -111,22 +113,19 @@ def _at_last(values: Any, found: xr.Dataset) -> Any:
 def _way(setup: Setup, lift: Lift) -> dict[str, Any]:
     """Return height, pressure and temperature of the environment at each moment of the way."""
     moments = np.linspace(0.0, setup.duration, _WAY)
-    around, second = lift.environment, setup.scale.time
-    rows = [
-        {
-            "parcel_height": float(around.height(t * second)),
-            "environment_temperature": float(around.temperature(t * second)),
-            "environment_pressure": float(around.pressure(t * second)),
-        }
-        for t in moments.tolist()
-    ]
-    return {"along": "moment", "grid": moments.tolist(), "rows": rows}
+    around, seconds = lift.environment, (moments * setup.scale.time).tolist()
+    curves = {
+        "parcel_height": plain([around.height(t) for t in seconds]),
+        "environment_temperature": plain([around.temperature(t) for t in seconds]),
+        "environment_pressure": plain([around.pressure(t) for t in seconds]),
+    }
+    return {"along": "moment", "grid": plain(moments), "curves": curves}
 
 
-def _adiabat(setup: Setup, lift: Lift, prepared: Prepared) -> dict[str, Any]:
+def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
     """Return the temperature of the adiabat at each pressure that the parcel may come to."""
-    around, second = lift.environment, setup.scale.time
-    ends = [around.pressure(t * second) for t in np.linspace(0.0, setup.duration, _WAY)]
-    pressures = np.geomspace(0.8 * min(ends), 1.25 * max(ends), _WAY)
-    rows = [{"adiabat_temperature": float(around.adiabat(p))} for p in pressures.tolist()]
-    return {"along": "parcel_pressure", "grid": pressures.tolist(), "rows": rows}
+    around = lift.environment
+    ends = [around.pressure(t * setup.scale.time) for t in np.linspace(0.0, setup.duration, _WAY)]
+    pressures = plain(np.geomspace(0.8 * min(ends), 1.25 * max(ends), _WAY))
+    curve = plain([around.adiabat(p) for p in pressures if p is not None])
+    return {"along": "parcel_pressure", "grid": pressures, "curves": {"adiabat_temperature": curve}}

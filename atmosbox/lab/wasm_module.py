@@ -18,6 +18,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "temperature": {},
     "elastic-collisions": {},
     "atmosphere": {"start": "equilibrium"},
+    "lifting-dry": {},
 }
 """The shipped scenes that a page can run, with the settings that they need for it."""
 

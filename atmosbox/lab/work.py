@@ -21,10 +21,11 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
     >>> set(arguments(box)) == set(kernels(box.modes))
     True
     """
-    gas, ascent, book, gauges = box.gas, box.ascent, box.book, box.gauges
-    return {
-        "place": (gas, book),
-        "pass_time": (gas, ascent, book, 0.0, 0),
+    gas, ascent, book, layout, gauges = box.gas, box.ascent, box.book, box.layout, box.gauges
+    found: dict[str, tuple[Any, ...]] = {"lead": (gas, ascent, book, 0.0)} if box.modes.ascends else {}
+    return found | {
+        "place": (gas, book, layout),
+        "pass_time": (gas, ascent, book, layout, 0.0, 0),
         "begin": (gas, ascent, book, gauges),
         "sample": (gas, book, gauges),
         "end_frame": (gas, ascent, book, gauges),

@@ -12,7 +12,7 @@ from atmosbox.simulation.preparation import prepare
     [
         ("condensation", {"molecules": 500}, None, "liquid water"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
-        ("lifting-dry", {"molecules": 100}, None, "piston"),
+        ("lifting-moist", {"molecules": 500}, None, "liquid water"),
         ("atmosphere", {"start": "uniform"}, None, "start=equilibrium"),
     ],
 )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
+from atmosbox.engine.core.course import interpolate
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH
@@ -28,6 +30,19 @@ def warm_walls(walls, kT):
 
 
 @kernel
+def lead(gas, ascent, book, towards):
+    """Let the parcel make for another moment of its plan, at its pace, and rest there: see `Course.lead`."""
+    time, lift = gas.walls.epoch[0] + book.now[0], ascent.lift
+    here = interpolate(time, lift.course_time, lift.course_moment)
+    times, moments = lift.course_time, lift.course_moment
+    times[0], moments[0] = 0.0, here
+    times[1], moments[1] = time, here
+    times[2], moments[2] = time + abs(towards - here), towards
+    times[3], moments[3] = math.inf, towards
+    return 0
+
+
+@kernel
 def begin_averages_anew(speeds, layers):
     """Forget all frames."""
     forget(speeds)
@@ -47,7 +62,8 @@ def kernels(modes: Modes) -> dict[str, Callable[..., Any]]:
     """Return the kernels for one set of modes by name."""
     pass_time, place = passing(modes)
     begin, sample, end_frame = gauging(modes)
-    return {
+    found = {"lead": lead} if modes.ascends else {}
+    return found | {
         "place": place,
         "pass_time": pass_time,
         "begin": begin,

@@ -15,24 +15,24 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Cells, Gas, Modes
 from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.rows import START, STOP, TOP_SPEED
+from atmosbox.engine.exact.turning import Ascent
+from atmosbox.lab.kernels.laying_out import LAST, NUMBER, STRIDE, choose_cells, write_cells
 
 __all__ = ["Book", "Passed", "passing"]
 
 # The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
 _DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
 _ROW_FULL, _EPOCH_OVER = Status.ROW_FULL.value, Status.EPOCH_OVER.value
+_CRUSHED, _TURNED = Status.CRUSHED.value, Status.TURNED.value
 
 
 class Book(NamedTuple):
     """What a box knows beside its gas.
 
-    ``now : (1,)`` the time that its clocks read [time]; ``stride : (1,)`` how many words the row of a cell takes now,
-    and ``longest`` how many there is memory for; ``epoch_length`` after what time the clocks begin anew [time].
+    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length`` after what time they begin anew [time].
     """
 
     now: Any
-    stride: Any
-    longest: int
     epoch_length: float
 
 
@@ -40,24 +40,23 @@ class Passed(IntEnum):
     """How far time has passed.
 
     ``DONE`` the time asked for is reached; ``BUSY`` there is more to do; ``STALLED`` events pile up without progress;
-    ``FULL`` more molecules have come together in a cell than it has memory for; ``OUTGROWN`` the box has outgrown its
-    cells.
+    ``FULL`` more molecules have come together in a cell than it has memory for; ``CRUSHED`` the piston is too low.
     """
 
     DONE = 0
     BUSY = 1
     STALLED = 2
     FULL = 3
-    OUTGROWN = 4
+    CRUSHED = 4
 
 
 @kernel
-def _with_stride(gas, stride):
-    """Return the gas with rows of so many words."""
-    c = gas.cells
+def _as_laid_out(gas, layout):
+    """Return the gas with its cells as they are now."""
+    c, shape = gas.cells, layout.shape
     cells = Cells(
-        c.row, stride, c.boundary, c.first, c.span, c.slot, c.number_x, c.number_y, c.number_z,
-        c.last_slot_x, c.last_slot_y, c.last_slot_z, c.copies,
+        c.row, shape[STRIDE], c.boundary, c.first, c.span, c.slot, shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2],
+        shape[LAST], shape[LAST + 1], shape[LAST + 2], c.copies,
     )  # fmt: skip
     return Gas(gas.molecules, gas.events, gas.kinds, cells, gas.calendar, gas.box, gas.walls, gas.tallies)
 
@@ -80,12 +79,19 @@ def _rebase(step, gas, book):
 
 
 @kernel
-def _longer_rows(gas, book, modes):
+def _fits(gas, layout):
+    """Tell whether there is memory for the rows of all cells."""
+    shape = layout.shape
+    cells = shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2]
+    return shape[STRIDE] <= layout.longest and cells * shape[STRIDE] <= gas.cells.row.size
+
+
+@kernel
+def _longer_rows(gas, layout, modes):
     """Give the rows sixteen places more, empty; tell whether there is memory for them."""
-    stride = book.stride[0] + 16 * (8 if modes.mixed else 7)
-    if stride > book.longest:
+    layout.shape[STRIDE] += 16 * (8 if modes.mixed else 7)
+    if not _fits(gas, layout):
         return False
-    book.stride[0] = stride
     copies = gas.cells.copies
     gas.cells.row[:] = 0
     copies.horizon[:] = math.inf
@@ -103,9 +109,13 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     if modes.ascends:
 
         @kernel
-        def proceed(gas, ascent, until, most):
+        def proceed(gas, ascent, layout, until, most):
             """Resolve events, and turn the piston as it is due."""
-            return advance(gas, ascent, until, most)
+            a = ascent
+            here = Ascent(
+                a.lift, a.turns, layout.filled[0], a.lowest, a.start_energy, a.gravity_work, a.freedom, a.diameter
+            )
+            return advance(_as_laid_out(gas, layout), here, until, most)
 
         @kernel
         def next_turn(gas, ascent):
@@ -115,9 +125,9 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     else:
 
         @kernel
-        def proceed(gas, ascent, until, most):
+        def proceed(gas, ascent, layout, until, most):
             """Resolve events."""
-            return advance(gas, until, most)
+            return advance(_as_laid_out(gas, layout), until, most)
 
         @kernel
         def next_turn(gas, ascent):
@@ -125,19 +135,48 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             return math.inf
 
     @kernel
-    def refilled(gas, now, book):
+    def refilled(gas, now, layout):
         """Write the copies in all rows anew, in longer rows if need be; tell whether there was memory for them."""
-        while refill(_with_stride(gas, book.stride[0]), now):
-            if not _longer_rows(gas, book, modes):
+        while refill(_as_laid_out(gas, layout), now):
+            if not _longer_rows(gas, layout, modes):
                 return False
         return True
 
     @kernel
-    def resolve(gas, ascent, book, stop, most):
+    def placed(gas, now, layout):
+        """Enter all molecules into their cells, where they plan their events; tell whether there was memory."""
+        while True:
+            gas.calendar.time[:] = math.inf
+            gas.calendar.winner[:] = 0
+            if place_all(_as_laid_out(gas, layout), now) != _ROW_FULL:
+                return True
+            if not _longer_rows(gas, layout, modes):
+                return False
+
+    if modes.piston and modes.rows and not modes.mixed and not modes.periodic and not modes.gravity:
+
+        @kernel
+        def laid_out(gas, now, layout):
+            """Choose cells for the box as it is now; tell whether that was possible."""
+            piston = gas.walls.piston
+            if not choose_cells(piston[0] + piston[1] * (now - piston[2]), gas.molecules.size, gas.box, layout):
+                return False
+            write_cells(gas, layout)
+            return _fits(gas, layout) and placed(gas, now, layout)
+
+    else:
+
+        @kernel
+        def laid_out(gas, now, layout):
+            """Tell that a box without a piston keeps its cells."""
+            return False
+
+    @kernel
+    def resolve(gas, ascent, book, layout, stop, most):
         """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
         done = 0
         while True:
-            status, some = proceed(_with_stride(gas, book.stride[0]), ascent, stop, most - done)
+            status, some = proceed(gas, ascent, layout, stop, most - done)
             done += some
             soon = gas.calendar.time[1]
             book.now[0] = max(book.now[0], min(stop, soon))
@@ -147,18 +186,23 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             if status == _BUSY:
                 return Passed.BUSY, done
             if status == _EPOCH_OVER:
-                if not refilled(gas, soon, book):
+                if not refilled(gas, soon, layout):
                     return Passed.FULL, done
             elif status == _ROW_FULL:
-                if not (_longer_rows(gas, book, modes) and refilled(gas, book.now[0], book)):
+                if not (_longer_rows(gas, layout, modes) and refilled(gas, book.now[0], layout)):
                     return Passed.FULL, done
             elif status == _STALLED:
                 return Passed.STALLED, done
+            elif status == _CRUSHED:
+                return Passed.CRUSHED, done
             else:
-                return Passed.OUTGROWN, done
+                if status == _TURNED:
+                    book.now[0] = gas.walls.piston[2]
+                if not laid_out(gas, book.now[0], layout):
+                    return Passed.FULL, done
 
     @kernel
-    def pass_time(gas, ascent, book, until, most):
+    def pass_time(gas, ascent, book, layout, until, most):
         """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
         done = 0
         while True:
@@ -173,17 +217,14 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                     continue
             if shifts:
                 goal = book.epoch_length
-            status, some = resolve(gas, ascent, book, goal, most - done)
+            status, some = resolve(gas, ascent, book, layout, goal, most - done)
             done += some
             if status != Passed.DONE or not shifts:
                 return status.value, done
 
     @kernel
-    def place(gas, book):
-        """Enter all molecules into their cells, where they plan their events; tell whether there was room."""
-        while place_all(_with_stride(gas, book.stride[0]), book.now[0]) == _ROW_FULL:
-            if not _longer_rows(gas, book, modes):
-                return Passed.FULL.value
-        return Passed.DONE.value
+    def place(gas, book, layout):
+        """Place all molecules at the start; tell how that went."""
+        return Passed.DONE.value if placed(gas, book.now[0], layout) else Passed.FULL.value
 
     return pass_time, place

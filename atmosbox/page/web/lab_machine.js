@@ -48,13 +48,13 @@ class Machine {
   }
 }
 
-// A row of a table between two others.
-function between({ grid, rows }, value) {
+// What the curves of a table say at a place of its grid: between two, the straight line.
+function between({ grid, curves }, value) {
   let high = grid.findIndex((each) => each >= value);
-  if (high <= 0) return rows[high === 0 ? 0 : rows.length - 1];
-  const low = high - 1, share = (value - grid[low]) / (grid[high] - grid[low]);
+  if (high < 0) high = grid.length - 1;
+  const low = Math.max(high - 1, 0), share = high > low ? Math.min((value - grid[low]) / (grid[high] - grid[low]), 1) : 0;
   const mix = (a, b) => (Array.isArray(a) ? a.map((each, place) => mix(each, b[place])) : a + share * (b - a));
-  return Object.fromEntries(Object.keys(rows[low]).map((name) => [name, mix(rows[low][name], rows[high][name])]));
+  return Object.fromEntries(Object.entries(curves).map(([name, values]) => [name, mix(values[low], values[high])]));
 }
 
 const brief = (value) => (Number.isFinite(value) ? Number(value.toPrecision(7)) : null);

@@ -11,7 +11,9 @@ const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
 const DRAG = 1500; // ms within which a slider that moves is one change
 const STEP = 0.04; // s of a class that one step shows
 const SLOWEST = 0.25, FASTEST = 16;
-const [DONE, BUSY, STALLED] = [0, 1, 2];
+const [DONE, BUSY] = [0, 1];
+const WHY = { 2: "events pile up without end", 3: "more molecules have come together than its cells have room for",
+  4: "the piston would crush the molecules" };
 
 const say = (message) => postMessage(message);
 const refuse = (text) => say({ type: "note", level: "error", text });
@@ -90,8 +92,8 @@ class Box {
     const { machine } = this;
     while (this.now < goal) {
       const due = this.moment(), until = Math.min(goal, due);
-      machine.set("pass_time", "3", until);
-      machine.set("pass_time", "4", BigInt(EVENTS));
+      machine.set("pass_time", "4", until);
+      machine.set("pass_time", "5", BigInt(EVENTS));
       const passed = machine.call("pass_time");
       if (passed === BUSY) {
         if (performance.now() > deadline) return;
@@ -100,8 +102,7 @@ class Box {
       if (passed !== DONE) {
         this.playing = false;
         this.failed = true;
-        refuse(passed === STALLED ? "The box cannot go on: events pile up without end. Begin anew."
-          : "The box cannot go on: more molecules have come together than its cells have room for. Begin anew.");
+        refuse(`The box cannot go on: ${WHY[passed]}. Begin anew.`);
         return;
       }
       this.now = until;
@@ -125,7 +126,7 @@ class Box {
       for (const [name, value] of Object.entries(between(table, row[along]))) if (!Array.isArray(value)) row[name] = value;
     }
     this.trace.add(row);
-    if (!plan.ends || this.frame < plan.frames) return true;
+    if (!plan.ends || this.frame !== plan.frames) return true;
     Object.assign(this, { playing: false, finished: true });
     say({ type: "note", level: "info", text: "The parcel has come to the end of its way, or begin anew." });
     return false;
@@ -195,7 +196,8 @@ class Box {
   obey(message) {
     const { type, value, name } = message;
     if (type === "play") {
-      if (this.failed || this.finished) this.again();
+      if (this.failed) this.again();
+      this.finished = false;
       this.playing = true;
     } else if (type === "pause") this.playing = false;
     else if (type === "step") {
@@ -239,11 +241,13 @@ class Box {
 
   act(control, value) {
     const { name, unit } = control, knob = this.plan.knobs[name];
-    this.machine.set(knob.kernel, knob.argument, value * knob.factor + knob.offset);
+    const asked = value * knob.factor + knob.offset;
+    this.machine.set(knob.kernel, knob.argument, knob.grid ? between(knob, asked).to : asked);
     this.machine.call(knob.kernel);
     this.machine.call("begin_averages_anew");
     this.since = this.frame + 1;
     this.knobs[name] = value;
+    if (this.finished) Object.assign(this, { playing: true, finished: false }); // it rests only because its way was at an end
     this.turned.push(`# at time ${this.now * this.plan.time}: ${name} = ${value} ${unit}`);
     if (this.turned.length > 5000) this.turned.shift();
     say({ type: "controls", controls: this.controls() });
