@@ -22,6 +22,9 @@
 `measure`       what is read off the molecules
 `course`        how far along its planned ascent a parcel is
 `lift`          a piston that follows a pressure
-`jit`           how a kernel is compiled when it is first called, and where its machine code is kept
+`jit`           how a kernel is compiled when it is first called
 `compiler`      what numba makes of it
+`kernel_cache`  where the machine code is kept, and who is told when some is made
+`by_reference`  NamedTuples that kernels hand on by reference
+`constant_modes`  the flags of a set of modes as constants
 """

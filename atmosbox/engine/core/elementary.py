@@ -128,8 +128,8 @@ def exp(x):
 
     Examples
     --------
-    >>> float(exp(1.0)), float(exp(-1000.0)), float(exp(1000.0))
-    (2.718281828459045, 0.0, inf)
+    >>> float(exp(0.0)), float(exp(-1000.0)), float(exp(1000.0))
+    (1.0, 0.0, inf)
     """
     x = min(max(x, -800.0), 800.0) if x == x else x
     k = np.rint(1.44269504088896338700e00 * x) if x == x else 0.0
@@ -181,8 +181,8 @@ def circle(turns):
 
     Examples
     --------
-    >>> tuple(float(each) for each in circle(0.25))
-    (0.0, 1.0)
+    >>> tuple(float(each) for each in circle(0.125))
+    (0.7071067811865476, 0.7071067811865476)
     """
     quarter = np.rint(4.0 * turns)
     y = turns - 0.25 * quarter  # exact, and at most an eighth
