@@ -55,14 +55,19 @@ def box(name, *, air=20, vapour=10, sides=(5.5, 5.5, 6.0), number=30, seed=9, su
     )
 
 
+def as_written(kernel):
+    """Return the Python function of a kernel: numba tells calls with other modes apart in compiled code alone."""
+    return getattr(kernel, "py_func", kernel)
+
+
 def members(parcel):
     """Return for each molecule the sorted cells in which it is listed."""
     cells, modes = parcel._cells, parcel._modes
     in_cells = [[] for _ in parcel._fields]
     for cell in range(cells.number_x * cells.number_y * cells.number_z):
         start = cell * cells.stride
-        for place in range(places(start, cells, modes)):
-            i = listed(start, place, cells, modes)
+        for place in range(as_written(places)(start, cells, modes)):
+            i = as_written(listed)(start, place, cells, modes)
             if i >= 0:
                 in_cells[i].append(cell)
     return [sorted(cells) for cells in in_cells]
@@ -75,7 +80,7 @@ def cells_it_overlaps(parcel, i):
     ranges = []
     for axis, (name, number) in enumerate(zip("xyz", (cells.number_x, cells.number_y, cells.number_z), strict=True)):
         slot = int(event[f"slot_{name}"])
-        first, span = overlapped(slot, size, axis, cells, parcel._modes)
+        first, span = as_written(overlapped)(slot, size, axis, cells, parcel._modes)
         ranges.append([(first + k) % number for k in range(span)])
     return sorted(
         (a * cells.number_y + b) * cells.number_z + c for a in ranges[0] for b in ranges[1] for c in ranges[2]

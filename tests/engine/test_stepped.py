@@ -161,7 +161,7 @@ def test_the_ledger_closes_with_baths_a_piston_and_rotation():
 @pytest.mark.parametrize("walls", ["mirror", "fold", "flip", "clamp", "rewind"])
 @pytest.mark.parametrize("motion", ["parabola", "euler", "semi-implicit"])
 def test_the_books_close_whatever_the_rules(walls, motion):
-    box = gas(200, (9.0, 9.0, 9.0), gravity=0.3, smooth_walls=walls, motion=motion, seed=4, diameter=mixture(200)[
+    box = gas(200, (9.0, 9.0, 9.0), gravity=0.3, smooth_walls=walls, motion=motion, seed=8, diameter=mixture(200)[
         "diameter"])  # fmt: skip
     box.advance(30.0)
     assert box.wall_hits.min() > 100
