@@ -22,7 +22,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Periodic, RandomBath, Specular, SquareWell, Wall, lattice_positions
+from atmosbox.engine import (
+    HeatBath,
+    Periodic,
+    RandomBath,
+    RandomNumbers,
+    Specular,
+    SquareWell,
+    Wall,
+    lattice_positions,
+    maxwell_velocities,
+)
 from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
@@ -42,6 +52,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import Knob
+from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
 if TYPE_CHECKING:
@@ -123,7 +134,7 @@ def _sides(settings: Settings) -> tuple[tuple[float, float, float], int]:
     volume = settings.molecules / (settings.density * law.WELL_CRITICAL_DENSITY)
     air = round(settings.air * law.WELL_CRITICAL_DENSITY * volume)
     tall = TALL if settings.start in ("slab", "pool") else 1.0
-    side = (volume / tall) ** (1.0 / 3.0)
+    side = rounded((volume / tall) ** (1.0 / 3.0))
     return (side, side, tall * side), air
 
 
@@ -131,17 +142,17 @@ def _densities(warmth: float) -> tuple[float, float]:
     """Return about how dense liquid and vapour are [diameter^-3], to begin with: not read by any measurement."""
     below = max(1.0 - warmth / law.WELL_CRITICAL_TEMPERATURE, 0.0)
     vapour = 1.3 * float(law.well_vapor_pressure(warmth)) / warmth
-    return law.WELL_CRITICAL_DENSITY + 0.57 * below**0.35, vapour
+    return rounded(law.WELL_CRITICAL_DENSITY + 0.57 * below**0.35), rounded(vapour)
 
 
-def _places(settings: Settings, engine: EngineChoice, rng: np.random.Generator) -> np.ndarray:
+def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.ndarray:
     """Return where the molecules stand at the start, those that attract each other first."""
     sides, air = _sides(settings)
     n = settings.molecules
     around = (True, True, not _walled(settings))
     if settings.start == "vapour":
         mixed = engine.scatter(sides, np.ones(n + air), rng, periodic=around)
-        return np.asarray(rng.permutation(mixed))
+        return np.asarray(mixed[_shuffled(len(mixed), rng)])
     # sites as dense as the liquid; it takes those next to its middle, vapour and air some of the others
     dense, thin = _densities(_warmth(settings))
     volume = math.prod(sides)
@@ -151,14 +162,19 @@ def _places(settings: Settings, engine: EngineChoice, rng: np.random.Generator) 
         away = np.linalg.norm(sites - 0.5 * np.array(sides), axis=1)
     else:
         away = np.abs(sites[:, 2] - (0.5 * sides[2] if settings.start == "slab" else 0.0))
-    order = np.argsort(away + 1e-6 * rng.random(len(away)))
+    order = np.argsort(away + 1e-6 * rng.random(len(away)), kind="stable")
     inner, outer = order[: int(liquid)], order[int(1.1 * liquid) :]
     others = n - len(inner) + air
     if others > len(outer):
         raise SettingError(
             "density", settings.density, f"leaves no vapour beside a {settings.start}", "give less, or less air"
         )
-    return np.asarray(sites[np.concatenate([inner, rng.choice(outer, others, replace=False)])])
+    return np.asarray(sites[np.concatenate([inner, outer[_shuffled(len(outer), rng)[:others]]])])
+
+
+def _shuffled(number: int, rng: RandomNumbers) -> np.ndarray:
+    """Return the numbers from 0 on, so many of them, in random order."""
+    return np.argsort(rng.random(number), kind="stable")
 
 
 def _walled(settings: Settings) -> bool:
@@ -169,11 +185,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     """Return the molecules in their box."""
     scale = _scale(settings)
     kT = scale.reduced_temperature(settings.temperature)
-    rng = np.random.default_rng(settings.seed)
+    rng = RandomNumbers(settings.seed)
     sides, air = _sides(settings)
     n = settings.molecules
     place = _places(settings, engine, rng)
-    velocity = rng.normal(size=(n + air, 3)) * math.sqrt(kT)
+    velocity = maxwell_velocities(kT, np.ones(n + air), rng)
     ends: Wall = Periodic()
     if _walled(settings):
         ends = HeatBath(kT) if settings.bath == "walls" else Specular()
