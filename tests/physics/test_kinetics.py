@@ -95,7 +95,7 @@ def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio):
     box = gas(number, (11.0,) * 3, seed=23, mass=mass, velocity=velocity)
     energies = []
     # a heavy molecule takes about its mass over four light ones' contacts to warm
-    for snapshot in snapshots(box, 1000, warm_up=20.0 + 5.0 * ratio):
+    for snapshot in snapshots(box, 2000, warm_up=20.0 + 5.0 * ratio):
         energy = 0.5 * mass * np.sum(snapshot.velocity**2, axis=1)
         energies.append([energy[:heavy].mean(), energy[heavy:].mean()])
     mean, error = block_average(energies)

@@ -117,8 +117,10 @@ def test_the_slow_work_at_constant_temperature_is_that_of_the_logarithm(gas):
     assert error / exact < 0.01
     # at this speed the gas is warmer by the work of the few crossings between two hits on a bath
     assert abs(mean / exact - 1.0) <= 4.0 * error / exact + 0.01
-    # all of it goes out as heat
-    assert np.mean(heats) == pytest.approx(-exact, rel=0.05)
+    # all of it goes out as heat, but for what the energy of so few molecules happens to be at the start and at the end
+    heat, heat_error = mean_and_error(heats)
+    assert heat_error / exact < 0.06
+    assert abs(heat / exact + 1.0) <= 4.0 * heat_error / exact + 0.01
 
 
 @pytest.mark.parametrize("speed", [-1.0, -0.3, 0.3, 1.0])
