@@ -18,6 +18,7 @@ from docutils import nodes
 
 from atmosbox import scenarios
 from atmosbox.file.netcdf import read
+from atmosbox.lab.wasm_module import SCENES
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -101,6 +102,10 @@ def test_the_gallery_has_a_page_that_plays_and_a_worksheet_of_every_scene(site, 
         assert made.pop(f"{name}.html") == b"<!doctype html>"
         assert made.pop(f"{name}-sheet.pdf").startswith(b"%PDF")
         assert {f"gallery/{name}.html", f"gallery/{name}-sheet.pdf"} <= set(pages["gallery.html"].links)
+    for name in SCENES:
+        assert made.pop(f"{name}-lab.html") == b"<!doctype html>"
+        assert f"gallery/{name}-lab.html" in pages["gallery.html"].links
+        assert f"../gallery/{name}-lab.html" in pages[f"scenes/{name}.html"].loads
     assert made == {}
 
 

@@ -71,8 +71,10 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     why = None
     if str(prepared.engine) != "exact":
         why = "runs in the page with the exact engine alone"
-    elif type(parcel) is not ParcelSet:
+    elif hasattr(parcel, "vapour"):
         why = "has liquid water, whose laws are not compiled for the page"
+    elif type(parcel) is not ParcelSet:
+        why = "has an engine of its own, which is not compiled for the page"
     elif not parcel._modes.rows:
         why = "has cells too crowded, or too small, for the rows that the page works with"
     elif parcel._driver is not None and not parcel._ascends:
