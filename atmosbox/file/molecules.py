@@ -49,6 +49,8 @@ class Molecules(NamedTuple):
         Positions and radii of drops [m], NaN for a drop that is not there.
     liquid, rained : (frame,) or None
         Numbers of molecules in the liquid, and of those that have rained out.
+    neighbours : (frame, molecule) or None
+        Where molecules attract each other, in how many wells each is.
     """
 
     discs: bool
@@ -66,6 +68,7 @@ class Molecules(NamedTuple):
     drops: Floats | None = None
     liquid: Whole | None = None
     rained: Whole | None = None
+    neighbours: Whole | None = None
 
     @property
     def step(self) -> float:
@@ -132,6 +135,10 @@ def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
     """Return what the instrument of ``--save-molecules`` has kept."""
     position = _values(dataset, "molecule_position", "molecule axis")
     names = dataset["wall_law"].attrs["flag_meanings"].split()
+    neighbours = _values(dataset, "molecule_neighbour_count", "molecule")
+    if neighbours is not None:
+        periodic = [names[int(law)] == "periodic" for law in dataset["wall_law"].values[::2]]
+        position = _about_the_drop(position, neighbours[-1], _values(dataset, "box_side", "axis"), periodic)
     drops = None
     if "drop_position" in dataset:
         radius = _values(dataset, "drop_radius", "drop")
@@ -145,9 +152,35 @@ def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
         "side": _values(dataset, "box_side", "axis"),
         "walls": tuple(names[int(law)] for law in dataset["wall_law"].values),
         "planar": position.shape[1] > 1 and float(np.ptp(position[0, :, 1])) == 0.0,
-        "gravity": "potential_energy" in dataset and bool(dataset["potential_energy"].values.any()),
+        "gravity": _falls(dataset),
         "drops": drops,
+        "neighbours": neighbours,
     }
+
+
+def _falls(dataset: xr.Dataset) -> bool:
+    """Tell whether molecules have energy in gravity, and not only in each other's wells."""
+    if "potential_energy" not in dataset:
+        return False
+    potential = dataset["potential_energy"].values
+    if "attraction_energy" not in dataset:
+        return bool(potential.any())
+    wells = dataset["attraction_energy"].values
+    return bool((np.abs(potential - wells) > 1e-9 * np.abs(potential).max(initial=0.0)).any())
+
+
+def _about_the_drop(position: Any, neighbours: Any, side: Any, periodic: list[bool]) -> Any:
+    """Return positions moved along periodic axes, all frames alike, so that the drop of the last one is in the middle.
+
+    The middle of what is periodic is a mean on a circle; those with many neighbours are the drop.
+    """
+    weight = np.maximum(neighbours.astype(np.float64) - 4.0, 0.0) ** 2
+    moved = position.astype(np.float64)
+    for axis in np.flatnonzero(periodic):
+        angle = 2.0 * np.pi * moved[-1, :, axis] / side[-1, axis]
+        middle = np.arctan2(weight @ np.sin(angle), weight @ np.cos(angle)) / (2.0 * np.pi)
+        moved[:, :, axis] = np.mod(moved[:, :, axis] + (0.5 - middle) * side[:, axis, None], side[:, axis, None])
+    return moved.astype(position.dtype)
 
 
 def _discs(dataset: xr.Dataset) -> dict[str, Any]:

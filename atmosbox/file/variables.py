@@ -222,6 +222,8 @@ VARIABLES: dict[str, Variable] = {
                 ("molecule_velocity", "m s-1", "velocity of the molecule"), cell_methods=_POINT, dtype="f4"),
     **_declared(_PATH[:2], ("molecule_speed", "m s-1", "speed of the molecule"),
                 cell_methods=_POINT, dtype="f4"),
+    **_declared(_PATH[:2], ("molecule_neighbour_count", "1", "number of molecules in whose well the molecule is"),
+                cell_methods=_POINT, dtype="i1"),
     **_declared(_MOLECULE, ("species", "", "species of the molecule"),
                 dtype="i1", flags=("dry_air", "water")),
     **_declared(_MOLECULE, ("molecule_mass", "kg", "mass of the molecule"), ledger=True),

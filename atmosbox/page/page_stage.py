@@ -126,6 +126,7 @@ def stage(
     panels: Sequence[Panel] = (),
     most: int = MOST,
     discs: bool = False,
+    counted: bool = False,
     meaning: Callable[[str], Meaning] | None = None,
     sentences: Sequence[Sequence[str]] = (),
     marks: Mapping[int, dict[str, float]] | None = None,
@@ -154,6 +155,8 @@ def stage(
         How many molecules may be drawn.
     discs : bool
         Whether the molecules are called discs and have sizes of their own.
+    counted : bool
+        Whether the colours tell how many neighbours a molecule has, and not its speed.
     meaning : callable, optional
         Tells unit and words of a variable; by default its declaration does.
     sentences : sequence of sequence of str
@@ -220,7 +223,7 @@ def stage(
         "size": _figures(drawn[shown] * box.metre) if discs and np.ptp(drawn) > 0.0 else None,
         "water": 0 if wet is None else int(wet.sum()),
         "time": {"unit": time_unit},
-        "speed": {"unit": "m/s", "low": 0.0, "high": round_up(fastest)},
+        "speed": {"unit": "m/s", "low": 0.0, "high": fastest if counted else round_up(fastest), "counted": counted},
         "panels": [
             panel_record(
                 panel,

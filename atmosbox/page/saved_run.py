@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Page", "pages"]
 
+_NEIGHBOURS = 12.0  # at which the scale of colours ends where it tells neighbours
 _FASTEST = 99.9  # percentile of the speeds at which the scale of colours ends
 _FIGURES, _TIME_FIGURES = 6, 9
 
@@ -69,7 +70,10 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
         raise FileError(
             f"The runs count their time in {' and '.join(sorted(units))}, and cannot share a clock: view one by one."
         )
-    fastest = max(_fastest(seen.speed) for seen in every)
+    counted = [seen.neighbours is not None for seen in every]
+    if any(counted) and not all(counted):
+        raise FileError("Colours are neighbours in one run and speeds in the other: view one by one.")
+    fastest = _NEIGHBOURS if all(counted) else max(_fastest(seen.speed) for seen in every)
     return [
         _page(run, seen, heading, fastest, len(runs)) for run, seen, heading in zip(runs, every, headings, strict=True)
     ]
@@ -98,6 +102,7 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
         panels=panels,
         most=room.molecules,
         discs=seen.discs,
+        counted=seen.neighbours is not None,
         meaning=lambda name: _meaning(dataset, name),
         sentences=sentences,
         marks=marks,
@@ -120,7 +125,7 @@ def _frames(told: Stage, seen: Molecules, kept: NDArray[np.int_]) -> Iterator[by
             float(seen.time[index]),
             seen.side[index],
             seen.position[index],
-            seen.speed[index],
+            (seen.speed if seen.neighbours is None else seen.neighbours)[index],
             drops=None if seen.drops is None else seen.drops[index],
             liquid=0 if seen.liquid is None else int(seen.liquid[index]),
             rained=0 if seen.rained is None else int(seen.rained[index]),

@@ -11,7 +11,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
-from matplotlib.colors import LogNorm, to_rgba
+from matplotlib.colors import LogNorm, Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
@@ -35,6 +35,7 @@ __all__ = ["BoxPicture", "PlanarPicture", "box_picture", "instant", "speed_bar"]
 
 _MOST = 4000  # molecules that are drawn
 _UNITS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
+_NEIGHBOURS = 12.0  # at which the colours end where they tell neighbours
 _SMALLEST = 0.18  # diameter of a molecule in the picture, in distances from one to the next if they stood in rows
 _TO_SIZE, _MANY_TIMES = 1.05, 1000.0
 
@@ -103,8 +104,11 @@ class BoxPicture:
         self.water = np.zeros(self.shown.size, bool) if held.water is None else held.water[self.shown]
         self.largest = held.side[np.argmax(held.side[:, 2])] / self.metre
         self.camera = Camera(self.largest)
+        self.tinted = held.speed if held.neighbours is None else held.neighbours
         speed = held.speed[:, self.shown]
         self.norm = colour_scale(speed[np.isfinite(speed)].astype(np.float64))
+        if held.neighbours is not None:
+            self.norm = Normalize(0.0, _NEIGHBOURS)
         self.colours = matplotlib.colormaps[FIELD_COLOURS]
         self.fit()
         if "piston" in held.walls:  # the space that the piston may yet give
@@ -185,7 +189,7 @@ class BoxPicture:
     def _put_molecules(self, frame: int) -> None:
         """Place molecules and drops, what is behind first."""
         held, look = self.held, self.look
-        position, speed = held.position[frame, self.shown] / self.metre, held.speed[frame, self.shown]
+        position, speed = held.position[frame, self.shown] / self.metre, self.tinted[frame, self.shown]
         here = np.isfinite(position[:, 0])
         drops = np.zeros((0, 4)) if held.drops is None else held.drops[frame] / self.metre
         drops = drops[np.isfinite(drops).all(axis=1)]
@@ -321,7 +325,9 @@ def speed_bar(
         ScalarMappable(picture.norm, picture.colours), cax=axes, extend="both" if log else "max",
         orientation="vertical" if high > wide else "horizontal",
     )  # fmt: skip
-    scale.set_label(f"speed ({spelled(picture.speed_unit)})", labelpad=(0.5 if high > wide else 0.1) * look.text)
+    counted = isinstance(picture, BoxPicture) and picture.held.neighbours is not None
+    said = "neighbours" if counted else f"speed ({spelled(picture.speed_unit)})"
+    scale.set_label(said, labelpad=(0.5 if high > wide else 0.1) * look.text)
     if log:
         put_ticks(scale.long_axis, log=True, length=72.0 * max(wide, high), size=look.text)
     else:

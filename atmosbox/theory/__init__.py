@@ -9,6 +9,7 @@ file                what it answers
 =================== =====================================================================================
 equation_of_state   by how much the pressure of hard spheres exceeds that of points
 entropy             what their excluded volume does to the free energy and to the adiabat
+coexistence         the critical point, and the slope of ln p, from measured liquids and vapours
 simple_fluid        argon and its like, and which square well they are
 well_gas            pressure and energy of a gas whose molecules attract each other
 disc                the same in two dimensions, and how often discs meet
@@ -44,6 +45,7 @@ from atmosbox.theory.barometric import (
 )
 from atmosbox.theory.buoyancy import Convection, cape_cin, density_temperature, parcel_buoyancy
 from atmosbox.theory.cloud_base import CloudBase, measured_cloud_base
+from atmosbox.theory.coexistence import CriticalPoint, critical_point, slope_of_pressure
 from atmosbox.theory.collision import (
     collision_rate,
     collision_rate_between,
@@ -164,6 +166,7 @@ __all__ = [
     "Ascent",
     "CloudBase",
     "Convection",
+    "CriticalPoint",
     "EvaporationEquilibrium",
     "FreeMolecularSlab",
     "IsobaricWater",
@@ -186,6 +189,7 @@ __all__ = [
     "contact_value",
     "contact_value_between",
     "contact_value_discs",
+    "critical_point",
     "density_temperature",
     "dewpoint",
     "dry_adiabat_temperature",
@@ -233,6 +237,7 @@ __all__ = [
     "saturation_mixing_ratio",
     "saturation_vapor_pressure",
     "saturation_vapor_pressure_iapws",
+    "slope_of_pressure",
     "square_well_compressibility",
     "square_well_energy",
     "square_well_second_virial",

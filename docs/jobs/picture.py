@@ -19,6 +19,13 @@ def lifting_picture(found: Findings) -> None:
     save(found, figure_with_box(outcome.dataset), "lifting-dry", 160)
 
 
+@job("attraction-picture")
+def attraction_picture(found: Findings) -> None:
+    """Draw what `atmosbox plot attraction.nc --with-box` draws."""
+    outcome = runner.execute(runner.prepare("attraction", {}, save_molecules=True))
+    save(found, figure_with_box(outcome.dataset), "attraction-box", 130)
+
+
 @job("cells", quick=True)
 def cells(found: Findings) -> None:
     """Draw how molecules belong to cells, and the boundaries that make the slots."""

@@ -5,6 +5,7 @@ import pytest
 
 from atmosbox import theory
 from atmosbox.errors import SettingError
+from atmosbox.file.molecules import molecules
 from atmosbox.scene.instruments.condensate import drops_of
 from atmosbox.simulation import runner
 
@@ -75,6 +76,19 @@ def test_air_stays_outside_of_a_drop_and_molecules_of_every_start_are_all_there(
     pool, *_ = run(start="pool", density=0.8, molecules=300, duration="0.05 ns", bath="walls")
     # on the floor, and nearly nothing at the ceiling
     assert pool.number_density[:8].mean() > 10.0 * pool.number_density[-8:].mean()
+
+
+def test_molecules_that_are_kept_tell_their_neighbours_and_the_drop_is_in_the_middle():
+    settings = {"start": "drop", "density": 0.15, "molecules": 200, "duration": "0.02 ns"}
+    data = runner.execute(runner.prepare("attraction", settings, save_molecules=True)).dataset
+    counted = data.molecule_neighbour_count.values
+    assert (counted.sum(axis=1) == 2 * data.well_count.values).all()
+    seen = molecules(data)
+    assert not seen.gravity
+    inner = seen.position[-1][counted[-1] > 6]
+    assert np.abs(inner.mean(axis=0) / seen.side[-1] - 0.5).max() < 0.03
+    away = np.linalg.norm(inner - 0.5 * seen.side[-1], axis=1)
+    assert away.max() < 0.45 * seen.side[-1].min()
 
 
 def test_two_touching_clusters_are_one_drop_and_a_pair_is_vapour():

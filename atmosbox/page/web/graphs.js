@@ -27,8 +27,10 @@ export class Graphs {
     for (const each of this.panels) {
       each.graph = new Graph(parent, this.#titled(each), { runs: runs.length, seek, whole: Boolean(seek) });
     }
-    this.speeds = new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length });
-    parent.dataset.count = this.panels.length + 1;
+    // where the colours tell neighbours, the frames hold no speeds
+    const told = runs.every(({ stage }) => !stage.speed.counted);
+    this.speeds = told ? new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length }) : null;
+    parent.dataset.count = this.panels.length + (told ? 1 : 0);
     this.refresh();
     this.highest = 0;
   }
@@ -49,6 +51,7 @@ export class Graphs {
   // Let all graphs show that it is such a time. While the film runs, the speeds need not be counted for every picture.
   at(time, running = false) {
     for (const { graph } of this.panels) graph.at(time);
+    if (!this.speeds) return;
     const now = performance.now();
     if (running && now - this.counted < PATIENCE) return;
     this.counted = now;
@@ -71,6 +74,6 @@ export class Graphs {
 
   repaint() {
     for (const { graph } of this.panels) graph.repaint();
-    this.speeds.repaint();
+    this.speeds?.repaint();
   }
 }

@@ -7,7 +7,7 @@ import { phrase, word } from "./words.js";
 export function showLegend(parent, stage, mode) {
   parent.replaceChildren();
   if (mode === "speed") {
-    const { low, high, unit } = stage.speed;
+    const { low, high, unit, counted } = stage.speed;
     const bar = document.createElement("div");
     bar.className = "bar";
     bar.style.background = speedGradient();
@@ -19,7 +19,7 @@ export function showLegend(parent, stage, mode) {
     const scale = document.createElement("div");
     scale.className = "scale";
     scale.append(bar, ends);
-    parent.append(Object.assign(document.createElement("span"), { textContent: `${word("speed")} (${unit})` }), scale);
+    parent.append(Object.assign(document.createElement("span"), { textContent: counted ? word("neighbours") : `${word("speed")} (${unit})` }), scale);
     return;
   }
   const largest = Math.max(...stage.species.map(({ drawn }) => drawn));

@@ -78,7 +78,8 @@ export class Sheet {
     const { first } = stage.shown, { molecule } = stage.trace, { record } = stage;
     const name = phrase(record.species[record.kind[molecule]].name.replace("molecule", "gas"));
     if (first.state[molecule]) return word("following_liquid", { name });
-    const speed = `${figure(first.speed[molecule] / 255 * first.fastest)} ${record.speed.unit}`;
+    const shown = first.speed[molecule] / 255 * first.fastest;
+    const speed = record.speed.counted ? `${Math.round(shown)} ${word("neighbours")}` : `${figure(shown)} ${record.speed.unit}`;
     return word(record.particle === "disc" ? "following_disc" : "following", { name, speed });
   }
 

@@ -49,7 +49,8 @@ class Molecules:
     """Places and velocities of all molecules and the box they are in, for ``--save-molecules``.
 
     A molecule that is in the liquid has neither place nor velocity, and reads NaN. Where there is water, the readings
-    say which molecules are water, and where drops are that can be seen.
+    say which molecules are water, and where drops are that can be seen. Where molecules attract each other, they say
+    how many neighbours each has.
     """
 
     def __init__(self) -> None:
@@ -57,6 +58,7 @@ class Molecules:
         self._velocity: list[Single] = []
         self._sides: list[Array] = []
         self._drops: list[tuple[Array, Array]] = []
+        self._neighbours: list[NDArray[np.int64]] = []
         self._mass = np.zeros(0)
         self._diameter = np.zeros(0)
         self._laws: tuple[str, ...] = ()
@@ -75,6 +77,8 @@ class Molecules:
         self._position.append(position)
         self._velocity.append(velocity)
         self._sides.append(np.array(parcel.length))
+        if hasattr(parcel, "neighbours"):
+            self._neighbours.append(parcel.neighbours())
         if hasattr(parcel, "drops"):
             self._drops.append(parcel.drops()[:2])
         if not self._laws:
@@ -103,6 +107,8 @@ class Molecules:
             box_side=np.array(self._sides) * scale.length,
             wall_law=np.array([LAWS.index(law) for law in self._laws], np.int8),
         )
+        if self._neighbours:
+            found["molecule_neighbour_count"] = np.minimum(self._neighbours, 127).astype(np.int8)
         if self._moist:
             found["species"] = water.astype(np.int8)
         if self._drops:
