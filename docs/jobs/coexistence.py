@@ -21,7 +21,8 @@ def coexistence(found: Findings) -> None:
     swept = sweep(plan("attraction", WORDS, settings=SETTINGS, members=1, engine="exact"), jobs=1)
     data = swept.dataset
     found.failures.extend(f"point {point}, member {member}: {why}" for point, member, why in swept.failures)
-    found.bound("largest residual of the energy ledger", swept.ledger, 1e-10)
+    if not swept.ledger < 1e-10:
+        found.failures.append(f"the ledger of a slab is off by {swept.ledger:.1e}")
     kelvin = data.temperature.values
     value = {name: data[name].values for name in NAMES}
     error = {name: data[f"{name}_se"].values for name in NAMES}
@@ -77,12 +78,15 @@ def _draw(found: Findings, kelvin: np.ndarray, value: dict[str, np.ndarray], err
                   label="published simulations")  # fmt: skip
         left.plot(1e3 / fine, fluid.vapor_pressure(fine) / 1e5, color=REFERENCE_COLOURS[0], ls=":", label="argon")
         left.set(title="Vapour pressure", xlabel="1000 K / T", ylabel="pressure (bar)", yscale="log")
+        left.yaxis.set_major_formatter("{x:g}")
+        left.yaxis.set_minor_formatter("{x:g}")
         left.legend(frameon=False)
         for name, label in (("liquid_density", "liquid"), ("vapor_density", "vapour")):
             right.errorbar(value[name], kelvin, xerr=error[name], fmt="o", label=label)
         mean = 0.5 * (value["liquid_density"] + value["vapor_density"])
         right.plot(mean, kelvin, "x", color=DARK, label="mean of both")
+        right.set_ylim(top=fluid.critical_temperature + 3.0)
         right.axhline(fluid.critical_temperature, color=DARK, ls="--", lw=1.2, label="critical temperature")
         right.set(title="Both densities", xlabel="density (kg m⁻³)", ylabel="temperature (K)")
-        right.legend(frameon=False)
+        right.legend(frameon=False, loc="lower center")
         save(found, drawing, "coexistence")
