@@ -24,13 +24,13 @@ from atmosbox.cli import app
 from atmosbox.cli.check import conventions
 from atmosbox.errors import DiskFullError, FileError, SettingError, UnitError, UnknownSettingError
 from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.journal import Journal
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.output_lock import OutputLock
 from atmosbox.file.output_path import part_path
 from atmosbox.file.run_states import RunStates
 from atmosbox.simulation import continuation, runner
 from atmosbox.sweep import SweepInterrupted, member, member_seed, parse_vary, plan, sweep
-from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.result import assemble, mean_and_error
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -485,7 +485,7 @@ def test_a_full_disk_ends_the_sweep_with_what_was_saved_kept(tmp_path, monkeypat
         real(descriptor)
 
     with monkeypatch.context() as patch:
-        patch.setattr("atmosbox.sweep.journal.os.fsync", full)
+        patch.setattr("atmosbox.file.journal.os.fsync", full)
         with pytest.raises(DiskFullError, match=r"a\.part\.jsonl, which stays as it was"):
             sweep(grid, tmp_path / "a.nc", jobs=1)
     assert len(saved(tmp_path / "a.nc")) == 2

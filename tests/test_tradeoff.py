@@ -1,27 +1,36 @@
 """Speed against accuracy: the rungs, the measurement, its files and its figure."""
 
 import csv
+import functools
 import json
 import math
+import os
+import subprocess
+import sys
 import time
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from typer.testing import CliRunner
 
 from atmosbox import scenarios
 from atmosbox.cli import app
 from atmosbox.cli import tradeoff as command
 from atmosbox.engine import CoarseStepWarning
-from atmosbox.errors import SettingError, UnknownSettingError
+from atmosbox.errors import FileError, SettingError, UnknownSettingError
+from atmosbox.file.journal import Journal
 from atmosbox.file.netcdf import read, write
+from atmosbox.file.run_states import RunStates
 from atmosbox.plot import save
 from atmosbox.scene.setup import Series
-from atmosbox.trade.tradeoff import Rung, budgeted_runs, measure, rungs, timed_run, warm_engine
+from atmosbox.trade.tradeoff import KeptRuns, Rung, budgeted_runs, measure, rungs, timed_run, warm_engine
 from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns
 from atmosbox.trade.tradeoff.measured_trade import _summary
 
+ROOT = Path(__file__).resolve().parents[1]
 QUICK = (
     Series("exact", "ascent", (20, 40), {"molecules": 100}, {"temperature_at_700_hpa": -1.0}),
     Series("stepped", "delta", (0.4,), {"molecules": 100, "ascent": 20}),
@@ -284,3 +293,51 @@ def test_the_command_refuses_with_a_sentence(tmp_path, monkeypatch, words, wante
     assert done.exit_code == 2, done.output
     assert wanted in done.output
     assert not list(tmp_path.iterdir())
+
+
+TRADE = """
+import os, sys
+from pathlib import Path
+from atmosbox.trade.tradeoff import measure, rungs
+from atmosbox.trade.tradeoff import budgeted_runs
+from tests.test_tradeoff import LONG
+budgeted_runs.MOST_RUNS = 2
+found = measure("temperature", ladder=LONG, budget=1e5, out=Path("x.nc"), note=print)
+found.drop_attrs(deep=False).to_netcdf("found.nc")
+"""
+LONG = (Rung("exact", {"molecules": 100}, 0, 100.0), Rung("exact", {"molecules": 15_000}, 0, 1.5e4))
+
+
+def test_a_tradeoff_that_is_killed_goes_on_within_its_run(tmp_path, monkeypatch):
+    """kill -9: runs that are complete are kept, the one under way goes on, and every number is the same."""
+    monkeypatch.setattr(budgeted_runs, "MOST_RUNS", 2)
+
+    def under_way():
+        journal = Journal.place(tmp_path / "x.nc")
+        complete = journal.read_bytes().count(b"\n") - 1 if journal.exists() else 0
+        return complete == 1 == RunStates(tmp_path / "x.nc").begun
+
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)])}
+    start = functools.partial(
+        subprocess.Popen, [sys.executable, "-c", TRADE], cwd=tmp_path, env=environment, stdout=subprocess.PIPE,
+        text=True,
+    )  # fmt: skip
+    with start() as process:
+        deadline = time.monotonic() + 600.0
+        while process.poll() is None and not under_way() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.kill()
+    assert under_way()
+    with pytest.raises(FileError, match="another tradeoff, with --budget 100000"):
+        measure("temperature", ladder=LONG, budget=200.0, out=tmp_path / "x.nc")
+    with start() as process:
+        said, _ = process.communicate()
+    assert "1 runs are saved" in said
+    assert RunStates(tmp_path / "x.nc").begun == 0
+    found = xr.load_dataset(tmp_path / "found.nc")
+    undisturbed = measure("temperature", ladder=LONG, budget=1e5)
+    assert found.members.values.tolist() == [2, 2] == undisturbed.members.values.tolist()
+    for name in ("bias", "bias_se", "noise", "ledger", "escaped"):
+        assert found[name].values.tobytes() == undisturbed[name].values.tobytes(), name
+    KeptRuns.remove(tmp_path / "x.nc")
+    assert [path.name for path in tmp_path.iterdir()] == ["found.nc"]

@@ -21,7 +21,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.terminal import INTERRUPTED, guarded, prints_to_stderr, say, say_json, tell, width
+from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
@@ -116,7 +116,7 @@ def sweep(
             )
     except SweepInterrupted as stop:
         _say_interrupted(stop, grid, path)
-        raise typer.Exit(INTERRUPTED) from stop
+        raise typer.Exit(stop.exit_code) from stop
     _say(grid, swept, path, as_json=as_json, quiet=quiet)
     _judge(grid, swept, path)
 

@@ -47,14 +47,14 @@ def tradeoff(
     """Measure speed against accuracy: a scene through engines and settings, errors beside seconds.
 
     Every way of running is run again and again, with other seeds, while the budget lasts. Ctrl-C ends it
-    early and keeps what was measured.
+    early and keeps what was measured; what was killed goes on where it was when the same is typed again.
     """
     from atmosbox.file.netcdf import write
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
     from atmosbox.scene.parameter import Parameter
     from atmosbox.scene.spelling import assignments
-    from atmosbox.trade.tradeoff import measure
+    from atmosbox.trade.tradeoff import KeptRuns, measure
 
     try:
         seconds = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(budget))
@@ -72,10 +72,14 @@ def tradeoff(
             seed=first,
             progress=show,
             command=typed(ctx),
+            out=path,
+            force=force,
+            note=None if quiet else lambda text: tell(f"note: {text}"),
         )
     write(found, path, force=force)
     write_whole(files[1], as_csv(found).encode())
     save(found, files[2], force=force)
+    KeptRuns.remove(path)
     interrupted = found.attrs["atmosbox_status"] == "interrupted"
     if as_json:
         say_json({"scene": scene, "files": [str(file) for file in files], "rungs": rows(found)})

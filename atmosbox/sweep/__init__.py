@@ -1,8 +1,8 @@
 """A grid of settings, run through with several members at each point: how a number depends on a setting.
 
 Read in this order: `axis` (one setting that varies), `plan` (the grid, its members and their seeds), `member`
-(one run), `journal` (what is saved, line by line), `local` and `cluster` (where it is computed), `conduct` (the whole)
-and `result` (one dataset of it).
+(one run), `local` and `cluster` (where it is computed), `conduct` (the whole) and `result` (one dataset of it). What is
+saved, line by line, is `atmosbox.file.journal`.
 """
 
 import sys

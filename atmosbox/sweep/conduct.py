@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from atmosbox.errors import SettingError
 from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.journal import Journal
 from atmosbox.file.provenance import history_line
 from atmosbox.file.run_states import RunStates
+from atmosbox.simulation.recording import uninterrupted
 from atmosbox.sweep import local
-from atmosbox.sweep.journal import Journal
 from atmosbox.sweep.member import FAILED, Record
 from atmosbox.sweep.plan import Plan, Task
 from atmosbox.sweep.result import assemble
@@ -46,9 +47,10 @@ class Swept(NamedTuple):
 class SweepInterrupted(KeyboardInterrupt):
     """A sweep was stopped by Ctrl-C; ``swept`` holds the runs that are complete, None if there is none."""
 
-    def __init__(self, swept: Swept | None) -> None:
+    def __init__(self, swept: Swept | None, exit_code: int = 130) -> None:
         super().__init__("the sweep was interrupted")
         self.swept = swept
+        self.exit_code = exit_code
 
 
 def sweep(
@@ -162,12 +164,15 @@ class _Conductor:
                     for record in stream:
                         self._keep(record)
             swept = self._swept("complete")
-        except KeyboardInterrupt:
-            raise SweepInterrupted(self._stopped()) from None
+        except KeyboardInterrupt as stop:
+            with uninterrupted():
+                saved = self._stopped()
+            raise SweepInterrupted(saved, getattr(stop, "exit_code", 130)) from None
         if self.checkpoint is not None and self.journal is not None:
-            self.checkpoint.finish(swept.dataset)
-            self.journal.remove()
-        self.states.close(everything=True)
+            with uninterrupted():
+                self.checkpoint.finish(swept.dataset)
+                self.journal.remove()
+                self.states.close(everything=True)
         self.tell(1.0, "done")
         return swept
 
@@ -185,10 +190,11 @@ class _Conductor:
 
     def _keep(self, record: Record) -> None:
         """Save a run that has ended."""
-        if self.journal is not None:
-            self.journal.append(record)
-        self.states.remove(record["point"], record["member"])
-        self.records[record["point"], record["member"]] = record
+        with uninterrupted():
+            if self.journal is not None:
+                self.journal.append(record)
+            self.states.remove(record["point"], record["member"])
+            self.records[record["point"], record["member"]] = record
         for text in record.get("warnings", ()):
             if text not in self.warned:
                 self.warned.add(text)

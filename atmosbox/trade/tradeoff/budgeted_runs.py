@@ -49,6 +49,12 @@ class BudgetedRuns(Generic[Result]):
         Called with the share of the budget that is spent and what is under way.
     clock
         Returns the time [s].
+    keep
+        Called with the number of a way, how often it had run, the result, and how much of the budget is spent [s].
+    results
+        What each way has come to; what an earlier call has kept, to begin with.
+    spent
+        How much of the budget an earlier call has spent [s].
     """
 
     budget: float
@@ -57,14 +63,16 @@ class BudgetedRuns(Generic[Result]):
     run_way: Callable[[int, int, Progress], Result]
     tell: Progress
     clock: Callable[[], float] = time.perf_counter
-    results: list[list[Result]] = field(init=False)
+    keep: Callable[[int, int, Result, float], None] = lambda k, done, result, spent: None
+    results: list[list[Result]] = field(default_factory=list)
+    spent: float = 0.0
     left_out: list[str] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.results = [[] for _ in self.labels]
+        self.results = self.results or [[] for _ in self.labels]
         self.left_out = ["" for _ in self.labels]
         self._seconds = [math.inf for _ in self.labels]
-        self._began = self.clock()
+        self._began = self.clock() - self.spent
 
     def left(self) -> float:
         """Return what is left of the budget [s]."""
@@ -76,7 +84,8 @@ class BudgetedRuns(Generic[Result]):
         for k in ways:
             again = f"; compiling took {compiling:.0f} s of it, and takes none next time" if compiling > 1.0 else ""
             if self.left() <= 0.0:
-                self.left_out[k] = f"left out: the budget was spent before its turn{again}"
+                if not self.results[k]:
+                    self.left_out[k] = f"left out: the budget was spent before its turn{again}"
                 continue
             before = self.clock()
             try:
@@ -88,6 +97,9 @@ class BudgetedRuns(Generic[Result]):
                 self.left_out[k] = f"left out: the budget ended while its engine was compiled{again}"
                 continue
             compiling += self.clock() - before
+            if self.results[k]:
+                self._seconds[k] = 0.0  # kept from an earlier call: the next run of it will tell
+                continue
             self._attempt(k, min(FIRST_SHARE * self.budget, self.left()))
         waiting = [k for k in ways if not self.results[k] and not self.left_out[k]]
         for k in sorted(waiting, key=lambda k: self._seconds[k]):
@@ -126,8 +138,11 @@ class BudgetedRuns(Generic[Result]):
             self.tell(min(1.0 - self.left() / self.budget, 1.0), self.labels[k])
 
         try:
-            self.results[k].append(self.run_way(k, len(self.results[k]), watch))
+            done = len(self.results[k])
+            result = self.run_way(k, done, watch)
+            self.results[k].append(result)
             self._seconds[k] = self.clock() - start
+            self.keep(k, done, result, self.budget - self.left())
         except _TooLong:
             if self.results[k]:
                 self._seconds[k] = math.inf  # it fitted before: others have slowed it down

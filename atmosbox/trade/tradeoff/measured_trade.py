@@ -6,6 +6,8 @@ import json
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,9 +20,11 @@ from atmosbox.file.provenance import global_attributes
 from atmosbox.scene import engines
 from atmosbox.trade.tradeoff import timed_run
 from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns, Progress
+from atmosbox.trade.tradeoff.kept_runs import KeptRuns
 from atmosbox.trade.tradeoff.rung import Rung, rungs
 from atmosbox.trade.tradeoff.timed_run import Quantity, Trial
 from atmosbox.trade.tradeoff.warm_engine import compile_within, kind
+from atmosbox.version import __version__
 
 __all__ = ["measure"]
 
@@ -34,6 +38,9 @@ def measure(
     ladder: Sequence[Rung] | None = None,
     progress: Progress | None = None,
     command: str = "",
+    out: Path | None = None,
+    force: bool = False,
+    note: Callable[[str], None] | None = None,
 ) -> xr.Dataset:
     """Run a scene through engines and settings, and return errors beside costs.
 
@@ -41,6 +48,9 @@ def measure(
     runs first; compiling the engines counts, too. The bias is the mean misfit to theory; its standard error, and
     the noise of a single run, come from the scatter of the seeds, or from the runs' own error bars where there are
     fewer than four.
+
+    With a file, every run is saved as it ends, and its state before: the same call goes on where one that was killed
+    has stopped, with what it had left of its budget.
 
     Parameters
     ----------
@@ -58,6 +68,13 @@ def measure(
         Called with the share that is done and a word on what goes on.
     command
         What the user typed, for the file's history.
+    out
+        The file that will be written of it, beside which the runs are kept; once it is written, `KeptRuns.remove`
+        removes them.
+    force
+        Whether what is kept there of another tradeoff is thrown away.
+    note
+        Called with a remark on what is taken from an earlier call.
 
     Returns
     -------
@@ -91,13 +108,24 @@ def measure(
             compiled.add(what)
         return True
 
+    words = command or f"atmosbox tradeoff {scene}"
+    kept = KeptRuns(out, _request(scene, settings or {}, budget, seed, ways), words, force=force)
+    known = kept.trials(len(own))
+    if (before := sum(map(len, known))) and note is not None:
+        note(f"{before} runs are saved, and {kept.spent:.0f} s of the budget are spent: going on with the rest")
+
     def run_way(k: int, done: int, watch: Progress) -> Trial:
-        return timed_run.run(scene, ways[own[k]], seed + done, watch)
+        try:
+            return timed_run.run(scene, ways[own[k]], seed + done, watch, kept.place(k, done))
+        except Exception:  # given up, for whatever reason: a later attempt begins anew
+            kept.drop(k, done)
+            raise
 
     status = "complete"
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), closing(kept):
         warnings.simplefilter("ignore")  # coarse steps are what is measured here
-        runs = BudgetedRuns(budget, [ways[k].label for k in own], compile_way, run_way, tell)
+        labels = [ways[k].label for k in own]
+        runs = BudgetedRuns(budget, labels, compile_way, run_way, tell, keep=kept.keep, results=known, spent=kept.spent)
         try:
             runs.run()
         except KeyboardInterrupt:
@@ -111,7 +139,17 @@ def measure(
         raise SettingError("budget", f"{budget:g} s", f"leaves nothing measured ({why})", "give a longer --budget")
     tell(1.0, "done")
     title = f"Speed against accuracy: {getattr(module, 'title', scene)}"
-    return _dataset(scene, ways, trials, refused, budget, title, command or f"atmosbox tradeoff {scene}", row, status)
+    found = _dataset(scene, ways, trials, refused, budget, title, words, row, status)
+    if kept.history:
+        found.attrs["history"] = "\n".join(kept.history)
+    return found
+
+
+def _request(scene: str, settings: Mapping[str, Any], budget: float, seed: int, ways: Sequence[Rung]) -> dict[str, Any]:
+    """Return all that decides what is measured, by what a sentence calls it."""
+    words: dict[str, Any] = {"version of atmosbox": __version__, "scene": scene, "--budget": budget, "--seed": seed}
+    words |= {f"--set {name}": str(value) for name, value in settings.items()}
+    return words | {"the ways of running it": [way.label for way in ways]}
 
 
 def _first_alike(ways: Sequence[Rung], settings: Any) -> list[int]:

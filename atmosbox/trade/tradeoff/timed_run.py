@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.simulation import runner
+from atmosbox.simulation.continuation import execute_from
 from atmosbox.trade.tradeoff.rung import Rung
 
 if TYPE_CHECKING:
@@ -65,8 +66,18 @@ def warm_up(scene: str, rung: Rung) -> None:
     runner.build(prepared).parcel.advance(0.0)
 
 
-def run(scene: str, rung: Rung, seed: int, progress: Callable[[float, str], None]) -> Trial:
+def run(scene: str, rung: Rung, seed: int, progress: Callable[[float, str], None], state: str | None = None) -> Trial:
     """Run a rung with a seed and return its errors and its cost.
+
+    Parameters
+    ----------
+    scene, rung, seed
+        The run.
+    progress
+        Called with the share that is done and a word on what is being done.
+    state
+        Where the run keeps its state, and goes on from if there is one; see
+        `atmosbox.simulation.continuation.execute_from`.
 
     Raises
     ------
@@ -74,7 +85,7 @@ def run(scene: str, rung: Rung, seed: int, progress: Callable[[float, str], None
         If the engine refuses the scene, or cannot go on.
     """
     prepared = runner.prepare(scene, {**rung.settings, "seed": seed}, engine=rung.engine)
-    return _trial(runner.execute(prepared, progress=progress), prepared.settings)
+    return _trial(execute_from(prepared, state, progress), prepared.settings)
 
 
 def _trial(outcome: Outcome, settings: Any) -> Trial:

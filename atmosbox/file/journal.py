@@ -1,7 +1,7 @@
-"""The journal of a sweep: one line for each run that is complete, on the disk before the next is asked for.
+"""The journal of a sweep, or of a tradeoff: one line for each run that is complete, on the disk before the next begins.
 
-It stands beside the file of the sweep as ``NAME.part.jsonl``. The first line says what was asked for; a line that a
-crash has cut short is no line, and its run is computed again.
+It stands beside the file that all runs make together as ``NAME.part.jsonl``. The first line says what was asked for; a
+line that a crash has cut short is no line, and its run is computed again.
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ from typing import Any
 
 from atmosbox.errors import FileError, shown
 from atmosbox.file.output_path import check_writable, part_path, write_failure
-from atmosbox.sweep.member import Record
 
 __all__ = ["Journal"]
 
 FORMAT = 1
+
+Record = dict[str, Any]
+"""What is kept of a run, as JSON can hold it, with its ``point`` and ``member``."""
 
 
 class Journal:
@@ -35,6 +37,8 @@ class Journal:
         The line that this command adds to the history of the file.
     force
         Whether a journal of another request is thrown away.
+    kind
+        What all runs are together: a sweep, or a tradeoff.
 
     Attributes
     ----------
@@ -64,8 +68,11 @@ class Journal:
     ([(1, 2)], ['monday', 'tuesday'])
     """
 
-    def __init__(self, path: Path, request: Mapping[str, Any], history: str, *, force: bool = False) -> None:
-        self.path = check_writable(part_path(path.with_suffix(".jsonl")), force=True)
+    def __init__(
+        self, path: Path, request: Mapping[str, Any], history: str, *, force: bool = False, kind: str = "sweep"
+    ) -> None:
+        self._kind = kind
+        self.path = check_writable(self.place(path), force=True)
         self.records: dict[tuple[int, int], Record] = {}
         self.history = [history]
         try:
@@ -79,13 +86,23 @@ class Journal:
                 self.records = {}
                 self.history = [history]
                 self._truncate(0)
-                self._write({"atmosbox_sweep": FORMAT, "request": dict(request), "history": history})
+                self._write({self._head: FORMAT, "request": dict(request), "history": history})
             elif self.history[-1] != history:
                 self.history.append(history)
                 self._write({"history": history})
         except BaseException:
             self._file.close()
             raise
+
+    @staticmethod
+    def place(path: Path) -> Path:
+        """Return where the journal of a file stands."""
+        return part_path(path.with_suffix(".jsonl"))
+
+    @property
+    def _head(self) -> str:
+        """What the first line is known by."""
+        return f"atmosbox_{self._kind}"
 
     def __enter__(self) -> Journal:
         """Return the journal, whose file is open."""
@@ -122,7 +139,8 @@ class Journal:
                 fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 raise FileError(
-                    f"{self.path} is being written by another sweep: wait for it, or name another file with --out."
+                    f"{self.path} is being written by another {self._kind}: wait for it, or name another file with "
+                    "--out."
                 ) from None
             except OSError:  # a file system without locks
                 return
@@ -135,7 +153,7 @@ class Journal:
         try:
             entries = [json.loads(line) for line in lines]
             head, entries = (entries[0], entries[1:]) if entries else ({}, [])
-            if content and (head.get("atmosbox_sweep") != FORMAT or not isinstance(head.get("request"), dict)):
+            if content and (head.get(self._head) != FORMAT or not isinstance(head.get("request"), dict)):
                 raise ValueError
             records = {(int(e["point"]), int(e["member"])): e for e in entries if "history" not in e}
             history = [str(head["history"])] if head else []
@@ -144,8 +162,8 @@ class Journal:
             if force or not whole:
                 return False
             raise FileError(
-                f"{self.path} is in the way, and is no journal of a sweep, or a damaged one: move it, or add --force "
-                "to throw it away."
+                f"{self.path} is in the way, and is no journal of a {self._kind}, or a damaged one: move it, or add "
+                "--force to throw it away."
             ) from None
         if not whole:
             return False
@@ -153,8 +171,8 @@ class Journal:
             if force:
                 return False
             raise FileError(
-                f"{self.path} has {len(records)} runs of another sweep, {different}: type that one again to go on "
-                "with it, add --force to throw it away, or name another file with --out."
+                f"{self.path} has {len(records)} runs of another {self._kind}, {different}: type that one again to go "
+                "on with it, add --force to throw it away, or name another file with --out."
             )
         self.records, self.history = records, history
         self._truncate(whole)
