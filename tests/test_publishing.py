@@ -45,6 +45,15 @@ def test_the_workflows_run_what_a_developer_runs():
         path.stem: yaml.safe_load(path.read_text(encoding="utf-8")) for path in ROOT.glob(".github/workflows/*.yml")
     }
     assert [step["run"] for step in flows["ci"]["jobs"]["test"]["steps"] if "run" in step] == ["bash .ci/run"]
+    soaked = {
+        part: [step["run"] for step in flows["soak"]["jobs"][part]["steps"] if "run" in step][-1]
+        for part in ("soak", "fuzz")
+    }
+    for part, command in soaked.items():
+        for name in flows["soak"]["jobs"][part]["strategy"]["matrix"]["part"]:
+            assert (ROOT / "tests" / name).is_file()
+        for option in re.findall(r"--[a-z-]+", command):
+            assert f'"{option}"' in (ROOT / "tests/conftest.py").read_text(encoding="utf-8")
     built = [step["run"] for step in flows["site"]["jobs"]["build"]["steps"] if "run" in step]
     assert built == ["python -m pip install '.[docs]'", "python -m sphinx -W --keep-going docs site"]
 

@@ -1,0 +1,314 @@
+"""Faults of the system, each against a promise of docs/reliability.md.
+
+What takes long, or must be root to be tried, stands in the tier ``soak``.
+"""
+
+import contextlib
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from atmosbox.engine.core.kernel_cache import cache_folder
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.file.netcdf import read
+from atmosbox.simulation import runner
+from atmosbox.text import progress as bars
+from tests.test_restart import content
+
+ROOT = Path(__file__).resolve().parents[1]
+SCENE = "elastic-collisions"
+SHORT = ["run", SCENE, "--set", "duration=2s", "--out", "x.nc"]
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals, locales and disks of another kind")
+root = pytest.mark.skipif(os.name == "nt" or os.geteuid() != 0, reason="only root may mount a disk")
+
+
+def started(words, folder, *flags, package=ROOT, **variables):
+    """Start the real command in a folder, with flags of Python and variables of the environment; None removes one."""
+    wanted = {**os.environ, "PYTHONPATH": str(package), "SOURCE_DATE_EPOCH": "1700000000", **variables}
+    environment = {name: value for name, value in wanted.items() if value is not None}
+    folder.mkdir(exist_ok=True)
+    return subprocess.Popen(
+        [sys.executable, *flags, "-m", "atmosbox", *words], cwd=folder, env=environment, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True, encoding="utf-8",
+    )  # fmt: skip
+
+
+def command(words, folder, *flags, **more):
+    """Run the real command to its end; return its status, what it said, and what it complained of."""
+    with started(words, folder, *flags, **more) as process:
+        out, said = process.communicate()
+    assert "Traceback" not in said, said
+    assert "This is a bug" not in said, said
+    return process.returncode, out, said
+
+
+@pytest.fixture(scope="module")
+def usual(tmp_path_factory):
+    """The folder of a run on a computer that is as it should be."""
+    folder = tmp_path_factory.mktemp("usual")
+    assert command(SHORT, folder)[0] == 0
+    return folder
+
+
+def same(folder, usual):
+    return content(folder / "x.nc") == content(usual / "x.nc")
+
+
+# Odd environments
+
+
+@pytest.mark.parametrize(
+    ("flags", "variables"),
+    [
+        (["-O"], {}),
+        (["-W", "error"], {}),
+        ([], {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"}),
+        ([], {"LC_ALL": "tr_TR.UTF-8", "LANG": "tr_TR.UTF-8"}),
+        ([], {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}),
+        ([], {"HOME": None, "XDG_CACHE_HOME": None, "USER": None, "LOGNAME": None}),
+        ([], {"TERM": None, "TZ": "Pacific/Kiritimati"}),
+    ],
+    ids=["-O", "-W error", "German", "Turkish", "C", "no home", "far zone"],
+)
+def test_an_odd_environment_changes_no_number(usual, tmp_path, flags, variables):
+    status, _, said = command(SHORT, tmp_path, *flags, **variables)
+    assert status == 0, said
+    assert same(tmp_path, usual)
+
+
+@pytest.mark.parametrize("tongue", ["de_DE.UTF-8", "tr_TR.UTF-8"])
+def test_numbers_are_written_and_read_with_a_point_in_every_language(usual, tmp_path, tongue):
+    """Also where a program around atmosbox has set the locale, as a desktop does."""
+    script = """
+import locale, sys
+try:
+    locale.setlocale(locale.LC_ALL, sys.argv[1])
+except locale.Error:
+    sys.exit(77)
+from atmosbox.cli import main
+sys.argv[1:] = sys.argv[2:]
+main()
+"""
+    shutil.copy(usual / "x.nc", tmp_path)
+    found = []
+    for words in (["export", "x.nc", "--format", "csv", "--out", "y.csv"], ["info", "temperature", "--json"],
+                  ["run", SCENE, "--set", "duration=1.5s", "--dry-run", "--json"]):  # fmt: skip
+        done = subprocess.run(
+            [sys.executable, "-c", script, tongue, *words], cwd=tmp_path, capture_output=True, text=True,
+            env=os.environ | {"PYTHONPATH": str(ROOT)}, encoding="utf-8", check=False,
+        )  # fmt: skip
+        if done.returncode == 77:
+            pytest.skip(f"the locale {tongue} is not here: localedef -i {tongue[:5]} -f UTF-8 {tongue}")
+        assert done.returncode == 0, done.stderr
+        found.append(done.stdout)
+    assert json.loads(found[2])["settings"]["duration"] == 1.5
+    assert json.loads(found[1])["parameters"]
+    rows = [path.read_text(encoding="utf-8") for path in sorted(tmp_path.glob("y*.csv"))]
+    assert any("0.1" in text for text in rows)
+    widths = {line.count(",") for text in rows for line in text.splitlines()[:1]}
+    assert widths != {0}
+    for text in rows:
+        assert len({line.count(",") for line in text.splitlines() if '"' not in line}) == 1
+
+
+def test_a_checkout_that_was_moved_runs_and_finds_the_same(usual, tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    for name in ("atmosbox", "scenarios"):
+        shutil.copytree(ROOT / name, here / name, ignore=shutil.ignore_patterns("__pycache__"))
+    (here / "pyproject.toml").write_text((ROOT / "pyproject.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    assert command(SHORT, tmp_path / "one", package=here)[0] == 0
+    here.rename(there)
+    assert command(SHORT, tmp_path / "two", package=there)[0] == 0
+    assert same(tmp_path / "one", usual)
+    assert same(tmp_path / "two", usual)
+
+
+# Clocks
+
+
+def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, monkeypatch):
+    """Checkpoints, locks, the bar and the expected time go by a clock that nobody sets."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    draw, now = random.Random(3), time.time()
+    monkeypatch.setattr(time, "time", lambda: now + draw.uniform(-1e8, 1e8))
+    prepared = runner.prepare(SCENE, {"duration": 2.0})
+    shares = []
+    checkpoint = Checkpoint(tmp_path / "x.nc", every_seconds=0.0)
+    with bars.progress(SCENE, quiet=False) as show:
+
+        def both(share, word):
+            shares.append(share)
+            show(share, word)
+
+        runner.execute(prepared, checkpoint=checkpoint, progress=both, command="a test")
+    assert shares == sorted(shares)
+    assert not list(tmp_path.glob(".*"))
+    kept, whole = content(tmp_path / "x.nc"), content(usual / "x.nc")
+    assert {name for name in whole if kept[name] != whole[name]} == {"history"}
+
+
+@pytest.mark.skipif(shutil.which("faketime") is None, reason="needs the program faketime")
+@pytest.mark.parametrize("jump", ["-3y", "+3y"])
+def test_a_computer_with_a_wrong_clock_goes_on_with_a_run(usual, tmp_path, monkeypatch, jump):
+    """A run that was begun in another year goes on, and its file is the same."""
+    prepared = runner.prepare(SCENE, {"duration": 2.0})
+
+    def half(share, word):
+        if word == "running" and share > 0.5:
+            raise KeyboardInterrupt
+
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    monkeypatch.setattr(runner, "_BREATH", 0.0)
+    typed = " ".join(["atmosbox", *SHORT])
+    with pytest.raises(runner.Interrupted):
+        runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "x.nc"), progress=half, command=typed)
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    words = ["faketime", "-f", jump, sys.executable, "-m", "atmosbox", "run", "--resume", "x.part.nc"]
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
+    assert same(tmp_path, usual)
+
+
+# Signals
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_a_signal_to_a_sweep_keeps_what_is_complete_and_says_so_by_its_status(tmp_path, number, status):
+    words = ["sweep", SCENE, "--vary", "molecules=10,2000", "--set", "duration=30s", "--jobs", "2", "--out", "x.nc"]
+    with started(words, tmp_path) as process:
+        deadline = time.monotonic() + 120.0
+        journal = tmp_path / "x.part.jsonl"
+        while process.poll() is None and time.monotonic() < deadline:
+            if journal.exists() and journal.read_bytes().count(b"\n") >= 2:
+                break
+            time.sleep(0.02)
+        process.send_signal(number)
+        _, said = process.communicate()
+    assert process.returncode == status, said
+    assert "1 of 2 runs are saved, type the same again" in said
+    assert read(tmp_path / "x.part.nc").attrs["atmosbox_status"] == "interrupted"
+
+
+# Disks
+
+
+@contextlib.contextmanager
+def disk(place, options):
+    """Mount a small disk of its own."""
+    place.mkdir()
+    subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", place], check=True)
+    try:
+        yield place
+    finally:
+        subprocess.run(["umount", "-l", place], check=True)
+
+
+@root
+@pytest.mark.soak
+@pytest.mark.parametrize("room", [100, 1200])
+def test_a_disk_that_fills_ends_a_run_with_a_sentence_and_nothing_half_written(tmp_path, room):
+    words = ["run", "temperature", "--set", "molecules=3000", "--set", "duration=3ns", "--save-molecules", "--out"]
+    with disk(tmp_path / "disk", f"size={room}k") as place:
+        (place / "old.nc").write_bytes(b"old")
+        status, _, said = command([*words, "x.nc"], place)
+        assert status == 1, said
+        assert "has no room" in said
+        assert (place / "old.nc").read_bytes() == b"old"
+        names = {path.name for path in place.iterdir()}
+        assert names <= {"old.nc", "x.part.nc"}
+        if "x.part.nc" in names:
+            assert read(place / "x.part.nc").sizes["elapsed_time"] > 0
+            if room == 1200:  # with more room it goes on
+                subprocess.run(["mount", "-o", "remount,size=200m", place], check=True)
+                assert command(["run", "--resume", "x.part.nc"], place)[0] in (0, 3)
+
+
+@root
+@pytest.mark.soak
+def test_a_sweep_outlives_states_that_find_no_room(tmp_path):
+    words = ["sweep", "temperature", "--vary", "temperature=0,40", "--set", "molecules=20000", "--jobs", "2", "--out"]
+    with disk(tmp_path / "disk", "size=600k") as place:
+        status, _, said = command([*words, "x.nc"], place)
+        assert status == 0, said
+        assert [path.name for path in place.iterdir()] == ["x.nc"]
+
+
+@root
+@pytest.mark.soak
+def test_a_folder_that_nothing_may_be_written_to_is_refused_and_a_cache_there_is_not_missed(usual, tmp_path):
+    with disk(tmp_path / "disk", "size=20m") as place:
+        shutil.copy(usual / "x.nc", place / "y.nc")
+        subprocess.run(["mount", "-o", "remount,ro", place], check=True)
+        for words in (SHORT, ["plot", "y.nc"], ["export", "y.nc", "--format", "csv"], ["sheet", SCENE],
+                      ["sweep", SCENE, "--vary", "molecules=10,20"]):  # fmt: skip
+            status, _, said = command(words, place)
+            assert status == 2, (words, said)
+            assert said.startswith("error: ")
+        status, _, said = command(SHORT, tmp_path / "run", NUMBA_CACHE_DIR=str(place))
+        assert status == 0, said
+        assert same(tmp_path / "run", usual)
+
+
+@root
+@pytest.mark.soak
+def test_a_cache_on_a_full_disk_costs_time_and_nothing_else(usual, tmp_path):
+    with disk(tmp_path / "disk", "size=64k") as place:
+        status, _, said = command(SHORT, tmp_path / "run", NUMBA_CACHE_DIR=str(place))
+        assert status == 0, said
+        assert same(tmp_path / "run", usual)
+
+
+# Caches
+
+
+@pytest.mark.soak
+def test_a_cache_of_which_every_file_is_cut_or_empty_is_made_anew(usual, tmp_path):
+    kept = cache_folder()
+    assert kept is not None
+    home = tmp_path / "cache"
+    home.mkdir(mode=0o700)
+    assert command(SHORT, tmp_path / "first", NUMBA_CACHE_DIR=str(home))[0] == 0
+    draw = random.Random(5)
+    for path in (path for path in home.rglob("*") if path.is_file()):
+        size = path.stat().st_size
+        path.write_bytes(path.read_bytes()[: draw.choice([0, size // 2, max(size - 1, 0)])])
+    for name in ("second", "third"):
+        status, _, said = command(SHORT, tmp_path / name, NUMBA_CACHE_DIR=str(home))
+        assert status == 0, said
+        assert same(tmp_path / name, usual)
+
+
+@pytest.mark.soak
+def test_runs_that_fill_one_empty_cache_at_once_find_the_same(usual, tmp_path):
+    home = tmp_path / "cache"
+    folders = [tmp_path / f"run {k}" for k in range(3)]
+    running = [started(SHORT, folder, NUMBA_CACHE_DIR=str(home)) for folder in folders]
+    for process, folder in zip(running, folders, strict=True):
+        _, said = process.communicate()
+        assert process.returncode == 0, said
+        assert same(folder, usual)
+    assert not list(home.rglob("*.tmp*"))
+
+
+@pytest.mark.soak
+def test_processes_killed_while_they_fill_a_cache_leave_one_that_serves(usual, tmp_path):
+    home, draw = tmp_path / "cache", random.Random(9)
+    for k in range(6):
+        with started(SHORT, tmp_path / f"{k}", NUMBA_CACHE_DIR=str(home)) as process:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(draw.uniform(0.5, 12.0))
+            process.kill()
+    status, _, said = command(SHORT, tmp_path / "last", NUMBA_CACHE_DIR=str(home))
+    assert status == 0, said
+    assert same(tmp_path / "last", usual)
