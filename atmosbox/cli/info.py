@@ -16,12 +16,15 @@ from atmosbox.text.table import story, table
 def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbose = False) -> None:
     """Show what a scene is about and what may be set."""
     from atmosbox.simulation import runner
+    from atmosbox.simulation.expected_time import expected_time
     from atmosbox.text.report import card_json, parameter_lines
 
     with prints_to_stderr():
-        card = runner.card(runner.prepare(scene, {}))
+        prepared = runner.prepare(scene, {})
+        card = runner.card(prepared)
+    expected = expected_time(prepared)
     if as_json:
-        say_json(card_json(card))
+        say_json(card_json(card) | {"expected_seconds": None if expected is None else expected.seconds})
         return
     columns = width()
     lines = [
@@ -29,7 +32,7 @@ def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbo
         "",
         *story(card.story, columns),
         "",
-        *table(["", ""], card.facts, columns),
+        *table(["", ""], [*card.facts, *([] if expected is None else [("a run takes", str(expected))])], columns),
         "",
         *parameter_lines(card.parameters, columns),
         "",

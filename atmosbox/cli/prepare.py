@@ -55,6 +55,7 @@ def prepare(
             if spent is not None:
                 seconds[each] = spent
             show(done / len(asked), "running")
+    _find_pace(names)
     waited = time.perf_counter() - began
     folder, size = str(cache_home()), compiled_here()
     if as_json:
@@ -66,6 +67,18 @@ def prepare(
         lines = [(name, engine or "exact", f"{s:.1f} s" if s else "kept") for (name, engine), s in seconds.items()]
         say("\n".join(table(["scene", "engine", "compiled in"], lines, width())))
         say(f"\nready after {waited:.0f} s; {size / 1e6:.0f} MB of machine code are kept in {folder}")
+
+
+def _find_pace(names: list[str]) -> None:
+    """Run a small box, from which it is known how fast this computer is, unless one has been run."""
+    from atmosbox.simulation import runner
+    from atmosbox.simulation.expected_time import expected_time
+
+    if "lifting-dry" in names:
+        prepared = runner.prepare("lifting-dry", {"ascent": 200.0})
+        expected = expected_time(prepared)
+        if expected is not None and not expected.here:
+            runner.execute(prepared)
 
 
 def _engines(every: bool) -> list[str | None]:

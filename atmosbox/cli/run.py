@@ -88,6 +88,7 @@ def run(
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.simulation import runner
+    from atmosbox.simulation.expected_time import expected_time
 
     restart = None
     if resume is None:
@@ -118,7 +119,9 @@ def run(
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
     try:
-        with prints_to_stderr(), progress(prepared.scene, quiet=quiet) as show:
+        hint = None if restart is not None or extend > 1 else expected_time(prepared)
+        words = "" if hint is None else str(hint)
+        with prints_to_stderr(), progress(prepared.scene, quiet=quiet, expected=words) as show:
             outcome = runner.execute(
                 prepared,
                 checkpoint=checkpoint,
@@ -168,27 +171,31 @@ def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry
     """Say what is about to be run, as the result of a dry run, else on stderr."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
     from atmosbox.simulation import runner
+    from atmosbox.simulation.expected_time import expected_time
     from atmosbox.text.report import setting_lines
 
     with prints_to_stderr():
         card = runner.card(prepared)
     settings = prepared.settings.as_dict()
     engine = f"{prepared.engine}: {prepared.engine.engine.summary}"
+    hint = expected_time(prepared)
     if dry_run and as_json:
         facts = {"dry_run": True, "scene": card.scene, "title": card.title, "file": str(path)}
         expected = expectation_json(prepared.expectation)
         facts |= {"engine": str(prepared.engine), "accuracy": expected}
+        facts["expected_seconds"] = None if hint is None else hint.seconds
         say_json({**facts, "settings": settings, "facts": dict(card.facts)})
     elif dry_run and quiet:
         say(str(path))
     else:
         expected_lines = expectation_lines(prepared.expectation, (), str(prepared.engine), width())
+        times = [] if hint is None else [("a run takes", str(hint))]
         lines = [
             f"{card.scene}: {card.title}",
             "",
             *setting_lines(settings, card.parameters, width()),
             "",
-            *table(["", ""], [("engine", engine), *card.facts], width()),
+            *table(["", ""], [("engine", engine), *card.facts, *times], width()),
             *(["", *expected_lines] if expected_lines else []),
             "",
             f"file: {path}" + (" (not written: this is a dry run)" if dry_run else ""),

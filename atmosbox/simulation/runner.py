@@ -16,6 +16,7 @@ from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import to_json
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.compilation import told
+from atmosbox.simulation.expected_time import remember_pace
 from atmosbox.simulation.preparation import Card, Prepared, build, card, prepare
 from atmosbox.simulation.recording import Recording, uninterrupted
 from atmosbox.simulation.restart import Restart, UnkeptError, check_alike, put_back, read_state, with_state
@@ -217,6 +218,8 @@ def _execute(
     if checkpoint is not None:
         with uninterrupted():
             checkpoint.finish(resumable(done.dataset) if keep_state else done.dataset)
+    if longer == 1:
+        remember_pace(prepared, done.engine_seconds)
     return done
 
 

@@ -17,7 +17,7 @@ Show = Callable[[float, str], None]
 
 
 @contextlib.contextmanager
-def progress(scene: str, *, quiet: bool) -> Iterator[Show]:
+def progress(scene: str, *, quiet: bool, expected: str = "") -> Iterator[Show]:
     """Show on stderr how far a run is.
 
     Parameters
@@ -26,6 +26,8 @@ def progress(scene: str, *, quiet: bool) -> Iterator[Show]:
         The name of the scene.
     quiet
         Whether nothing is to be shown.
+    expected
+        How long it will take, in words; nothing where that is not known.
 
     Yields
     ------
@@ -37,11 +39,12 @@ def progress(scene: str, *, quiet: bool) -> Iterator[Show]:
     if quiet:
         yield lambda fraction, doing: None
     elif sys.stderr is not None and sys.stderr.isatty() and os.environ.get("TERM") != "dumb":
-        with _bar(scene) as (move, name), _patient(lambda doing: name(f"{scene}: {doing}")) as hear:
+        shown = f"{scene}, {expected}" if expected else scene
+        with _bar(shown) as (move, name), _patient(lambda doing: name(f"{scene}: {doing}")) as hear:
 
             def show(fraction: float, doing: str) -> None:
                 if hear(doing):
-                    name(scene)
+                    name(shown)
                 move(fraction)
 
             yield show
