@@ -556,6 +556,7 @@ def test_a_member_goes_on_within_its_run_and_finds_the_same(tmp_path, monkeypatc
         assert member.run(kept, lambda share, word, into=shares: into.append(share)) == member.run(task)
         assert min(shares[1:]) >= 0.4
     assert RunStates(tmp_path / "a.nc").begun == 2
+    assert RunStates(tmp_path / "a.nc", [(1, 1)]).begun == 1  # killed between the journal and the state
     assert sweep(grid, tmp_path / "a.nc", jobs=1).computed == 2
     assert [each.name for each in tmp_path.iterdir()] == ["a.nc"]
 

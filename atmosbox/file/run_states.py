@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,8 @@ class RunStates:
     ----------
     path
         The file; None where nothing is kept.
+    complete
+        The runs whose outcome is kept, by point and member: a process that was killed may have left their states.
 
     Attributes
     ----------
@@ -71,8 +74,10 @@ class RunStates:
     ('3-2.nc', 1, [])
     """
 
-    def __init__(self, path: Path | None) -> None:
+    def __init__(self, path: Path | None, complete: Iterable[tuple[int, int]] = ()) -> None:
         self._folder = None if path is None else part_path(path.absolute().with_suffix(".states"))
+        for point, member in complete:
+            self.remove(point, member)
         self.begun = 0 if self._folder is None else len(list(self._folder.glob("*.part.nc")))
 
     def place(self, point: int, member: int) -> str | None:
@@ -85,7 +90,7 @@ class RunStates:
 
     def remove(self, point: int, member: int) -> None:
         """Remove the state of a run whose outcome is kept, with all that a process which was killed has left of it."""
-        if self._folder is None:
+        if self._folder is None or not self._folder.exists():
             return
         path = self._folder / f"{point}-{member}.nc"
         part = part_path(path)

@@ -146,7 +146,7 @@ class _Conductor:
         self.tell = progress or (lambda share, word: None)
         self.note = note or (lambda text: None)
         self.warned: set[str] = set()
-        self.states = RunStates(None if checkpoint is None else checkpoint.path)
+        self.states = RunStates(None if checkpoint is None else checkpoint.path, self.records)
 
     def conduct(self, jobs: int | None, scheduler: str | None) -> Swept:
         """Run what is missing, and write the file."""

@@ -48,7 +48,6 @@ class KeptRuns:
     """
 
     def __init__(self, path: Path | None, request: Mapping[str, Any], command: str, *, force: bool = False) -> None:
-        self._states = RunStates(path)
         self._journal: Journal | None = None
         self.spent = 0.0
         self.history: list[str] = []
@@ -58,6 +57,7 @@ class KeptRuns:
             self._journal = Journal(path, asked, history_line(command), force=force, kind="tradeoff")
             self.history = self._journal.history
             self.spent = max((float(each["spent"]) for each in self._journal.records.values()), default=0.0)
+        self._states = RunStates(path, () if self._journal is None else self._journal.records)
 
     def trials(self, ways: int) -> list[list[Trial]]:
         """Return what earlier calls have measured, by way."""
