@@ -41,7 +41,7 @@ def test_an_isolated_box_visits_all_states_alike(wet, name, dt):
     liquid = kind(substance, number=3, kT=1.4, **options)
     box = wet.box(liquid, 2, parcel=MoistDsmcParcel, seed=13, dt=dt)
     step = 1.25 if kind is Mist else 5.0
-    wet.holds_the_balance(box, 3, 2, options["nuclei"], substance, step=step, samples=25_000)
+    wet.holds_the_balance(box, 3, 2, options["nuclei"], substance, step=step, samples=40_000)
 
 
 @pytest.mark.parametrize("kind", [Mist, Pool])
