@@ -172,6 +172,8 @@ CASES = [
     Case("attraction", {"molecules": 300, "start": "slab", "density": 1.0, "temperature": 130.0, "duration": 2.0}, 12),
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
+    Case("diffusion", {"molecules": 1500}, 24),
+    Case("diffusion", {"molecules": 1000, "mass_ratio": 10.0, "duration": 2.0}, 24),
     Case("lifting-dry", {"molecules": 200, "ascent": 400.0}, 24),
     Case("lifting-dry", {"molecules": 200, "ascent": 150.0}, 60),
     Case("lifting-moist", {"molecules": 2000}, 60),

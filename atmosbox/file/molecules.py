@@ -51,6 +51,8 @@ class Molecules(NamedTuple):
         Numbers of molecules in the liquid, and of those that have rained out.
     neighbours : (frame, molecule) or None
         Where molecules attract each other, in how many wells each is.
+    right : (molecule,) or None
+        Which belong to the second of two gases.
     """
 
     discs: bool
@@ -69,6 +71,7 @@ class Molecules(NamedTuple):
     liquid: Whole | None = None
     rained: Whole | None = None
     neighbours: Whole | None = None
+    right: NDArray[np.bool_] | None = None
 
     @property
     def step(self) -> float:
@@ -155,6 +158,7 @@ def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
         "gravity": _falls(dataset),
         "drops": drops,
         "neighbours": neighbours,
+        "right": dataset["gas"].values == 1 if "gas" in dataset else None,
     }
 
 

@@ -39,6 +39,7 @@ VARIABLES: dict[str, Variable] = {
     **_declared(("speed",), ("speed", "m s-1", "speed of a molecule, middle of the bin"), ledger=True),
     **_declared(("energy",), ("energy", "J", "energy of a molecule of water above that of one at rest in the liquid, "
                  "middle of the bin"), ledger=True),
+    **_declared(("distance",), ("distance", "m", "distance from the left wall, middle of the bin"), ledger=True),
     **_declared(("wall",), ("wall", "", "wall of the box"), dtype="U"),
     **_declared(("axis",), ("axis", "", "direction in space, z upwards"), dtype="U"),
     **_declared(_MOLECULE, ("molecule", "1", "number of the molecule"), dtype="i8"),
@@ -195,6 +196,22 @@ VARIABLES: dict[str, Variable] = {
     # Speeds, bin by bin
     **_declared(("speed",), ("speed_probability_density", "s m-1", "share of molecules per unit of speed"),
                 cell_methods="speed: mean"),
+    # Two gases that mix
+    **_declared(
+        _TIME,
+        ("mixing_amplitude", "1", "slowest mode of the difference of two gases, over what it was when they were apart"),
+        ("mixing_entropy", "1", "entropy of mixing per molecule, over that of gases that are mixed"),
+        cell_methods=_POINT,
+    ),
+    **_declared(
+        ("distance",),
+        ("left_gas_share_early", "1", "share of the gas from the left, after a tenth of the mixing time"),
+        ("left_gas_share_middle", "1", "share of the gas from the left, after half the mixing time"),
+        ("left_gas_share_late", "1", "share of the gas from the left, after twice the mixing time"),
+        cell_methods="distance: mean",
+    ),
+    **_declared(_MOLECULE, ("gas", "", "which of two gases the molecule belongs to"),
+                dtype="i1", flags=("left", "right")),
     # Discs that collide in a plane
     **_declared(
         _TIME,

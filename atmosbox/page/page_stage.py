@@ -116,6 +116,7 @@ def stage(
     diameter: ArrayLike,
     fastest: float,
     water: ArrayLike | None = None,
+    right: ArrayLike | None = None,
     story: str = "",
     facts: Iterable[tuple[str, str]] = (),
     settings: Iterable[tuple[str, str]] = (),
@@ -145,6 +146,8 @@ def stage(
         Speed that the scale of colours must reach [m/s]; it ends at the next round number.
     water : (molecule,), optional
         Which molecules are water.
+    right : (molecule,), optional
+        Which molecules belong to the second of two gases, those that began on the right.
     story, facts, settings, version, seed, engine
         What the caption says.
     time_unit : str
@@ -185,7 +188,7 @@ def stage(
     wide = np.atleast_1d(np.asarray(diameter, np.float64))
     wet = None if water is None else np.asarray(water, np.bool_)
     shown = chosen(len(heavy), most, wet)
-    kinds, kind = _kinds(heavy, wet, discs=discs)
+    kinds, kind = _kinds(heavy, wet, None if right is None else np.asarray(right, np.bool_), discs=discs)
     lengths = np.array([side for axis, side in enumerate(box.length) if not (box.planar and axis == 1)])
     wider, said = _width(wide, float(np.exp(np.log(lengths).mean())), len(shown), discs=discs, unit=box.unit)
     drawn = wide * wider
@@ -238,10 +241,14 @@ def stage(
     return Stage(record, shown, names(panels))
 
 
-def _kinds(mass: Floats, water: NDArray[np.bool_] | None, *, discs: bool) -> tuple[tuple[str, ...], Indices]:
+def _kinds(
+    mass: Floats, water: NDArray[np.bool_] | None, right: NDArray[np.bool_] | None, *, discs: bool
+) -> tuple[tuple[str, ...], Indices]:
     """Return the names of the kinds of molecules, and of which kind each is."""
     if water is not None and water.any():
         return ("dry air", "water"), water.astype(np.intp)
+    if right is not None:
+        return ("gas from the left", "gas from the right"), right.astype(np.intp)
     kind = np.zeros(len(mass), np.intp)
     if discs:
         if not len(mass) or mass.min() == mass.max():

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         Layers,
         Leaving,
         Lift,
+        Mixing,
         MoistLift,
         Molecules,
         Readings,
@@ -55,7 +56,7 @@ _HOMES = {
     "headline": "Headline",
     "instruments": (
         "LAWS Air Clusters Discs DropSizes Environment Instrument Layers Leaving "
-        "Lift MoistLift Molecules Readings Slab Speeds Water wall_laws"
+        "Lift Mixing MoistLift Molecules Readings Slab Speeds Water wall_laws"
     ),
     "panels": "Line Panel",
     "settings": "SceneSettings setting",
@@ -79,6 +80,7 @@ __all__ = [
     "Leaving",
     "Lift",
     "Line",
+    "Mixing",
     "MoistLift",
     "Molecules",
     "Panel",

@@ -10,6 +10,9 @@ from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from atmosbox.engine import Parcel
     from atmosbox.scene.instruments import Instrument
     from atmosbox.scene.knob import Knob
@@ -48,6 +51,9 @@ class Setup:
     doubts
         What is doubtful about what was given, a sentence each: said when the run begins, and in its file.
 
+    right : (molecule,), optional
+        Which molecules belong to the second of two gases, where there are two; pictures give them another colour.
+
     Raises
     ------
     ValueError
@@ -73,6 +79,7 @@ class Setup:
     knobs: tuple[Knob, ...] = ()
     ends: bool = False
     doubts: tuple[str, ...] = ()
+    right: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         if self.frames < 1 or self.samples < 1 or not 0 <= self.settle < self.frames or not self.duration > 0.0:

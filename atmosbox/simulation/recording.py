@@ -75,7 +75,7 @@ class Recording:
     instruments: tuple[Instrument, ...] = ()
 
     def __post_init__(self) -> None:
-        extra = (Molecules(),) if self.prepared.save_molecules else ()
+        extra = (Molecules(self.setup.right),) if self.prepared.save_molecules else ()
         self.instruments = (*(self.instruments or self.setup.instruments), *extra)
         if self.first:
             snapshot = self.setup.parcel.snapshot()
@@ -139,7 +139,7 @@ class Recording:
         rest = min(setup.settle if settle is None else settle, max(self.frames - 2, 0)) + unseen
         for instrument in self.instruments:
             readings.update(instrument.readings(setup.scale, rest))
-        names = ("height", "height_bnds", "speed", "speed_bnds", "energy", "energy_bnds")
+        names = ("height", "height_bnds", "speed", "speed_bnds", "energy", "energy_bnds", "distance", "distance_bnds")
         coords = {name: readings.pop(name) for name in names if name in readings}
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)

@@ -15,6 +15,7 @@ well_gas            pressure and energy of a gas whose molecules attract each ot
 disc                the same in two dimensions, and how often discs meet
 collision           how often molecules meet, and how far they fly between
 maxwell             how fast they are, and how much the temperature of few of them scatters
+diffusion           how two gases mix, how fast, and the entropy of that
 wall_law            with which energy they leave a wall; the heat between two walls in a very thin gas
 barometric          how a gas thins out with height
 column_temperature  which temperature an isolated column comes to
@@ -55,6 +56,13 @@ from atmosbox.theory.collision import (
     mean_free_time,
 )
 from atmosbox.theory.column_temperature import column_temperature
+from atmosbox.theory.diffusion import (
+    diffusivity_error,
+    mixed_share,
+    mixing_decay_rate,
+    mixing_entropy,
+    mutual_diffusivity,
+)
 from atmosbox.theory.disc import (
     FREEZING_PACKING_FRACTION_DISCS,
     collision_rate_discs,
@@ -192,6 +200,7 @@ __all__ = [
     "critical_point",
     "density_temperature",
     "dewpoint",
+    "diffusivity_error",
     "dry_adiabat_temperature",
     "dry_lapse_rate",
     "emission_energy",
@@ -227,8 +236,12 @@ __all__ = [
     "mean_speed",
     "measured_cloud_base",
     "microcanonical_flux",
+    "mixed_share",
+    "mixing_decay_rate",
+    "mixing_entropy",
     "mixing_ratio",
     "moist_air_poisson_exponent",
+    "mutual_diffusivity",
     "packing_fraction",
     "packing_fraction_discs",
     "parcel_buoyancy",

@@ -20,6 +20,7 @@ from atmosbox.simulation.verification import LEDGER_LIMIT, verify
 SMALL = {
     "atmosphere": {"molecules": 200, "duration": 20},
     "condensation": {"molecules": 300, "duration": "2 ns"},
+    "diffusion": {"molecules": 200, "duration": 1.0},
     "elastic-collisions": {"molecules": 20, "duration": "3 s"},
     "evaporation": {"molecules": 300, "pool": 60, "duration": "1 ns"},
     "lifting-dry": {"molecules": 100, "ascent": 40},

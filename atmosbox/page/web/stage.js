@@ -17,7 +17,7 @@ export class Stage {
   constructor(parent, record, film) {
     this.record = record;
     this.film = film;
-    this.mode = record.species.length > 1 && record.water ? "species" : "speed";
+    this.mode = record.species.length > 1 && record.particle === "molecule" ? "species" : "speed";
     this.wraps = [0, 1, 2].map((axis) => record.box.walls[2 * axis] === "periodic");
     this.canvas = document.createElement("canvas");
     this.canvas.tabIndex = 0;

@@ -13,6 +13,7 @@ from atmosbox.scene.instruments.emitted import Leaving
 from atmosbox.scene.instruments.instrument import Instrument, Readings
 from atmosbox.scene.instruments.layer import Layers
 from atmosbox.scene.instruments.lifted_air import Environment, Lift
+from atmosbox.scene.instruments.mixing import MOMENTS, Mixing
 from atmosbox.scene.instruments.moist_lift import MoistLift
 from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
 from atmosbox.scene.instruments.slab import Slab
@@ -21,6 +22,7 @@ from atmosbox.scene.instruments.water import Water
 
 __all__ = [
     "LAWS",
+    "MOMENTS",
     "Air",
     "Clusters",
     "Discs",
@@ -30,6 +32,7 @@ __all__ = [
     "Layers",
     "Leaving",
     "Lift",
+    "Mixing",
     "MoistLift",
     "Molecules",
     "Readings",

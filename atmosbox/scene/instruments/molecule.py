@@ -51,9 +51,15 @@ class Molecules:
     A molecule that is in the liquid has neither place nor velocity, and reads NaN. Where there is water, the readings
     say which molecules are water, and where drops are that can be seen. Where molecules attract each other, they say
     how many neighbours each has.
+
+    Parameters
+    ----------
+    right : (molecule,), optional
+        Which molecules belong to the second of two gases, where there are two.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, right: NDArray[np.bool_] | None = None) -> None:
+        self._right = right
         self._position: list[Single] = []
         self._velocity: list[Single] = []
         self._sides: list[Array] = []
@@ -109,6 +115,8 @@ class Molecules:
         )
         if self._neighbours:
             found["molecule_neighbour_count"] = np.minimum(self._neighbours, 127).astype(np.int8)
+        if self._right is not None:
+            found["gas"] = np.asarray(self._right, np.int8)
         if self._moist:
             found["species"] = water.astype(np.int8)
         if self._drops:

@@ -1,0 +1,112 @@
+"""Two gases that mix: how far they are from being one, and the entropy of mixing, counted."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Parcel, Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["MOMENTS", "Mixing"]
+
+Array = NDArray[np.float64]
+Counts = NDArray[np.integer]
+
+MOMENTS = {"early": 0.1, "middle": 0.5, "late": 2.0}
+"""When the share of one gas is drawn across the box, in mixing times."""
+
+
+class Mixing:
+    r"""The slowest mode of the difference of two gases, the entropy of mixing, and where both are at some moments.
+
+    Parameters
+    ----------
+    right : (molecule,)
+        Which molecules began on the right.
+    moments
+        When to look where the gases are, by name [reduced time]: at the end of the frame that comes nearest.
+    bins
+        Into how many equal parts the box is divided along x.
+
+    Notes
+    -----
+    The mode is :math:`A = \langle s \cos (\pi x / L) \rangle`, s = 1 for one gas and -1 for the other, x as far as
+    centres reach, over its value :math:`2/\pi` for two gases that are apart.
+
+    The entropy is counted in bins, :math:`-\sum_b \frac{n_b}{N} \sum_a c_{ab} \ln c_{ab}`. Few molecules in a bin look
+    more orderly than they are: where K gases have been found among n molecules, :math:`(K - 1) / 2n` is added [1]_.
+
+    References
+    ----------
+    .. [1] Miller, G. A. (1955), Note on the bias of information estimates, in: Information Theory in Psychology.
+    """
+
+    def __init__(self, right: NDArray[np.bool_], moments: dict[str, float], bins: int = 20) -> None:
+        self._right = np.asarray(right, np.bool_)
+        self._moments = moments
+        self._bins = bins
+        self._times: list[float] = []
+        self._rows: list[tuple[float, float]] = []
+        self._shares: dict[str, tuple[float, Array, Array]] = {}
+        self._length = 1.0
+
+    def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Need no sample between frames."""
+
+    def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
+        """Count both gases across the box."""
+        radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
+        self._length = float(parcel.length[0]) - 2.0 * radius
+        across = (snapshot.position[:, 0] - radius) / self._length
+        sign = np.where(self._right, -1.0, 1.0)
+        amplitude = float(np.mean(sign * np.cos(math.pi * across))) * math.pi / 2.0
+        place = np.clip((across * self._bins).astype(int), 0, self._bins - 1)
+        left, right = (np.bincount(place[chosen], minlength=self._bins) for chosen in (~self._right, self._right))
+        self._times.append(parcel.time)
+        self._rows.append((amplitude, entropy_of_counts(left, right)))
+        for name, moment in self._moments.items():
+            off = abs(parcel.time - moment)
+            if name not in self._shares or off < self._shares[name][0]:
+                self._shares[name] = (off, left.astype(float), (left + right).astype(float))
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series of mode and entropy, and the shares across the box."""
+        if not self._rows:
+            return Readings()
+        amplitude, entropy = np.array(self._rows).T
+        edges = np.linspace(0.0, self._length, self._bins + 1) * scale.length
+        found = Readings(
+            mixing_amplitude=amplitude,
+            mixing_entropy=entropy / math.log(2.0),
+            distance=0.5 * (edges[1:] + edges[:-1]),
+            distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),
+        )
+        for name, (_, left, both) in self._shares.items():
+            share = left / np.where(both > 0.0, both, math.nan)
+            # Laplace's estimate in the error, so that a bin of one gas alone has one too
+            guess = (left + 1.0) / (both + 2.0)
+            found[f"left_gas_share_{name}"] = share
+            found[f"left_gas_share_{name}_se"] = np.sqrt(guess * (1.0 - guess) / (both + 2.0))
+        return found
+
+
+def entropy_of_counts(left: Counts, right: Counts) -> float:
+    """Return the entropy of mixing per molecule, in units of k, of two gases counted in bins; see `Mixing`.
+
+    Examples
+    --------
+    Gases that are apart have none; one molecule of each in a bin looks like ln 2, and is taken for a little more:
+
+    >>> entropy_of_counts(np.array([9, 0]), np.array([0, 9])), round(entropy_of_counts(np.array([1]), np.array([1])), 4)
+    (0.0, 0.9431)
+    """
+    both = np.asarray(left + right, np.float64)
+    held = both > 0.0
+    parts = np.stack([left[held], right[held]]) / both[held]
+    terms = np.where(parts > 0.0, -parts * np.log(np.where(parts > 0.0, parts, 1.0)), 0.0).sum(axis=0)
+    unseen = 0.5 * ((parts > 0.0).sum(axis=0) - 1.0) / both[held]
+    return float(np.sum(both[held] * (terms + unseen)) / both.sum()) if held.any() else 0.0

@@ -1,0 +1,331 @@
+"""Two gases mix, though no molecule knows where to go.
+
+One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall
+between them is taken away. Every molecule flies on as it did; it is the collisions that turn its way into a random
+walk. What differs from left to right fades, its broad features last: the slowest is one half of a wave between the
+end walls, which decays as exp(-D (pi/L)^2 t). Nothing is lost and no energy changes hands, but the two gases do not
+part again: the entropy of mixing grows to k ln 2 for each molecule.
+
+By default the two gases differ by a label alone, as air that was painted: what is measured then is how far a
+molecule gets among its like, self-diffusion. With mass_ratio the molecules on the right are so many times as heavy,
+as argon is to helium with 10.
+
+Modelled: hard spheres of one size between smooth end walls; the other sides are open, and what leaves on one comes
+in on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that
+the box is many mean free paths long with some thousand of them. The coefficient D is that of Chapman and Enskog for
+a thin gas over Enskog's contact value; that it leaves out how collisions of a denser gas are correlated is in the
+error that is allowed.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine import Periodic, Specular, maxwell_velocities
+from atmosbox.errors import SettingError
+from atmosbox.scene import Air, EngineChoice, Headline, Line, Mixing, Panel, Scale, SceneSettings, Setup, setting
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.instruments import MOMENTS
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+title = "Diffusion"
+FRAMES = 120
+SKIP = 2
+"""Frames before the molecules have forgotten how they flew when the wall was taken away."""
+BINS = 20
+LEAST_PATHS = 10.0
+"""How many mean free paths the box must be long at least: in a shorter one gases do not diffuse, they fly."""
+CORRELATED = 0.67
+"""By how much of the packing fraction correlated collisions may change D: measured, 1.2 times Enskog's at 0.3."""
+VISCOSITY = 0.179136
+"""Of a thin gas of hard spheres, in its units (Chapman and Enskog)."""
+IMAGES = 2.837297
+"""What a molecule and its images in a periodic cube do to each other (Yeh and Hummer 2004, doi:10.1021/jp0477147)."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(12_000, "1", "number of molecules of both gases together", low=100, high=1_000_000)
+    length: float = setting(150.0, "nm", "length of the box", low=10.0, high=10_000.0)
+    mass_ratio: float = setting(
+        1.0, "1", "mass of a molecule on the right, in that of one on the left", low=0.01, high=100.0
+    )
+    temperature: float = setting(15.0, "degC", "temperature of both gases", low=-200.0, high=1000.0)
+    pressure: float = setting(
+        1000.0, "hPa", "pressure that both would have if molecules were points", low=1.0, high=2e4
+    )
+    diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=3.0)
+    duration: float = setting(
+        3.0, "1", "how long to watch, in mixing times: those of the slowest mode", low=0.5, high=50.0
+    )
+
+    def check(self) -> None:
+        """Refuse what is no gas, and a box so short or so thin that its gases do not diffuse."""
+        filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
+        if filled > 0.1:
+            widest = math.floor(100.0 * self.diameter * (0.1 / filled) ** (1.0 / 3.0)) / 100.0
+            raise SettingError(
+                "diameter",
+                f"{self.diameter:g} nm",
+                f"is too wide for a gas of {self.pressure:g} hPa",
+                f"give --set diameter={widest:g}nm or less",
+            )
+        density, side = _box(self)
+        path = float(law.mean_free_path(density, 1.0))
+        paths = (self.si.length / self.si.diameter - 1.0) / path
+        if paths < LEAST_PATHS:
+            least = math.ceil((LEAST_PATHS * path + 1.0) * self.diameter)
+            raise SettingError(
+                "length",
+                f"{self.length:g} nm",
+                f"is only {paths:.1f} mean free paths long, so that the gases fly through each other",
+                f"give --set length={least}nm or more, or a larger diameter or pressure",
+            )
+        if side < 3.0:
+            least = math.ceil(self.molecules * (3.0 / side) ** 2)
+            raise SettingError(
+                "molecules",
+                self.molecules,
+                f"fill a box only {side:.1f} diameters wide",
+                f"give --set molecules={least} or more",
+            )
+
+
+def _box(settings: Settings) -> tuple[float, float]:
+    """Return the number density [1/diameter^3] and the width of the box [diameters]."""
+    si = settings.si
+    density = si.pressure * si.diameter**3 / (BOLTZMANN * si.temperature)
+    return density, math.sqrt(settings.molecules / density / (si.length / si.diameter - 1.0))
+
+
+def _masses(settings: Settings) -> tuple[float, float]:
+    return 1.0, settings.mass_ratio
+
+
+def _diffusivity(settings: Settings, *, ideal: bool) -> float:
+    """Return the mutual diffusion coefficient [reduced]."""
+    density, _ = _box(settings)
+    contact = 1.0 if ideal else float(law.contact_value(law.packing_fraction(density, 1.0)))
+    return law.mutual_diffusivity(density, 1.0, _masses(settings), 1.0, contact=contact)
+
+
+def _rate(settings: Settings, *, ideal: bool) -> float:
+    """Return how fast the slowest mode decays [reduced]."""
+    reach = settings.si.length / settings.si.diameter - 1.0
+    return law.mixing_decay_rate(_diffusivity(settings, ideal=ideal), reach)
+
+
+def _scale(settings: Settings) -> Scale:
+    return Scale(settings.si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * settings.si.temperature)
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return both gases at the moment at which the wall is taken away."""
+    n = settings.molecules
+    rng = np.random.default_rng(settings.seed)
+    scale, (density, side) = _scale(settings), _box(settings)
+    length = (settings.si.length / scale.length, side, side)
+    position = engine.scatter(length, np.ones(n), rng, periodic=(False, True, True))
+    position = position[np.argsort(position[:, 0], kind="stable")]
+    right = np.arange(n) >= n // 2
+    mass = np.where(right, settings.mass_ratio, 1.0)
+    rate = _rate(settings, ideal=engine.ideal)
+    parcel = engine.make(
+        position,
+        maxwell_velocities(1.0, mass, rng),
+        length=length,
+        walls=(Specular(),) * 2 + (Periodic(),) * 4,
+        mass=mass,
+        seed=settings.seed,
+    )
+    path = float(law.mean_free_path(density, 1.0))
+    return Setup(
+        parcel,
+        scale,
+        settings.duration / rate,
+        FRAMES,
+        (Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)),
+        facts={
+            "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, its sides open",
+            "weight of a molecule": "1, each stands for one real molecule",
+            "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+            "gamma": "5/3: the molecules do not rotate",
+            "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",
+            "mixing time": f"{scale.time / rate * 1e9:.3g} ns, in which the slowest mode falls to 1/e",
+            "noise": f"the diffusion coefficient of one run scatters by {100.0 * _spread(settings):.1f} %",
+        },
+        right=right,
+    )
+
+
+def _spread(settings: Settings) -> float:
+    r"""Return by what share chance makes the decay of one run faster or slower.
+
+    The N molecules walk independently, so that the mode is a process of Ornstein and Uhlenbeck with variance
+    :math:`1/2N`, which begins at :math:`2/\pi`; its decay is known with the error
+    :math:`\pi / \sqrt{2 N (1 - e^{-2T})}` after T mixing times.
+    """
+    return math.pi / math.sqrt(-2.0 * settings.molecules * math.expm1(-2.0 * settings.duration))
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return the decay of the slowest mode, the entropy of mixing, and the shares across the box."""
+    passed = _passed(dataset, settings)
+    edges = np.linspace(0.0, 1.0, BINS + 1)
+    found = {
+        "mixing_amplitude_theory": np.exp(-passed),
+        "mixing_entropy_theory": law.mixing_entropy(law.mixed_share(edges, passed)) / math.log(2.0),
+    }
+    for name, moment in MOMENTS.items():
+        nearest = passed[np.abs(passed - moment).argmin()]
+        found[f"left_gas_share_{name}_theory"] = law.mixed_share(edges, float(nearest))
+    return found
+
+
+def _passed(dataset: "xr.Dataset", settings: Settings) -> np.ndarray:
+    """Return the times of the frames in mixing times of theory."""
+    rate = _rate(settings, ideal=used(dataset).ideal)
+    return np.asarray(dataset.elapsed_time.values * 1e-9 / _scale(settings).time * rate)
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return the diffusion coefficient, and the entropy of mixing after one mixing time and at the end."""
+    passed = _passed(dataset, settings)
+    if len(passed) < SKIP + 20:
+        return ()
+    scale, ideal = _scale(settings), used(dataset).ideal
+    expected = _diffusivity(settings, ideal=ideal)
+    known = _known(settings, ideal=ideal)
+    reason = "the gas is not thin, the mode not endlessly slow, and the series of Chapman and Enskog is cut off"
+    unit = scale.length**2 / scale.time
+    ratio, error = _decay(dataset.mixing_amplitude.values, passed, settings.molecules)
+    found = [
+        Headline(
+            "diffusion_coefficient",
+            ratio * expected * unit,
+            error * expected * unit,
+            expected * unit,
+            known * expected * unit,
+            reason,
+            "m2 s-1",
+            "mm2 s-1",
+            "diffusion coefficient",
+        )
+    ]
+    for name, moment, label in (
+        ("entropy_after_one_mixing_time", 1.0, "entropy of mixing / N k ln 2 after one mixing time"),
+        ("entropy_at_the_end", passed[-1], "entropy of mixing / N k ln 2 at the end"),
+    ):
+        if passed[-1] < moment:
+            continue
+        place = int(np.abs(passed - moment).argmin())
+        mean, spread, steep = _entropy_spread(float(passed[place]), settings.molecules)
+        found.append(
+            Headline(
+                name,
+                float(dataset.mixing_entropy.values[place]),
+                spread,
+                mean,
+                known * steep,
+                reason,
+                "1",
+                "1",
+                label,
+            )
+        )
+    return tuple(found)
+
+
+def _decay(amplitude: np.ndarray, passed: np.ndarray, molecules: int) -> tuple[float, float]:
+    r"""Return the rate at which the slowest mode decays, over that of theory, and its standard error.
+
+    From each frame to the next the mode is multiplied by r and gets a random part of variance
+    :math:`(1 - r^2) \pi^2 / 8 N`; the best estimate of r is :math:`\sum A_i A_{i+1} / \sum A_i^2`.
+    """
+    before, after = amplitude[SKIP - 1 : -1], amplitude[SKIP:]
+    step, weight = float(passed[1] - passed[0]), float(before @ before)
+    factor = min(max(float(before @ after) / weight, 1e-6), 1.0 - 1e-12)
+    error = math.sqrt((1.0 - factor**2) * math.pi**2 / (8.0 * molecules) / weight)
+    return -math.log(factor) / step, error / (factor * step)
+
+
+def _entropy_spread(passed: float, molecules: int) -> tuple[float, float, float]:
+    """Return the entropy of mixing, its standard deviation by chance, and by how much a faster decay by 1 raises it.
+
+    Two things scatter: the slowest mode, and the counts in the bins.
+    """
+    edges = np.linspace(0.0, 1.0, BINS + 1)
+    low, mean, high = law.mixing_entropy(law.mixed_share(edges, passed * np.array([0.99, 1.0, 1.01]))) / math.log(2.0)
+    slope = (high - low) / (0.02 * passed)  # with time; a relative change of the rate is one of time
+    of_mode = math.sqrt(-math.expm1(-2.0 * passed) * math.pi**2 / (8.0 * molecules)) * math.exp(passed)
+    of_counts = math.sqrt(2.0 * BINS) / (2.0 * molecules * math.log(2.0))
+    return float(mean), math.hypot(slope * of_mode, of_counts), float(slope * passed)
+
+
+def _known(settings: Settings, *, ideal: bool) -> float:
+    r"""Return by what share the coefficient of theory may be off.
+
+    Correlated collisions of a gas that is not thin; that a mode decays a little while a molecule forgets its way; the
+    flow around a molecule, which in a box of width w meets its own images and slows it, by
+    :math:`2.837 kT / 6 \pi \mu w`; and of unlike gases what the second approximation adds to the first. Not in it:
+    unlike gases that mix make one side warmer (the effect of Dufour), which slows them; measured with masses 1 : 10,
+    by 4.9 +- 0.8 %.
+    """
+    density, side = _box(settings)
+    diffusivity, rate = _diffusivity(settings, ideal=ideal), _rate(settings, ideal=ideal)
+    lighter = min(_masses(settings))
+    forgotten = rate * diffusivity * max(lighter, 1.0)  # how much decays while a molecule forgets its way
+    dense = 0.0 if ideal else CORRELATED * float(law.packing_fraction(density, 1.0))
+    narrow = 0.0 if ideal else IMAGES / (6.0 * math.pi * VISCOSITY * side * diffusivity)
+    return dense + forgotten + narrow + law.diffusivity_error(_masses(settings))
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return the share across the box at three moments, the decay of the slowest mode, and the entropy."""
+    shares = {"early": "τ/10", "middle": "τ/2", "late": "2τ"}
+    return (
+        Panel(
+            "line",
+            "The difference decays",
+            (
+                Line("elapsed_time", "mixing_amplitude", "slowest mode"),
+                Line("elapsed_time", "mixing_amplitude_theory", "theory", "theory"),
+            ),
+            x_label="time",
+            y_label="difference",
+            headlines=("diffusion_coefficient",),
+        ),
+        Panel(
+            "line",
+            "Mixing makes entropy",
+            (
+                Line("elapsed_time", "mixing_entropy", "counted"),
+                Line("elapsed_time", "mixing_entropy_theory", "theory", "theory"),
+            ),
+            x_label="time",
+            y_label="entropy / N k ln 2",
+            headlines=("entropy_after_one_mixing_time",),
+        ),
+        Panel(
+            "line",
+            "What was on the left is everywhere",
+            tuple(
+                line
+                for name, label in shares.items()
+                for line in (
+                    Line("distance", f"left_gas_share_{name}", label, error=f"left_gas_share_{name}_se"),
+                    Line("distance", f"left_gas_share_{name}_theory", f"{label}, theory", "theory"),
+                )
+            ),
+            x_label="distance from the left wall",
+            y_label="share of the left gas",
+            x_unit="nm",
+            y_unit="percent",
+        ),
+    )

@@ -1,0 +1,81 @@
+"""Two gases that mix: D, the slowest mode and the entropy of mixing, against theory and against counting by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+import atmosbox
+from atmosbox import theory as law
+from atmosbox.errors import SettingError
+from atmosbox.scene.instruments.mixing import entropy_of_counts
+from atmosbox.simulation.preparation import prepare
+
+
+def test_the_share_solves_the_diffusion_equation_and_keeps_half_of_each_gas():
+    edges = np.linspace(0.0, 1.0, 201)
+    for passed in (0.02, 0.3, 2.0):
+        share = law.mixed_share(edges, np.array([passed - 1e-4, passed, passed + 1e-4]))
+        assert share.mean(axis=1) == pytest.approx([0.5] * 3, abs=1e-12)
+        rate = (share[2] - share[0]) / 2e-4  # per mixing time: d c / d(Gamma t) = (L / pi)^2 c''
+        bend = np.diff(share[1], 2) * 200.0**2 / math.pi**2
+        assert np.allclose(rate[1:-1], bend, atol=2e-3 * np.abs(rate).max())
+
+
+def test_entropy_counted_from_few_molecules_is_not_too_small():
+    rng = np.random.default_rng(5)
+    left = rng.binomial(40, 0.3, (4000, 1))
+    plain, corrected = [], []
+    for (n,) in left:
+        share = n / 40.0
+        plain.append(-sum(p * math.log(p) for p in (share, 1.0 - share) if p))
+        corrected.append(entropy_of_counts(np.array([n]), np.array([40 - n])))
+    exact = -0.3 * math.log(0.3) - 0.7 * math.log(0.7)
+    error = np.std(plain) / math.sqrt(4000)
+    assert exact - np.mean(plain) > 8.0 * error  # 1 / 80 too small without the correction
+    assert abs(np.mean(corrected) - exact) < 4.0 * error
+
+
+def test_gases_alike_mix_as_fast_as_chapman_and_enskog_say_and_make_k_ln_2():
+    runs = [atmosbox.run("diffusion", molecules=3000, seed=seed) for seed in range(8)]
+    ratio = np.array([float(run.diffusion_coefficient / run.diffusion_coefficient_theory) for run in runs])
+    stated = float(runs[0].diffusion_coefficient_se / runs[0].diffusion_coefficient_theory)
+    known = float(runs[0].diffusion_coefficient_tolerance / runs[0].diffusion_coefficient_theory)
+    assert known < 0.06
+    assert abs(ratio.mean() - 1.0) < 4.0 * stated / math.sqrt(8.0) + known  # 6e-5 of false alarms
+    end = np.mean([float(run.mixing_entropy[-1]) for run in runs])
+    assert end == pytest.approx(float(runs[0].mixing_entropy_theory[-1]), abs=0.005)
+    assert float(runs[0].mixing_entropy[0]) < 0.3
+    assert max(float(run.ledger_residual.max()) for run in runs) < 1e-12
+
+
+def test_heavy_molecules_mix_more_slowly():
+    alike, heavy = (atmosbox.run("diffusion", molecules=2000, mass_ratio=ratio) for ratio in (1.0, 10.0))
+    assert float(heavy.diffusion_coefficient) < 0.85 * float(alike.diffusion_coefficient)  # sqrt(0.55) f is 0.77
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"length": "20 nm"}, "mean free paths long"),
+        ({"diameter": "3 nm"}, "too wide for a gas"),
+        ({"molecules": 100, "length": "1000 nm"}, "diameters wide"),
+    ],
+)
+def test_boxes_in_which_gases_do_not_diffuse_are_refused(values, said):
+    with pytest.raises(SettingError, match=said):
+        prepare("diffusion", values)
+
+
+def test_pictures_tell_the_two_gases_apart(tmp_path):
+    from atmosbox.page.saved_run import pages
+
+    run = atmosbox.run("diffusion", molecules=400, duration=0.5, save_molecules=True)
+    stage = pages([run])[0].record["stage"]
+    assert [(kind["name"], kind["count"]) for kind in stage["species"]] == [
+        ("gas from the left", 200),
+        ("gas from the right", 200),
+    ]
+    first = run.molecule_position.values[0, :, 0]
+    assert first[:200].mean() < first[200:].mean()
+    assert run.gas.attrs["flag_meanings"] == "left right"
