@@ -130,7 +130,7 @@ def test_the_wheel_holds_the_package_the_scenarios_and_nothing_else(wheel):
         found = archive.namelist()
     assert len(found) == len(set(found))
     assert {name.split("/")[0] for name in found if ".dist-info/" not in name} == {"atmosbox"}
-    own = {path.name for ending in ("py", "sheet.toml") for path in ROOT.glob(f"scenarios/*.{ending}")}
+    own = {path.name for ending in ("py", "sheet.toml", "live.toml") for path in ROOT.glob(f"scenarios/*.{ending}")}
     assert {Path(name).name for name in found if name.startswith("atmosbox/scenarios/")} == {
         "__init__.py",
         *own,
