@@ -62,6 +62,9 @@ class Plate(NamedTuple):
     column: int
 
 
+_SMALLEST = 0.6  # of the type of a label that is too long for its axis
+
+
 def page(
     panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[Reading],
     small: str, heading: str,
@@ -311,8 +314,12 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
         axes.tick_params(axis="x", labelbottom=False)
     log = panel.y_scale == "log"
     power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
-    # The label may reach over both ends of the axis into the gap that is there anyhow.
-    axes.set_ylabel(pen.wrap(labelled(y_label, y_unit, power), height + 0.8 * size, size))
+    # The label may reach over both ends of the axis into the gap that is there anyhow; a word that is longer still is
+    # written smaller, lest it runs into the legend.
+    room = height + 0.8 * size
+    label = pen.wrap(labelled(y_label, y_unit, power), room, size)
+    longest = max(pen.width(line, size) for line in label.split("\n")) if label else room
+    axes.set_ylabel(label, size=size * min(1.0, max(room / max(longest, 1e-9), _SMALLEST)))
 
 
 def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dict[tuple[int, int], int]) -> float:
