@@ -19,6 +19,7 @@ from atmosbox.simulation.verification import LEDGER_LIMIT, verify
 
 SMALL = {
     "atmosphere": {"molecules": 200, "duration": 20},
+    "attraction": {"molecules": 100, "duration": "0.02 ns"},
     "condensation": {"molecules": 300, "duration": "2 ns"},
     "diffusion": {"molecules": 200, "duration": 1.0},
     "elastic-collisions": {"molecules": 20, "duration": "3 s"},
