@@ -90,7 +90,7 @@ class Settings(SceneSettings):
     substance: str = setting(
         "argon", "", "whose size and attraction the molecules have", choices=("argon", "nitrogen", "methane")
     )
-    duration: float = setting(1.0, "ns", "how long to watch", low=1e-4, high=1e4)
+    duration: float = setting(1.6, "ns", "how long to watch", low=1e-4, high=1e4)
 
     def check(self) -> None:
         """Refuse a liquid where there is none, and a box too small for two surfaces."""
