@@ -37,8 +37,14 @@ def started(words, folder, *flags, package=ROOT, **variables):
     folder.mkdir(exist_ok=True)
     return subprocess.Popen(
         [sys.executable, *flags, "-m", "atmosbox", *words], cwd=folder, env=environment, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True, encoding="utf-8",
+        stderr=subprocess.PIPE, text=True, encoding="utf-8", preexec_fn=listen,
     )  # fmt: skip
+
+
+def listen():
+    """Hear signals, also where this is run by nohup or in the background, which are deaf to some of them."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def command(words, folder, *flags, **more):
