@@ -191,7 +191,7 @@ def test_a_computer_with_a_wrong_clock_goes_on_with_a_run(usual, tmp_path, monke
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_a_signal_to_a_sweep_keeps_what_is_complete_and_says_so_by_its_status(tmp_path, number, status):
-    words = ["sweep", SCENE, "--vary", "molecules=10,2000", "--set", "duration=30s", "--jobs", "2", "--out", "x.nc"]
+    words = ["sweep", SCENE, "--vary", "molecules=10,2000", "--set", "duration=300s", "--jobs", "2", "--out", "x.nc"]
     with started(words, tmp_path) as process:
         deadline = time.monotonic() + 120.0
         journal = tmp_path / "x.part.jsonl"
