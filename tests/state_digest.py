@@ -39,6 +39,7 @@ CASES = {
     "condensation": Case("condensation", {"molecules": 100}, 0.01),
     "condensation-drops": Case("condensation", {"molecules": 500, "drops": 4}, 0.002),
     "evaporation": Case("evaporation", {"molecules": 200}, 0.01),
+    "diffusion": Case("diffusion", {"molecules": 1000}, 0.002),
     "attraction": Case("attraction", {"molecules": 200}, 0.002),
     "attraction-vapour": Case("attraction", {"molecules": 200, "start": "vapour", "air": 0.5, "bath": "walls"}, 0.002),
     "stepped": Case("temperature", {"molecules": 60}, 0.02, "stepped:delta=0.1"),
