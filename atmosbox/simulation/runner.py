@@ -132,6 +132,8 @@ def execute(
         longer = max(longer, restart.longer)
     if checkpoint is None:
         return _execute(prepared, None, progress, command, restart, longer, keep_state, strict)
+    with uninterrupted():
+        checkpoint.load_libraries()
     checkpoint.begin()
     try:
         return _execute(prepared, checkpoint, progress, command, restart, longer, keep_state, strict)

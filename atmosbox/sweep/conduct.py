@@ -119,6 +119,8 @@ def sweep(
     if out is None:
         return _Conductor(plan, None, None, [line], progress, note).conduct(jobs, scheduler)
     checkpoint = Checkpoint(Path(out), _EVERY, force=force)
+    with uninterrupted():
+        checkpoint.load_libraries()
     checkpoint.begin()
     try:
         with Journal(checkpoint.path, plan.request(), line, force=force) as journal:
