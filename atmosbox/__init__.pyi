@@ -54,6 +54,41 @@ def run(
 
 @overload
 def run(
+    scene: Literal["attraction"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 800,
+    temperature: float | str = 105.0,
+    density: float | str = 0.26,
+    attraction: float | str = 1.0,
+    start: Literal["vapour", "slab", "drop", "pool"] = "vapour",
+    bath: Literal["random", "walls", "none"] = "random",
+    air: float | str = 0.0,
+    substance: Literal["argon", "nitrogen", "methane"] = "argon",
+    duration: float | str = 1.6,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""A liquid out of nothing but attraction.
+
+    molecules: number of molecules that attract each other; 50 to 20000
+    temperature [K]: temperature of the bath and at the start; 10 K to 20000 K
+    density: density of these molecules, over the critical one; 0.0001 to 2.3
+    attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
+    start: what is there first; vapour or slab or drop or pool
+    bath: what keeps it at its temperature; random or walls or none
+    air: density of molecules that attract none, over the critical one; 0 to 1
+    substance: whose size and attraction the molecules have; argon or nitrogen or methane
+    duration [ns]: how long to watch; 0.0001 ns to 10000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
     scene: Literal["condensation"],
     *,
     out: str | os.PathLike[str] | None = None,
@@ -82,6 +117,37 @@ def run(
     drops: number of nuclei of drops that can be seen; 0 for a mist; 0 to 50
     drop_size: how many times wider the drops are than real ones; 1 to 20
     duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["diffusion"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 12000,
+    length: float | str = 150.0,
+    mass_ratio: float | str = 1.0,
+    temperature: float | str = 15.0,
+    pressure: float | str = 1000.0,
+    diameter: float | str = 1.3,
+    duration: float | str = 3.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Two gases mix, though no molecule knows where to go.
+
+    molecules: number of molecules of both gases together; 100 to 1000000
+    length [nm]: length of the box; 10 nm to 10000 nm
+    mass_ratio: mass of a molecule on the right, in that of one on the left; 0.01 to 100
+    temperature [degC]: temperature of both gases; -200 degC to 1000 degC
+    pressure [hPa]: pressure that both would have if molecules were points; 1 hPa to 20000 hPa
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 3 nm
+    duration: how long to watch, in mixing times: those of the slowest mode; 0.5 to 50
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
 

@@ -209,7 +209,7 @@ def test_info_shows_story_facts_and_every_parameter_at_every_width(name):
 
 def test_info_json_has_what_a_program_needs():
     card = json.loads(atmosbox_in_process("info", SCENE, "--json").stdout)
-    assert {"scene", "title", "story", "facts", "parameters"} == set(card)
+    assert {"scene", "title", "story", "facts", "parameters", "expected_seconds"} == set(card)
     assert {"name", "unit", "default", "low", "high", "choices", "kind", "help"} == set(card["parameters"][0])
 
 

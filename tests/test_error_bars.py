@@ -106,7 +106,7 @@ def assert_profiles_are_covered(outcomes, names):
     wrong = {}
     for name in names:
         values, errors = (np.array([o.dataset[each].values for o in outcomes]) for each in (name, f"{name}_se"))
-        if (beside := PROFILES.get(name)) is not None:  # a parcel is at another pressure in each run
+        if (beside := PROFILES.get(name)) in outcomes[0].dataset:  # a parcel is at another pressure in each run
             values = values - np.array([o.dataset[beside].values for o in outcomes])
         known = np.isfinite(values).all(axis=0) & np.isfinite(errors).all(axis=0) & (errors > 0.0).any(axis=0)
         values, errors = values[:, known], errors[:, known]

@@ -308,6 +308,7 @@ found.drop_attrs(deep=False).to_netcdf("found.nc")
 LONG = (Rung("exact", {"molecules": 100}, 0, 100.0), Rung("exact", {"molecules": 15_000}, 0, 1.5e4))
 
 
+@pytest.mark.soak
 def test_a_tradeoff_that_is_killed_goes_on_within_its_run(tmp_path, monkeypatch):
     """kill -9: runs that are complete are kept, the one under way goes on, and every number is the same."""
     monkeypatch.setattr(budgeted_runs, "MOST_RUNS", 2)

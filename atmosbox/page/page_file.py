@@ -99,4 +99,4 @@ def check_choice(name: str, value: str, known: Sequence[str]) -> None:
         If the value is none of those that are known.
     """
     if value not in known:
-        raise SettingError(name, value, "is unknown", f"give --{name} {', '.join(known[:-1])} or {known[-1]}")
+        raise SettingError(name, value, "is unknown", f"give {', '.join(known[:-1])} or {known[-1]}")

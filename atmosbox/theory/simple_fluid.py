@@ -113,7 +113,7 @@ SIMPLE_FLUIDS = {
 def well_vapor_pressure(temperature: ArrayLike) -> NDArray[np.float64]:
     r"""Return the vapour pressure of the square well of range 1.5 by published simulations [depth/diameter^3].
 
-    :math:`\ln p = 3.5211 - 7.1939 / T^*`, the line through those of Singh, Kofke and Errington (2003) [4]_ with which
+    :math:`\ln p = 3.5211 - 7.1939 / T^*`, the line through those of Singh, Kofke and Errington (2003) with which
     the program etomica, of the same group, calculates. NaN above the critical temperature.
 
     Parameters
