@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from atmosbox.engine import Snapshot
 from atmosbox.engine.core.measure import temperature
 from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.statistics import overlapping_average
 from atmosbox.scene.units import Scale
 
 __all__ = ["Slab", "inner_and_outer"]
@@ -18,6 +19,7 @@ __all__ = ["Slab", "inner_and_outer"]
 Array = NDArray[np.float64]
 
 _BIN = 0.25
+_BLOCKS = 10
 _INSIDE, _OUTSIDE = 3.0, 4.0
 """How far from the middle of its surface, in diameters, liquid and vapour count as such."""
 
@@ -127,15 +129,16 @@ class Slab:
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return the profile, and the series of liquid and vapour; see `Instrument`."""
         frames = np.array(self._frames)
-        if len(frames) <= settle + 1:
+        if len(frames) - settle < 4:
             return Readings()
         layers = frames.shape[2]
         edges = np.linspace(0.0, self._height, layers + 1)
         height = 0.5 * (edges[1:] + edges[:-1])
         volume = self._area * self._height / layers
         late = frames[settle:]
-        density = late[:, 0].mean(axis=0) / volume
-        error = late[:, 0].std(axis=0, ddof=1) / volume / math.sqrt(len(late))
+        # surfaces wander and the number in the vapour is remembered for many frames: ten long blocks tell by how much
+        blocks = min(_BLOCKS, len(late) // 2)
+        density, error = (each / volume for each in overlapping_average(late[:, 0], blocks))
         found = Readings(
             height=height * scale.length,
             height_bnds=np.stack([edges[:-1], edges[1:]], axis=1) * scale.length,
