@@ -62,7 +62,7 @@ def save(
     >>> import xarray as xr
     >>> save([xr.Dataset()], "page.html", theme="pink")
     Traceback (most recent call last):
-    atmosbox.errors.SettingError: theme = pink is unknown: give --theme auto, light or dark.
+    atmosbox.errors.SettingError: theme = pink is unknown: give auto, light or dark.
     """
     check_choice("theme", theme, THEMES)
     check_choice("language", language, LANGUAGES)
