@@ -24,8 +24,10 @@ from atmosbox.errors import FileError, SettingError, UnknownSettingError
 from atmosbox.file.journal import Journal
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.run_states import RunStates
-from atmosbox.plot import save
+from atmosbox.plot import save, tradeoff_figure
+from atmosbox.plot.tradeoff_choice import recommended
 from atmosbox.scene.setup import Series
+from atmosbox.simulation.accuracy import choose
 from atmosbox.trade.tradeoff import KeptRuns, Rung, budgeted_runs, measure, rungs, timed_run, warm_engine
 from atmosbox.trade.tradeoff.budgeted_runs import BudgetedRuns
 from atmosbox.trade.tradeoff.measured_trade import _summary
@@ -248,11 +250,60 @@ def test_ctrl_c_keeps_what_was_measured():
     assert found.members.values.tolist() == [1, 0, 0]
 
 
-@pytest.mark.parametrize("theme", ["notes", "slides"])
-def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_path, theme):
+@pytest.mark.parametrize(("theme", "all_panels"), [("notes", False), ("notes", True), ("slides", False)])
+def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_path, theme, all_panels):
     saved = write(found, tmp_path / "trade.nc")
-    first = save(found, tmp_path / "first.svg", theme=theme).read_bytes()
-    assert save(read(saved), tmp_path / "second.svg", theme=theme).read_bytes() == first
+    first = save(found, tmp_path / "first.svg", theme=theme, all_panels=all_panels).read_bytes()
+    assert save(read(saved), tmp_path / "second.svg", theme=theme, all_panels=all_panels).read_bytes() == first
+
+
+def stored(scene):
+    """Return a trade that was measured for the pages."""
+    return read(ROOT / f"benchmarks/tradeoff-{scene}.nc")
+
+
+@pytest.mark.parametrize("scene", ["atmosphere", "evaporation", "lifting-dry", "temperature-large"])
+def test_the_recommended_run_is_the_one_that_accuracy_lecture_takes(scene):
+    best, enough = recommended(stored(scene))
+    way = stored(scene).isel(rung=best)
+    chosen = choose(scene, "lecture")
+    assert enough == chosen.met
+    assert str(way.engine.item()) == chosen.way.engine
+    assert scenarios.load(scene).Settings.from_user(json.loads(way.settings.item())).changed() == chosen.way.settings
+
+
+@pytest.mark.parametrize("scene", ["atmosphere", "lifting-dry", "lifting-moist", "temperature-large"])
+@pytest.mark.parametrize("theme", ["notes", "slides"])
+def test_one_panel_names_its_curves_where_they_are_and_covers_none_of_the_words(scene, theme):
+    dataset = stored(scene)
+    drawing = tradeoff_figure.figure(dataset, theme)
+    drawing.draw_without_rendering()
+    (axes,) = drawing.axes
+    words = [text.get_text() for text in axes.texts]
+    assert sum(text.startswith("recommended: ") for text in words) == 1
+    assert len(words) == 1 + len({int(row) for row in dataset.series.values[dataset.members.values > 0]})
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(box.overlaps(other) for k, box in enumerate(boxes) for other in boxes[k + 1 :])
+    for box in boxes:
+        assert drawing.bbox.x0 < box.x0
+        assert box.x1 < drawing.bbox.x1
+
+
+def test_another_experiment_is_not_recommended_however_good():
+    column = stored("atmosphere")
+    flat = column.settings.str.contains("plane")
+    assert flat.any()
+    perfect = {name: column[name].where(~flat, 0.0) for name in ("bias", "bias_se", "noise")}
+    best, _ = recommended(column.assign(engine_seconds=column.engine_seconds.where(~flat, 1e-9), **perfect))
+    assert not flat[best]
+
+
+def test_where_nothing_is_accurate_enough_the_most_accurate_is_marked():
+    unfit = stored("lifting-dry")
+    best, enough = recommended(unfit.assign(noise=unfit.noise + 10.0))
+    assert not enough
+    assert str(unfit.rung.values[best]).startswith(("exact", "dsmc"))
+    assert recommended(unfit.assign(engine_seconds=unfit.engine_seconds * np.nan)) is None
 
 
 def test_the_table_has_a_line_for_every_run(found):

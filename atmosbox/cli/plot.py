@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from atmosbox.cli.application import app, examples
-from atmosbox.cli.option import Force, Format, RunFile, Theme, Verbose, out_option
+from atmosbox.cli.option import AllPanels, Force, Format, RunFile, Theme, Verbose, out_option
 from atmosbox.cli.output_name import beside
 from atmosbox.cli.terminal import guarded, say
 
@@ -36,6 +36,7 @@ def plot(
             help="Draw the molecules in their box, at the start, half-way and at the end, over the graphs.",
         ),
     ] = False,
+    all_panels: AllPanels = False,
     force: Force = False,
     verbose: Verbose = False,
 ) -> None:
@@ -50,4 +51,5 @@ def plot(
 
     from atmosbox.plot import save
 
-    say(str(save(dataset, path, format and format.value, theme=theme.value, force=force, with_box=with_box)))
+    kind = format and format.value
+    say(str(save(dataset, path, kind, theme=theme.value, force=force, with_box=with_box, all_panels=all_panels)))

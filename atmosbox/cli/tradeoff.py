@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atmosbox.cli.application import app, examples, typed
-from atmosbox.cli.option import Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
+from atmosbox.cli.option import AllPanels, Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.terminal import INTERRUPTED, guarded, say, say_json, tell, width
 from atmosbox.errors import SettingError
@@ -39,6 +39,7 @@ def tradeoff(
     out: Annotated[
         str | None, out_option("The netCDF file; .csv and .png stand beside it.  [default: SCENE-tradeoff.nc]")
     ] = None,
+    all_panels: AllPanels = False,
     force: Force = False,
     as_json: Json = False,
     quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
@@ -52,6 +53,7 @@ def tradeoff(
     from atmosbox.file.netcdf import write
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.plot import save
+    from atmosbox.plot.tradeoff_choice import recommended
     from atmosbox.scene.parameter import Parameter
     from atmosbox.scene.spelling import assignments
     from atmosbox.trade.tradeoff import KeptRuns, measure
@@ -78,11 +80,13 @@ def tradeoff(
         )
     write(found, path, force=force)
     write_whole(files[1], as_csv(found).encode())
-    save(found, files[2], force=force)
+    save(found, files[2], force=force, all_panels=all_panels)
     KeptRuns.remove(path)
     interrupted = found.attrs["atmosbox_status"] == "interrupted"
     if as_json:
-        say_json({"scene": scene, "files": [str(file) for file in files], "rungs": rows(found)})
+        best = recommended(found)
+        way = None if best is None else str(found.rung.values[best[0]])
+        say_json({"scene": scene, "files": [str(file) for file in files], "recommended": way, "rungs": rows(found)})
     elif quiet:
         say(str(path))
     else:
@@ -127,7 +131,7 @@ def as_csv(found: xr.Dataset) -> str:
 
 def lines(found: xr.Dataset, columns: int) -> list[str]:
     """Return the measurement as text: bias with its error, and in brackets the noise of a single run."""
-    from atmosbox.plot.tradeoff_figure import foremost
+    from atmosbox.plot.tradeoff_choice import WANTED, foremost, recommended
 
     chosen = foremost(found)
     header = ["run", "seconds", "cost", "runs"]
@@ -152,10 +156,15 @@ def lines(found: xr.Dataset, columns: int) -> list[str]:
     drift = found.energy_drift.values
     if (drift[drift == drift] > 1e-12).any():
         words = "bias ± its standard error (noise of a single run); cost: 1 is the reference"
+    best, advice = recommended(found), ""
+    if best is not None:
+        head = f"recommended, the cheapest within {WANTED.limits}" if best[1] else "the most accurate"
+        advice = f"{head}: {found.rung.values[best[0]]}, {number(found.engine_seconds.values[best[0]], 2)} s"
     return [
         *table(header, body, columns),
         "",
         *wrapped(words, columns),
+        *wrapped(advice, columns),
         *(w for n in notes for w in wrapped(n, columns)),
     ]
 

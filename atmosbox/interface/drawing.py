@@ -46,6 +46,7 @@ def plot(
     *,
     theme: Literal["notes", "slides"] = "notes",
     with_box: bool = False,
+    all_panels: bool = False,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
 ) -> Figure:
@@ -60,6 +61,8 @@ def plot(
     with_box
         Whether the molecules are drawn at the start, half-way and at the end, over the graphs; the run must have been
         made with ``save_molecules=True``.
+    all_panels
+        Whether a measured trade is drawn with all its quantities, and not the foremost alone.
     out
         A file to write as well: PNG, SVG or PDF, as its name says.
     force
@@ -91,8 +94,8 @@ def plot(
         find(theme)
         dataset = opened(run)
         if out is not None:
-            save(dataset, out, theme=theme, force=force, with_box=with_box)
-        return _shown(drawn(dataset, theme, with_box=with_box), theme)
+            save(dataset, out, theme=theme, force=force, with_box=with_box, all_panels=all_panels)
+        return _shown(drawn(dataset, theme, with_box=with_box, all_panels=all_panels), theme)
 
 
 class Comparison:

@@ -29,6 +29,7 @@ def save(
     theme: str = "notes",
     force: bool = False,
     with_box: bool = False,
+    all_panels: bool = False,
 ) -> Path:
     """Draw the figure of a run into a file.
 
@@ -46,6 +47,9 @@ def save(
         Whether a file of that name may be replaced.
     with_box : bool
         Whether the molecules are drawn over the panels, as `figure_with_box` does.
+    all_panels : bool
+        Whether a measured trade is drawn with all its panels, as `tradeoff_figure.figure` does; every other figure
+        has all of its panels anyhow.
 
     Returns
     -------
@@ -73,19 +77,19 @@ def save(
     """
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    drawing = drawn(dataset, theme, with_box=with_box)
+    drawing = drawn(dataset, theme, with_box=with_box, all_panels=all_panels)
     title = str(dataset.attrs.get("title", "atmosbox"))
     parameters = str(dataset.attrs.get("atmosbox_parameters", ""))
     write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
     return path
 
 
-def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False) -> Figure:
+def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False, all_panels: bool = False) -> Figure:
     """Return the figure of a run, with its box if that is wanted, or of a measurement of many."""
     if with_box:
         return figure_with_box(dataset, theme)
     if "rung" in dataset.dims:
-        return tradeoff_figure.figure(dataset, theme)
+        return tradeoff_figure.figure(dataset, theme, all_panels=all_panels)
     return sweep_figure.figure(dataset, theme) if sweep_figure.is_sweep(dataset) else figure(dataset, theme)
 
 

@@ -1,4 +1,8 @@
-"""Error against seconds: the figure of a measurement of speed against accuracy."""
+"""Error against seconds: the figure of a measurement of speed against accuracy.
+
+By default it is one graph, for the last row of a lecture hall: what a single run is off by, against what it costs, and
+which run to take. With all panels it shows the foremost quantities, and of each its bias, its noise and their laws.
+"""
 
 from __future__ import annotations
 
@@ -15,24 +19,34 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
+from atmosbox.plot.direct_label import Label, put_labels
+from atmosbox.plot.pen import Pen
 from atmosbox.plot.theme import DARK, DATA_COLOURS, FAINT, Theme, find, style
+from atmosbox.plot.tradeoff_choice import (
+    SEEN,
+    WANTED,
+    foremost,
+    in_words,
+    limit,
+    recommended,
+    series_of,
+    telling,
+    total,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["MOST_PANELS", "figure", "foremost"]
+__all__ = ["figure"]
 
-MOST_PANELS = 4
-SEEN = 2.0
-"""A bias of fewer standard errors than this is not told from zero: its place is an upper limit."""
 CLEAR = 6.0
 """From so many standard errors on, a law may be drawn through a bias."""
 
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
 
 
-def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
-    """Draw errors against seconds, a panel for each of the foremost quantities.
+def figure(dataset: xr.Dataset, theme: str = "notes", *, all_panels: bool = False) -> Figure:
+    """Draw errors against seconds: one quantity, or a panel for each of the foremost.
 
     Parameters
     ----------
@@ -40,13 +54,18 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         What `atmosbox.trade.tradeoff.measured_trade` returns.
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen.
+    all_panels : bool
+        Whether all of the foremost quantities are drawn, each with bias, noise and laws, and not only the error of
+        a single run in the quantity that tells the ways of running apart best.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure. A filled mark is the bias, the mean error of many runs; a hollow one below an arrow says
-        that no bias was seen above twice its standard error; a pale ring is the noise, by which a single run
-        scatters; the grey line runs along the best totals; thin lines are laws.
+        The figure. In one panel a mark is the error to expect of a single run, filled where most of it is bias and
+        hollow where most of it is chance; the ring is the run that is recommended. In all panels a filled mark is
+        the bias, the mean error of many runs; a hollow one below an arrow says that no bias was seen above twice its
+        standard error; a pale ring is the noise, by which a single run scatters; the grey line runs along the best
+        totals; thin lines are laws.
 
     Raises
     ------
@@ -54,54 +73,127 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
         If there is no such theme.
     """
     look = find(theme)
-    chosen = foremost(dataset)
     with style(look):
-        width, height = look.wide if len(chosen) > 1 else look.narrow
-        drawing = Figure(figsize=(width, height * (1.0 if look.heading else 1.45)), layout="constrained")
-        FigureCanvasAgg(drawing)
-        columns = min(2, len(chosen))
-        axes = drawing.subplots(math.ceil(len(chosen) / columns), columns, sharex=True, squeeze=False).ravel()
-        for each in axes[len(chosen) :]:
-            each.remove()
-        for each, name in zip(axes, chosen, strict=False):
-            _draw(each, dataset, name, look)
-        for place in range(len(chosen)):
-            if place + columns >= len(chosen):
-                axes[place].set_xlabel("processor time of the engine in a run (s)")
-                axes[place].tick_params(labelbottom=True)
-        drawing.legend(
-            handles=_legend(dataset, look),
-            loc="outside lower center",
-            ncols=3,
-            fontsize=look.small if look.heading else 0.85 * look.small,
-            handlelength=1.4,
-            columnspacing=1.2,
-            labelspacing=0.3,
-        )
-        drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold")
+        return _all_panels(dataset, look) if all_panels else _one_panel(dataset, look)
+
+
+def _one_panel(dataset: xr.Dataset, look: Theme) -> Figure:
+    """Draw the error of a single run in one quantity against what it costs."""
+    name = telling(dataset)
+    one = dataset.sel(quantity=name)
+    share, unit = _unit(one)
+    place = [str(each) for each in dataset.quantity.values].index(name)
+    error = share * total(dataset)[:, place]
+    seconds = dataset.engine_seconds.values
+    chance = np.hypot(one.noise.values, one.bias_se.values) > np.abs(one.bias.values)
+    drawing = Figure(figsize=look.wide, layout="constrained")
+    FigureCanvasAgg(drawing)
+    axes = drawing.subplots()
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    labels = []
+    for row in sorted({int(k) for k in dataset.series.values}):
+        here = (dataset.series.values == row) & np.isfinite(seconds) & np.isfinite(error)
+        if not here.any():
+            continue
+        colour, marker = _colour(dataset, row), _MARKERS[row % len(_MARKERS)]
+        along = np.flatnonzero(here)[np.argsort(seconds[here])]
+        axes.plot(seconds[along], error[along], color=colour, lw=0.7 * look.line, alpha=0.6, zorder=2)
+        for face, those in ((colour, ~chance), ("white", chance)):
+            axes.plot(
+                seconds[here & those], error[here & those], marker, mfc=face, mec=colour, mew=0.8 * look.line,
+                ms=1.7 * look.marker, zorder=3,
+            )  # fmt: skip
+        engine, what, fixed = _series(dataset, row)
+        words = f"{engine}\n{what}" + (f"\n{fixed}" if fixed else "")
+        labels.append(Label(words, seconds[along], error[along], colour))
+    allowed = share * limit(str(one.unit.item()))
+    best = recommended(dataset)
+    if best is not None:
+        k, enough = best
+        axes.plot(
+            seconds[k], error[k], "o", mfc="none", mec=DARK, mew=1.2 * look.line, ms=4.2 * look.marker, zorder=4
+        )  # fmt: skip
+        head = "recommended" if enough else "the most accurate"
+        words = f"{head}: {error[k]:.2g} {unit} in {seconds[k]:.2g} s\n{_way(dataset, k)}"
+        labels.insert(0, Label(words, seconds[[k]], error[[k]], DARK, bold=True, clear=2.1 * look.marker))
+    low, high = axes.get_ylim()
+    axes.set_ylim(0.7 * min(low, allowed), 1.4 * max(high, allowed))
+    axes.axhspan(axes.get_ylim()[0], allowed, color="#009e73", alpha=0.10, lw=0.0, zorder=0)
+    axes.margins(x=0.12)
+    _ticks(axes)
+    axes.set_xlabel("processor time of a run (s)")
+    axes.set_ylabel(f"error of a run ({unit})")
+    axes.grid(visible=True)
+    drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold", x=0.01, ha="left")
+    axes.set_title(f"{_sentence(str(one.label.item()))}: what a single run is off by", loc="left", fontsize=look.text)
+    small = (
+        "filled: mostly the error of the method · hollow: mostly chance, which more molecules or runs average out\n"
+        f"green: within {allowed:g} {unit} · recommended: the cheapest run within {WANTED.limits} in all its numbers "
+        f"(--accuracy {WANTED.text})"
+    )
+    pen = Pen(drawing)
+    width = 72.0 * drawing.get_figwidth() - look.text
+    small = "\n".join(pen.wrap(line, 0.98 * width, look.small) for line in small.split("\n"))
+    drawing.supxlabel(small, x=0.01, ha="left", fontsize=look.small, color=FAINT)
+    drawing.draw_without_rendering()
+    put_labels(axes, labels, pen, look.text)
     return drawing
 
 
-def foremost(dataset: xr.Dataset) -> list[str]:
-    """Return the quantities to draw: those with a law first, then numbers, then curves."""
-    series = json.loads(dataset.attrs["atmosbox_parameters"]).get("series", [])
-    lawful = {name for row in series for name in row["order"]}
-    names = [str(name) for name in dataset.quantity.values]
-    return sorted(names, key=lambda name: name not in lawful)[:MOST_PANELS]
+def _all_panels(dataset: xr.Dataset, look: Theme) -> Figure:
+    """Draw bias and noise of the foremost quantities against what a run costs."""
+    chosen = foremost(dataset)
+    width, height = look.wide if len(chosen) > 1 else look.narrow
+    drawing = Figure(figsize=(width, height * (1.0 if look.heading else 1.45)), layout="constrained")
+    FigureCanvasAgg(drawing)
+    columns = min(2, len(chosen))
+    axes = drawing.subplots(math.ceil(len(chosen) / columns), columns, sharex=True, squeeze=False).ravel()
+    for each in axes[len(chosen) :]:
+        each.remove()
+    for each, name in zip(axes, chosen, strict=False):
+        _draw(each, dataset, name, look)
+    for place in range(len(chosen)):
+        if place + columns >= len(chosen):
+            axes[place].set_xlabel("processor time of the engine in a run (s)")
+            axes[place].tick_params(labelbottom=True)
+    drawing.legend(
+        handles=_legend(dataset, look),
+        loc="outside lower center",
+        ncols=3,
+        fontsize=look.small if look.heading else 0.85 * look.small,
+        handlelength=1.4,
+        columnspacing=1.2,
+        labelspacing=0.3,
+    )
+    drawing.suptitle(str(dataset.attrs.get("title", "")), fontsize=look.title, weight="bold")
+    return drawing
+
+
+def _unit(one: xr.Dataset) -> tuple[float, str]:
+    """Return by how much the error of a quantity is multiplied, and the unit in which it is then shown."""
+    return (1.0, "K") if str(one.unit.values) == "K" else (100.0, "%")
+
+
+def _ticks(axes: Axes) -> None:
+    """Write plain numbers on both logarithmic axes."""
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 60.0 * low else (1.0,), numticks=12))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
     """Draw one quantity."""
     one = dataset.sel(quantity=name)
-    scale = 1.0 if str(one.unit.values) == "K" else 100.0
-    unit = "K" if scale == 1.0 else "%"
+    scale, unit = _unit(one)
     seconds = dataset.engine_seconds.values
     bias, se, noise = (scale * np.abs(one[key].values) for key in ("bias", "bias_se", "noise"))
-    rows = json.loads(dataset.attrs["atmosbox_parameters"]).get("series", [])
+    rows = series_of(dataset)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    total = np.sqrt(np.maximum(bias**2 - se**2, 0.0) + noise**2)
-    _front(axes, seconds, total, look)
+    _front(axes, seconds, np.sqrt(np.maximum(bias**2 - se**2, 0.0) + noise**2), look)
     for row in sorted({int(k) for k in dataset.series.values}):
         here = (dataset.series.values == row) & np.isfinite(seconds) & np.isfinite(noise)
         if not here.any():
@@ -127,11 +219,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
     _statistics(axes, dataset, seconds, noise, look)
     axes.set_title(_sentence(str(one.label.values)), loc="left", fontsize=look.text)
     axes.set_ylabel(f"error ({unit})")
-    for axis in (axes.xaxis, axes.yaxis):
-        low, high = axis.get_view_interval()
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 60.0 * low else (1.0,), numticks=12))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_formatter(NullFormatter())
+    _ticks(axes)
     axes.grid(visible=True)
 
 
@@ -195,22 +283,38 @@ def _colour(dataset: xr.Dataset, row: int) -> str:
     return to_hex(DATA_COLOURS[known.index(_engine(dataset, row)) % len(DATA_COLOURS)])
 
 
+def _series(dataset: xr.Dataset, row: int) -> tuple[str, str, str]:
+    """Return the engine of a series, what varies in it and from where to where, and the settings of all its runs."""
+    rows = series_of(dataset)
+    row_is = (dataset.series.values == row) & np.isfinite(dataset.engine_seconds.values)
+    values = dataset.value.values[row_is][np.argsort(dataset.engine_seconds.values[row_is])]
+    vary = rows[row]["vary"] if row < len(rows) else "settings"
+    ends = " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1]) if np.isfinite(value)))
+    own = rows[row]["settings"] if row < len(rows) else {}
+    return (
+        _engine(dataset, row),
+        f"{vary} {ends}",
+        ", ".join(f"{name} {in_words(value)}" for name, value in own.items()),
+    )
+
+
+def _way(dataset: xr.Dataset, k: int) -> str:
+    """Return a way of running in words: its engine, the options of that, and the settings."""
+    settings = json.loads(str(dataset.settings.values[k]))
+    engine = str(dataset.engine.values[k]).replace(":", ", ").replace("=", " ")
+    return ", ".join([engine, *(f"{name} {in_words(value)}" for name, value in settings.items())])
+
+
 def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
     """Return what the marks mean: the series, then bias, noise, front and laws."""
-    rows = json.loads(dataset.attrs["atmosbox_parameters"]).get("series", [])
     made = np.isfinite(dataset.engine_seconds.values)
     entries = []
     for row in sorted({int(k) for k in dataset.series.values[made]}):
-        row_is = (dataset.series.values == row) & made
-        values = dataset.value.values[row_is][np.argsort(dataset.engine_seconds.values[row_is])]
-        vary = rows[row]["vary"] if row < len(rows) else "settings"
-        ends = " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1]) if np.isfinite(value)))
-        own = rows[row]["settings"] if row < len(rows) else {}
-        fixed = "".join(f", {name} {_plain(value)}" for name, value in own.items())
+        engine, what, fixed = _series(dataset, row)
+        words = f"{engine}: {what}" + (f", {fixed}" if fixed else "")
         entries.append(
-            Line2D([], [], ls="", marker=_MARKERS[row % len(_MARKERS)], color=_colour(dataset, row),
-                   label=f"{_engine(dataset, row)}: {vary} {ends}{fixed}")
-        )  # fmt: skip
+            Line2D([], [], ls="", marker=_MARKERS[row % len(_MARKERS)], color=_colour(dataset, row), label=words)
+        )
     plain: dict[str, Any] = {"ls": "", "marker": "o", "color": FAINT}
     entries += [
         Line2D([], [], **plain, label="bias: mean error of many runs"),
@@ -221,13 +325,6 @@ def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
         Line2D([], [], color=DARK, ls=(0, (2, 2)), lw=0.6 * look.line, label="law of chance, 1/√time"),
     ]
     return entries
-
-
-def _plain(value: object) -> str:
-    """Return a setting as a legend says it."""
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 
 def _sentence(text: str) -> str:

@@ -9,6 +9,7 @@ imported when it is first used.
 `engines`      the engines a scene may use, and their options
 `instruments`  what is measured, one class each
 `statistics`   means with their standard errors
+`wish`         how accurate a run shall be, in words
 `headline`     the numbers that a run is about, beside theory
 `panels`       the graphs of its figure, declared
 `knob`         what a class may change while the box runs

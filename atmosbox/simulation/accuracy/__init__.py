@@ -5,9 +5,9 @@ with atmosbox, ``accuracy.json``, holds for each of these ways the error of ever
 as a ratio to the run that the scene makes by default. ``python benchmarks/accuracy.py`` measures it anew.
 """
 
+from atmosbox.scene.wish import TARGETS, Wish, parse
 from atmosbox.simulation.accuracy.cheapest import Expectation, choose, cost, expect
 from atmosbox.simulation.accuracy.measured import ExpectedError, Measured, Table, load, said
-from atmosbox.simulation.accuracy.wish import TARGETS, Wish, parse
 
 __all__ = [
     "TARGETS",

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from atmosbox.errors import SettingError
+from atmosbox.scene.wish import FIX, TARGETS, Wish, parse
 from atmosbox.simulation.accuracy.measured import Measured, Table, load
-from atmosbox.simulation.accuracy.wish import FIX, TARGETS, Wish, parse
 
 __all__ = ["Expectation", "choose", "cost", "expect"]
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from atmosbox.simulation.accuracy.wish import Wish
+from atmosbox.scene.wish import Wish
 
 __all__ = ["FILE", "ExpectedError", "Measured", "Table", "load", "said"]
 
