@@ -41,6 +41,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, history, temperature_of_those_that_left
 from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.knob import open_pool, warmed_walls
 from atmosbox.scene.moisture import water
 from atmosbox.scene.piston import moist_parcel
 from atmosbox.scene.rounding import rounded
@@ -138,6 +139,17 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     pool = Pool(substance, number=settings.pool, kT=1.0)
     parcel = moist_parcel(engine, n, start.vapour, start.sides, driver=driver, liquid=pool, rng=rng, seed=settings.seed)
+    boils = float(law.dewpoint(si.pressure)) - 273.15
+    walls = warmed_walls(
+        parcel,
+        settings,
+        "temperature",
+        "temperature at the start; once turned, that of the side walls",
+        range(4),
+        scale.reduced_temperature,
+        low=-20.0,
+        high=min(60.0, boils - 5.0),
+    )
     duration = si.duration / scale.time
     end, rest = start.end, start.rest
     left = float(end.liquid)
@@ -166,6 +178,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "time in which vapour meets the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
             "heat lost to the piston": f"up to {start.loss(duration):.1g} K",
         },
+        knobs=(walls, open_pool(parcel)),
     )
 
 
@@ -186,10 +199,16 @@ def _settled(start: AirOverPool, settings: Settings) -> int:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the final state, saturation over the pool as it is now, and the energies of those that leave and stay."""
+    """Return the final state, saturation over the pool as it is now, and the energies of those that leave and stay.
+
+    The final state is that of walls that let no heat pass, or, from when they have a temperature, that of this one.
+    """
     start = _start(settings, ideal=used(dataset).ideal)
     rest = start.rest
-    frames = np.ones(dataset.sizes["elapsed_time"])
+    walls = dataset.wall_temperature.values[:, 0]
+    kelvin = np.where(np.isfinite(walls), walls, rest.temperature)
+    vapour = np.array([rest.vapor_pressure if math.isnan(wall) else start.vapour_pressure_at(wall) for wall in walls])
+    share = dataset.pool_open_share.values if "pool_open_share" in dataset else 1.0
     bounds = dataset.energy_bnds.values
     edges = np.append(bounds[:, 0], bounds[-1, 1])
     warm = temperature_of_those_that_left(dataset)
@@ -198,10 +217,10 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     liquid = dataset.liquid_temperature.values
     saturation = law.saturation_vapor_pressure(np.clip(np.nan_to_num(liquid), 0.0, HOTTEST))
     return {
-        "gas_temperature_theory": rest.temperature * frames,
+        "gas_temperature_theory": kelvin,
         "liquid_saturation_vapor_pressure": np.where(np.isfinite(liquid), saturation, math.nan),
-        "water_vapor_partial_pressure_theory": rest.vapor_pressure * frames,
-        "condensation_rate_theory": start.rate(rest.vapor_pressure, rest.temperature) * frames,
+        "water_vapor_partial_pressure_theory": vapour,
+        "condensation_rate_theory": share * start.rate(vapour, kelvin),
         "leaving_energy_probability_density_theory": law.leaving_energy_density(edges, warm) if known else nothing,
         "staying_energy_probability_density": law.staying_energy_density(edges, warm) if known else nothing,
     }

@@ -70,6 +70,7 @@ VARIABLES: dict[str, Variable] = {
                 ("work_by_gravity", "J", "energy given to the molecules by changes of gravity"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
     **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, which was changed by hand"),
+                ("pool_open_share", "1", "share of the pool that is open, which was changed by hand"),
                 cell_methods=_POINT),
     **_declared((*_TIME, "wall"), ("heat_from_wall", "J", "heat given to the molecules by the wall"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
@@ -220,8 +221,12 @@ VARIABLES: dict[str, Variable] = {
         ("running_energy_light", "J", "mean kinetic energy of a light disc since the start"),
         ("running_energy_heavy", "J", "mean kinetic energy of a heavy disc since the start"),
         ("energy_change", "1", "change of the kinetic energy since the start, as a share of it"),
-        ("momentum_residual", "1", "momentum that neither the discs have nor the walls took, as a share"),
         cell_methods=_POINT, ledger=True,
+    ),
+    **_declared(
+        _TIME,  # unknown where walls were warmed by hand
+        ("momentum_residual", "1", "momentum that neither the discs have nor the walls took, as a share"),
+        cell_methods=_POINT,
     ),
     **_declared((*_TIME, "axis"), ("momentum", "kg m s-1", "total momentum of the discs"),
                 cell_methods=_POINT, ledger=True),

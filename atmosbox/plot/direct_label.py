@@ -65,7 +65,7 @@ def put_labels(axes: Axes, labels: Sequence[Label], pen: Pen, size: float) -> No
     >>> up, down = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     >>> put_labels(axes, [Label("rises", up, up, "k"), Label("falls", up, down, "k")], Pen(drawing), 8.0)
     >>> boxes = [text.get_window_extent() for text in axes.texts]
-    >>> boxes[0].overlaps(boxes[1])
+    >>> bool(boxes[0].overlaps(boxes[1]))
     False
     """
     point = pen.figure.dpi / 72.0

@@ -8,9 +8,9 @@ function; the functions below make those that most boxes need.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from atmosbox.scene.settings import SceneSettings
     from atmosbox.scene.units import Scale
 
-__all__ = ["Knob", "altitude", "gravity", "wall_temperature", "way"]
+__all__ = ["Knob", "altitude", "gravity", "open_pool", "wall_temperature", "warmed_walls", "way"]
+
+_CLOSED = -600.0
+"""Logarithm of the share of its rate at which a covered pool evaporates: never, in any time that there is."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +112,100 @@ def wall_temperature(
         parcel.set_wall_kT(scale.reduced_temperature(kelvin), wall)
 
     return _of_setting(settings, name, low, high, turn)
+
+
+def warmed_walls(
+    parcel: Parcel,
+    settings: SceneSettings,
+    name: str,
+    help: str,
+    walls: Sequence[int],
+    kT: Callable[[float], float],
+    *,
+    low: float,
+    high: float,
+) -> Knob:
+    """Return the knob that makes heat baths of smooth walls, at its first turn, and sets their temperature.
+
+    Until then the walls are as the scene has them, so that a box that nobody touches is the one of ``atmosbox run``.
+
+    Parameters
+    ----------
+    parcel, settings
+        The box and its settings.
+    name
+        The setting that is the value at the start.
+    help
+        What it is, in one line.
+    walls
+        Numbers of the walls, in the order of `atmosbox.engine.core.walls.WALL_NAMES`.
+    kT
+        The temperature of the walls [reduced energy] for a value of the knob in SI units.
+    low, high
+        The range, in the unit of the setting; widened to include the value at the start.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import build, prepare
+    >>> setup = build(prepare("elastic-collisions", {"molecules": 20}))
+    >>> bool(np.isnan(setup.parcel.wall_kT()).all())
+    True
+    >>> setup.knobs[0].set(1.0)
+    >>> np.isfinite(setup.parcel.wall_kT()).tolist()
+    [True, True, False, False, True, True]
+    """
+
+    def turn(value: float) -> None:
+        from atmosbox.engine.core.walls import HEAT_BATH
+
+        law, smooth = parcel._walls.law, parcel._walls.law.copy()
+        law[list(walls)] = HEAT_BATH
+        parcel._walls.accommodation[list(walls)] = 1.0
+        try:
+            for wall in walls:
+                parcel.set_wall_kT(rounded(kT(value)), wall)
+        except Exception:  # refused: the walls are as they were
+            law[:] = smooth
+            raise
+
+    return replace(_of_setting(settings, name, low, high, turn), help=help)
+
+
+def open_pool(parcel: Any) -> Knob:
+    r"""Return the knob that covers a part of a pool, or all of it, with a foil that lets heat pass but no water.
+
+    Vapour sticks to the open part s alone, and molecules leave from there alone: both rates are s times as large,
+    and the vapour pressure at which they are equal is the same. Air and vapour that hit the foil exchange heat with
+    the pool as before.
+
+    Parameters
+    ----------
+    parcel
+        A box with a pool.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import build, prepare
+    >>> setup = build(prepare("evaporation", {"molecules": 300, "pool": 50}))
+    >>> setup.knobs[1].set(0.0)
+    >>> setup.parcel.advance(20.0)
+    >>> setup.parcel.evaporated, setup.parcel.condensed, setup.parcel.ledger() < 1e-12
+    (0, 0, True)
+    """
+    uncovered: list[tuple[float, float]] = []
+
+    def turn(share: float) -> None:
+        if not uncovered:
+            uncovered.append((parcel._reservoir.sticking, parcel._reservoir.log_rate))
+        ((sticking, log_rate),) = uncovered
+        leaves = max(math.log(share), _CLOSED) if share > 0.0 else _CLOSED
+        parcel._reservoir = parcel._reservoir._replace(sticking=sticking * share, log_rate=log_rate + leaves)
+        if hasattr(parcel, "_water"):  # in dsmc, which draws anew in each step
+            parcel._water = parcel._water._replace(reservoir=parcel._reservoir)
+        else:
+            parcel._draw(float(parcel._reservoir.bound[0]))
+
+    return Knob("open_pool", "share of the pool that is open; the rest is covered", "percent", 0.0, 100.0, 100.0, turn)
 
 
 def gravity(

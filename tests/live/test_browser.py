@@ -116,6 +116,27 @@ def test_a_knob_of_a_box_that_rests_acts_at_once_and_the_words_follow_it(visit):
     page.locator("#undo:disabled").wait_for(timeout=2000)
 
 
+@pytest.mark.parametrize(
+    ("scene", "settings", "knob", "value", "words"),
+    [
+        ("evaporation", {"molecules": 300, "pool": 60}, "temperature", "10", "walls at 10.0 °C"),
+        ("evaporation", {"molecules": 300, "pool": 60}, "open_pool", "0", "smooth"),
+        ("elastic-collisions", {"molecules": 20}, "speed", "1", "walls kept at a temperature"),
+    ],
+)
+def test_walls_and_pool_of_a_box_that_plays_are_changed_without_a_new_start(visit, scene, settings, knob, value, words):
+    page = visit(scene, settings)
+    page.wait_for_selector("body[data-playing=true]")
+    play_to(page, 0.02)
+    slider = page.locator(f"input[type=range][aria-label='{knob}']")
+    slider.fill(value)
+    slider.dispatch_event("change")
+    page.locator("#caption", has_text=words).wait_for(timeout=2000)
+    assert float(page.locator("#time").inner_text().split()[0]) > 0.02, "the box did not begin anew"
+    assert slider.input_value() == value
+    assert "being built" not in page.locator("#vitals").inner_text()
+
+
 def test_a_challenge_is_judged_by_what_has_been_measured(visit):
     page = visit("lifting-dry", {"molecules": 1000, "ascent": 400, "temperature": 27.3})
     page.click("text=Challenge 1")

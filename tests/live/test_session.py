@@ -200,6 +200,66 @@ def test_warmer_walls_let_saturation_follow():
     assert after["condensation_rate_theory"] > before["condensation_rate_theory"]
 
 
+def agrees(values, expected, frames):
+    """Tell whether the mean of the last frames is within 4 errors of 20 blocks: a false alarm once in 1 300."""
+    blocks = np.array(values, float)[-frames:].reshape(20, -1).mean(axis=1)
+    return abs(blocks.mean() - expected) < 4.0 * blocks.std(ddof=1) / 20**0.5
+
+
+def whole(box):
+    """Return all that has been measured since the last change, by name."""
+    return next(message["values"] for message in box.measured() if message["type"] == "series")
+
+
+@pytest.mark.parametrize("engine", ["exact", "dsmc"])
+def test_the_walls_cool_the_air_over_a_pool_and_a_cover_slows_both_rates_alike(engine):
+    large = {"molecules": 3000, "pool": 600, "duration": "20 ns"}
+    box = session("evaporation", settings=large, engine=engine)
+    play_to(box, 20)
+    assert np.isnan(box.setup.parcel.wall_kT()).all(), "walls that nobody turned let no heat pass"
+    began = box.setup.parcel.number + box.setup.parcel.liquid
+    box.obey({"type": "set", "name": "temperature", "value": "10 degC"})
+    play_to(box, 520)
+    found, saturated = whole(box), float(law.saturation_vapor_pressure(283.15))
+    assert agrees(found["gas_temperature"], 283.15, 400)
+    assert agrees(found["liquid_temperature"], 283.15, 400)
+    assert agrees(found["water_vapor_partial_pressure"], saturated, 400)
+    assert found["water_vapor_partial_pressure_theory"][-1] == pytest.approx(saturated)
+    rate = found["condensation_rate_theory"][-1]
+    assert agrees(found["evaporation_rate"], rate, 400)
+
+    box.obey({"type": "set", "name": "open_pool", "value": 25})
+    play_to(box, 820)
+    found = whole(box)
+    assert found["condensation_rate_theory"][-1] == pytest.approx(0.25 * rate)
+    assert agrees(found["evaporation_rate"], 0.25 * rate, 280)
+
+    box.obey({"type": "set", "name": "open_pool", "value": 0})
+    shut = box.setup.parcel.evaporated, box.setup.parcel.condensed
+    box.obey({"type": "set", "name": "temperature", "value": "30 degC"})
+    play_to(box, 1120)
+    assert (box.setup.parcel.evaporated, box.setup.parcel.condensed) == shut
+    assert agrees(whole(box)["liquid_temperature"], 303.15, 200), "heat passes the cover"
+    assert box.setup.parcel.number + box.setup.parcel.liquid == began
+    assert box.state()["ledger"] < LEDGER_LIMIT
+
+
+def test_a_rim_brings_light_and_heavy_discs_to_the_energy_that_its_speed_means(tmp_path):
+    box = session("elastic-collisions", folder=tmp_path, settings={"duration": "120 s"})
+    box.obey({"type": "record"})
+    play_to(box, 50)
+    box.obey({"type": "set", "name": "speed", "value": 1.0})
+    play_to(box, 1150)
+    made = read(box.stop_recording())
+    assert (made.energy_change < 1e-12).all(), "beyond the heat of the rim none is made"
+    before, after = made.kinetic_energy_light_theory.values[[0, -1]]
+    assert after == pytest.approx(4.0 * before, rel=1e-9)
+    for half in ("light", "heavy"):
+        assert agrees(made[f"kinetic_energy_{half}"].values, after, 900)
+    assert np.isfinite(made.momentum_residual.values[:50]).all()
+    assert box.state()["ledger"] < LEDGER_LIMIT
+
+
 def test_a_parcel_is_led_down_again_by_hand():
     box = session("lifting-dry", settings={"molecules": 300, "ascent": 200})
     play_to(box, 40)

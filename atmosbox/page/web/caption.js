@@ -3,12 +3,17 @@
 import { figure, round, spelled } from "./figure.js";
 import { phrase, story, word } from "./words.js";
 
+const HOTTEST = 1e6;
+
 // The sides of the box and what its walls are, in a sentence.
 function boxSentence({ box }, { walls: kelvins = box.wall_temperature, length = box.length } = {}) {
   const sides = box.planar ? [length[0], length[2]] : length;
   const size = `${sides.map((side) => figure(side)).join(" × ")} ${box.unit}`;
-  const laws = [...new Set(box.walls.filter((_, index) => !(box.planar && index >> 1 === 1)))];
-  const warm = [...new Set((kelvins ?? box.wall_temperature).filter((kelvin) => kelvin !== null).map((kelvin) => figure(kelvin - 273.15)))];
+  const baths = kelvins ?? box.wall_temperature;
+  // a smooth wall that was given a temperature by hand is a heat bath; that of a table's rim is none to be read
+  const now = box.walls.map((law, index) => (baths[index] !== null && law === "specular" ? "heat_bath" : law));
+  const laws = [...new Set(now.filter((_, index) => !(box.planar && index >> 1 === 1)))];
+  const warm = [...new Set(baths.filter((kelvin) => kelvin !== null && kelvin < HOTTEST).map((kelvin) => figure(kelvin - 273.15)))];
   const walls = laws.map((law) => (law === "heat_bath" && warm.length === 1 ? word("heat_bath_at", { temperature: `${warm[0]} °C` }) : word(law))).join("; ");
   return word(`${box.planar ? "flat_" : ""}box${box.gravity ? "_gravity" : ""}`, { size, walls });
 }

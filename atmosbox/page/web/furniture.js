@@ -77,7 +77,7 @@ export class Furniture {
     if (this.metal) this.metal.color = colour(parse(now.metal));
     for (const wall of this.walls) {
       const warm = this.box.wall_temperature[wall.userData.index];
-      const heated = wall.userData.law === "heat_bath" && warm !== null;
+      const heated = warm !== null;  // as a smooth wall has it that was warmed by hand
       wall.material.color = colour(heated ? wallColour(warm) : parse(now.edge));
       wall.material.opacity = heated ? 0.3 : 0.06;
     }

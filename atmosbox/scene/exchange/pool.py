@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,12 +104,24 @@ class AirOverPool:
         """Area of the pool [m^2]."""
         return float(self.sides[0] * self.sides[1]) * self.scale.length**2
 
-    def rate(self, vapour_pressure: float, temperature: float) -> float:
+    def vapour_pressure_at(self, temperature: float) -> float:
+        """Return the vapour pressure between walls of a temperature [K]: saturation, or all the water there is [Pa].
+
+        Examples
+        --------
+        A small pool in a warm room dries up:
+
+        >>> room = AirOverPool(1000, 10, 3.7e-10, 293.15, 1e5, 1000.0)
+        >>> [round(room.vapour_pressure_at(kelvin)) for kelvin in (283.15, 303.15)]
+        [1227, 1980]
+        """
+        water = self.vapour + self.pool
+        return min(float(law.saturation_vapor_pressure(temperature)), self.pressure * water / (water + self.air))
+
+    def rate(self, vapour_pressure: NDArray[np.float64] | float, temperature: NDArray[np.float64] | float) -> Any:
         """Return how many molecules of vapour meet the pool per time [1/s]."""
-        return (
-            float(law.hertz_knudsen_flux(temperature) * vapour_pressure / law.saturation_vapor_pressure(temperature))
-            * self.floor
-        )
+        flux = law.hertz_knudsen_flux(temperature)
+        return flux * vapour_pressure / law.saturation_vapor_pressure(temperature) * self.floor
 
     @property
     def latent(self) -> float:

@@ -18,13 +18,18 @@ Array = NDArray[np.float64]
 
 
 class Discs:
-    """Every disc of a plane gas, the energies of the light and the heavy half, and the momentum account."""
+    """Every disc of a plane gas, the energies of the light and the heavy half, and the momentum account.
+
+    Where a wall was warmed by hand, its heat is no change of the energy; and from then on the momentum account is NaN.
+    """
 
     def __init__(self) -> None:
         self._position: list[Array] = []
         self._velocity: list[Array] = []
         self._momentum: list[Array] = []
         self._given: list[Array] = []
+        self._heat: list[float] = []
+        self._warmed: list[bool] = []
         self._mass = np.zeros(0)
         self._diameter = np.zeros(0)
         self._length = np.zeros(3)
@@ -36,6 +41,8 @@ class Discs:
         """Remember all discs."""
         outward = parcel.wall_impulse
         self._given.append(np.array([outward[0] - outward[1], outward[2] - outward[3], outward[4] - outward[5]]))
+        self._heat.append(float(parcel.wall_heat.sum()))
+        self._warmed.append(bool(np.isfinite(parcel.wall_kT()).any()))
         self._position.append(snapshot.position)
         self._velocity.append(snapshot.velocity)
         self._momentum.append(momentum(parcel, snapshot))
@@ -50,6 +57,9 @@ class Discs:
         total = energy.sum(axis=1)
         p = np.array(self._momentum)
         missing = (p - np.array(self._given)) - (p[0] - self._given[0])
+        heat = np.array(self._heat) - self._heat[0]
+        # a warm wall pushes sideways, too, which no account has
+        residual = np.where(np.logical_or.accumulate(self._warmed), np.nan, np.sqrt(np.sum(missing**2, axis=1)))
         size = math.sqrt(2.0 * float(self._mass.sum()) * float(total[0])) or 1.0
         order = np.argsort(self._mass, kind="stable")
         half = len(order) // 2
@@ -62,8 +72,8 @@ class Discs:
             running_energy_light=np.cumsum(light_energy) / frames,
             running_energy_heavy=np.cumsum(heavy_energy) / frames,
             momentum=p * scale.mass * scale.velocity,
-            momentum_residual=np.sqrt(np.sum(missing**2, axis=1)) / size,
-            energy_change=total / total[0] - 1.0,
+            momentum_residual=residual / size,
+            energy_change=(total - heat) / total[0] - 1.0,
             disc_position=np.array(self._position) * scale.length,
             disc_velocity=velocity * scale.velocity,
             disc_mass=self._mass * scale.mass,

@@ -16,6 +16,8 @@ __all__ = ["Leaving"]
 class Leaving:
     """The share of the molecules that evaporate by energy, above that of a molecule at rest in the liquid.
 
+    Where the pool has been covered by hand, also how much of it was open at the end of each frame.
+
     That is the binding energy and what they fly and rotate with outside. Below the binding energy none leaves, and
     the bins there stay empty. All that have left since the start are counted: each is independent of the others, so
     that the standard error of a share q of n is sqrt(q (1 - q) / n).
@@ -33,12 +35,14 @@ class Leaving:
         self._merged = merged
         self._edges = np.array([0.0, 1.0])
         self._counts = np.zeros(1)
+        self._open: list[float] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
         """Need no sample of single molecules."""
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Read how many have left with which energy."""
+        """Read how many have left with which energy, and how much of the surface is open."""
+        self._open.append(float(parcel._reservoir.sticking))
         edges, counts = parcel.emitted_energy
         self._edges, self._counts = edges[:: self._merged], counts.reshape(-1, self._merged).sum(axis=1)
 
@@ -57,4 +61,6 @@ class Leaving:
         else:
             out["leaving_energy_probability_density"] = np.full(len(counts), np.nan)
             out["leaving_energy_probability_density_se"] = np.full(len(counts), np.nan)
+        if min(self._open, default=1.0) < 1.0:  # few pools are covered while they run
+            out["pool_open_share"] = np.array(self._open)
         return out
