@@ -264,8 +264,20 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         kT = dataset.air_temperature.values / scale.temperature
         depth = max(settings.attraction, 1e-9)
         factor = law.square_well_compressibility(free, kT / depth)
-        found["virial_pressure_theory"] = free * kT * factor * scale.pressure
+        # below zero the series says nothing: so cold and dense a vapour must condense
+        found["virial_pressure_theory"] = np.where(factor > 0.0, free * kT * factor * scale.pressure, np.nan)
     return found
+
+
+_OF_SLAB = (
+    "vapor_number_density",
+    "liquid_number_density",
+    "normal_pressure",
+    "vapor_well_energy",
+    "liquid_well_energy",
+    "surface_tension",
+)
+"""What must have been seen of a slab in most frames: a thin layer has no inside, and may stand by no vapour."""
 
 
 def _gas_pressure(settings: Settings) -> float:
@@ -281,7 +293,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
-    if settings.start == "slab" and "vapor_number_density" in dataset:
+    if settings.start == "slab" and all(
+        name in late and np.isfinite(late[name].values).mean() > 0.5 for name in _OF_SLAB
+    ):
         return _of_slab(late, settings)
     found = []
     for name, label in (
@@ -290,7 +304,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     ):
         found.append(Headline(f"last_{name}", float(dataset[name][-1]), 0.0, None, 0.0, "", "1", "1", label))
     gas = float(dataset.largest_drop_molecule_count.max()) < 10 + 0.02 * settings.molecules
-    thin = settings.density * law.WELL_CRITICAL_DENSITY <= THIN
+    thin = settings.density * law.WELL_CRITICAL_DENSITY <= THIN and _gas_pressure(settings) > 0.0
     if gas and thin and settings.bath != "none" and not settings.air and settings.start == "vapour":
         mean = block_average(late.virial_pressure.values, BLOCKS)
         theory = _gas_pressure(settings)

@@ -35,12 +35,15 @@ from atmosbox.trade.extremes.verdict import stored
 
 SLOW = {"hot-and-cold", "size-ratio", "packing-0.49-fine"}
 """What takes engines that go in steps more than a second or two."""
+OWN_KERNELS = {"touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60"}
+"""Boxes of which each needs ten seconds to compile what no other test does; the exact engine's water is tried by many."""
 
 
 def cases():
     for name in engines.names():
         for each in EXTREMES.values():
             slow = each.long or (name in ("stepped", "classic") and each.name in SLOW)
+            slow |= name == "exact" and each.name in OWN_KERNELS
             yield pytest.param(name, each, id=f"{name}-{each.name}", marks=[pytest.mark.validate] if slow else [])
 
 

@@ -115,6 +115,7 @@ def test_the_cost_of_features_is_measured(tmp_path, monkeypatch):
     assert result["instruments"]["trails: discs"]["bytes"] > 0.0
 
 
+@pytest.mark.validate
 @pytest.mark.skipif(not COMPILED, reason="so many steps take minutes without numba")
 def test_single_precision_is_measured_and_makes_energy_and_loses_gravity(tmp_path):
     file = tmp_path / "precision.json"

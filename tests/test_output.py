@@ -24,8 +24,10 @@ CHECKER = """
 import sys
 from compliance_checker.runner import CheckSuite, ComplianceChecker
 CheckSuite.load_all_available_checkers()
-passed, failed = ComplianceChecker.run_checker(sys.argv[1], ["cf:1.11"], 0, "strict", output_filename="-")
-sys.exit(failed or not passed)
+for path in sys.argv[1:]:
+    passed, failed = ComplianceChecker.run_checker(path, ["cf:1.11"], 0, "strict", output_filename="-")
+    if failed or not passed:
+        sys.exit(1)
 """
 
 CHILD = """
@@ -94,7 +96,7 @@ def lifting():
 
 
 def everything():
-    """Return a run with every variable that is declared; CF's checker takes the square of their number."""
+    """Return a run with every variable that is declared."""
     coords = times(130) | bins("height", 20, 500.0) | bins("speed", 40, 50.0) | bins("energy", 60, 1e-21)
     coords |= bins("distance", 20, 5e-9) | {"molecule": np.arange(40)}
     names = [name for name, declared in VARIABLES.items() if declared.dims != (name,)]
@@ -126,17 +128,25 @@ def interrupted(*_arguments, **_options):
     raise KeyboardInterrupt
 
 
-def check_cf(path):
-    done = subprocess.run([sys.executable, "-c", CHECKER, str(path)], capture_output=True, text=True)
+def check_cf(*paths):
+    done = subprocess.run([sys.executable, "-c", CHECKER, *map(str, paths)], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 # What is in a file
 
 
-@pytest.mark.parametrize("run", RUNS)
-def test_the_file_passes_the_strict_check_of_cf(tmp_path, run):
-    check_cf(output.write(run(), tmp_path / "run.nc"))
+def test_a_file_passes_the_strict_check_of_cf(tmp_path):
+    whole = everything()
+    declared = sorted(map(str, whole.data_vars))
+    # the checker takes the square of their number; a variable, its error and its theory begin with the same letter
+    parts = [
+        whole.drop_vars([name for name in declared if ord(name[0]) % 4 != k and not name.endswith("_bnds")])
+        for k in range(4)
+    ]
+    assert set().union(*(part.data_vars for part in parts)) == set(declared)
+    paths = [output.write(part, tmp_path / f"{k}.nc") for k, part in enumerate([lifting(), *parts])]
+    check_cf(*paths)
 
 
 def test_the_strict_check_finds_a_unit_that_is_wrong(tmp_path):

@@ -62,8 +62,16 @@ def other_library(tmp_path_factory):
     return environment
 
 
-def test_python_itself_ends_there_too_with_numpys_plainest_loops_and_another_c_library(other_library):
-    assert digests(NUMBA_DISABLE_JIT="1", **PLAIN_NUMPY, **other_library) == known(*state_digest.CASES)
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("temperature", "atmosphere-plane", "lifting-moist", "attraction", "diffusion", "stepped", "dsmc-moist"),
+        pytest.param(tuple(state_digest.CASES), marks=pytest.mark.validate),
+    ],
+    ids=["a case of each kernel", "all"],
+)
+def test_python_itself_ends_there_too_with_numpys_plainest_loops_and_another_c_library(names, other_library):
+    assert digests(*names, NUMBA_DISABLE_JIT="1", **PLAIN_NUMPY, **other_library) == known(*names)
 
 
 def oldest_processor(folder):

@@ -597,7 +597,7 @@ def raises(error):
     return fail
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.validate), 2])
 def test_the_command_killed_within_a_run_goes_on_within_it(tmp_path, monkeypatch, jobs):
     """kill -9 while members are half-way: the same again finds what an undisturbed sweep finds."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")

@@ -148,7 +148,7 @@ def test_two_series_that_cross_share_a_run(monkeypatch):
 def test_a_run_that_is_too_dear_is_left_out(monkeypatch):
     monkeypatch.setattr(budgeted_runs, "MOST_RUNS", 1)
     ladder = (*rungs(QUICK, {})[:1], Rung("exact", {"ascent": 1e6, "molecules": 10_000}, 1, 1e6))
-    found = measure("lifting-dry", ladder=ladder, budget=60.0)
+    found = measure("lifting-dry", ladder=ladder, budget=20.0)
     assert found.members.values.tolist()[1] == 0
     assert found.left_out.values[1].startswith("left out: ")
 

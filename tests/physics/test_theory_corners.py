@@ -25,6 +25,8 @@ LEAST = {"diffusion": 3000}
 SCENES = scenarios.names()
 ENERGIES = {"cape_theory", "cin_theory"}
 """Theory that may be below zero: energies of a parcel."""
+SILENT = {"virial_pressure_theory"}
+"""Theory that has no value where its series does not hold."""
 
 
 def values(scene, parameter):
@@ -135,8 +137,9 @@ def examined(scene, given_settings):
     data = outcome.dataset
     for name, found in data.variables.items():
         if name.endswith(("_theory", "_barometric")) and not name.startswith("leaving_energy"):
-            assert np.isfinite(found.values).all(), name
-            assert name in ENERGIES or (found.values >= 0.0).all(), name
+            known = found.values[np.isfinite(found.values)] if name in SILENT else found.values
+            assert np.isfinite(known).all(), name
+            assert name in ENERGIES or (known >= 0.0).all(), name
     stated = {each.name: each for each in outcome.headlines}
     for each in stated.values():
         assert each.theory is None or math.isfinite(each.theory), each.name
@@ -148,15 +151,16 @@ def examined(scene, given_settings):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_the_theory_of_a_scene_holds_at_the_corners_of_its_settings(scene):
-    ran = []
+    described = scenarios.load(scene).Settings.describe()
+    least = {each.name: values(scene, each)[0] for each in described if each.name in (*SHORT, "molecules")}
+    assert examined(scene, least)  # as it comes, in little
 
     @settings(max_examples=12, suppress_health_check=list(HealthCheck), database=None)
     @given(corner(scene))
     def at(given_settings):
-        ran.append(examined(scene, given_settings))
+        examined(scene, given_settings)
 
     at()
-    assert any(ran)
 
 
 @pytest.mark.validate
