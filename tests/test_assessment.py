@@ -36,7 +36,7 @@ from atmosbox.trade.extremes.verdict import stored
 SLOW = {"hot-and-cold", "size-ratio", "packing-0.49-fine"}
 """What takes engines that go in steps more than a second or two."""
 OWN_KERNELS = {"touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60"}
-"""Boxes of which each needs ten seconds to compile what no other test does; the exact engine's water is tried by many."""
+"""Boxes of which each needs ten seconds to compile; many other tests try the water of the exact engine."""
 
 
 def cases():
