@@ -66,6 +66,53 @@ def test_one_setting_becomes_points_with_bars_and_theory_dashed():
     assert "±" in said
 
 
+SLAB = {
+    "vapor_pressure": ("Pa", "bar", [5.8e5, 11.7e5, 22.3e5], [0.5e5, 0.7e5, 0.9e5]),
+    "clapeyron_slope": ("K", "K", [763.0, 831.0, 978.0], [65.0, 51.0, 48.0]),
+    "liquid_density": ("kg m-3", "kg m-3", [1205.0, 1122.0, 1012.0], [1.0, 2.0, 7.0]),
+    "vapor_density": ("kg m-3", "kg m-3", [24.2, 52.9, 128.6], [1.5, 2.1, 6.5]),
+}
+
+
+def slabs(names=tuple(SLAB), vary="temperature=111.4K,123.8K,136.2K"):
+    """Return a sweep over slabs of liquid with the numbers that six real ones gave."""
+    grid = plan("attraction", [vary], members=1, settings={"start": "slab", "density": 1.0})
+    records = []
+    for task in grid.tasks():
+        headlines = [
+            {
+                "name": name, "value": SLAB[name][2][task.point - 1], "standard_error": SLAB[name][3][task.point - 1],
+                "theory": None, "tolerance": 0.0, "reason": "none", "unit": SLAB[name][0],
+                "display_unit": SLAB[name][1], "label": name,
+            }
+            for name in names
+        ]  # fmt: skip
+        about = {"point": task.point, "member": task.member, "seed": task.settings["seed"], "status": "complete"}
+        records.append({**about, "ledger": 1e-15, "headlines": headlines})
+    return assemble(grid, records, history=["then: atmosbox sweep"])
+
+
+def test_vapour_pressures_are_drawn_over_one_over_temperature_with_the_slope_of_each_run():
+    drawing = figure(slabs())
+    left, right = drawing.axes
+    assert (left.get_xlabel(), left.get_yscale()) == ("1000 K / T", "log")
+    points = left.containers[0].lines[0].get_xydata()
+    np.testing.assert_allclose(points, np.column_stack([1e3 / np.array([111.4, 123.8, 136.2]), [5.8, 11.7, 22.3]]))
+    lines = [line for line in left.lines if len(line.get_xdata()) == 2 and line.get_color() == "#d55e00"]
+    slopes = [np.diff(np.log(line.get_ydata()))[0] / np.diff(line.get_xdata())[0] for line in lines]
+    np.testing.assert_allclose(slopes, -1e-3 * np.array(SLAB["clapeyron_slope"][2]))
+    for line, (x, p) in zip(lines, points, strict=True):
+        assert np.interp(x, line.get_xdata(), np.log(line.get_ydata())) == pytest.approx(np.log(p))
+    said = " ".join(text.get_text() for text in drawing.texts)
+    assert "L/ΔZ, measured within the runs" in said
+    assert right.get_ylabel() == "temperature (K)"
+
+
+def test_a_sweep_that_lacks_the_slope_is_drawn_as_any_other():
+    drawing = figure(slabs(("vapor_pressure", "vapor_density")))
+    assert [axes.get_xlabel() for axes in drawing.axes] == ["", "temperature of the bath and at the start (K)"]
+
+
 def test_molecules_in_even_ratios_stand_on_a_logarithmic_axis():
     drawing = figure(swept(["molecules=50:5000:5log"]))
     assert drawing.axes[-1].get_xscale() == "log"

@@ -7,9 +7,10 @@ file is, without the scene and without the engine, and drawing it twice gives th
 Read in this order: `unit` (from SI to what a meteorologist reads), `curve` and `plane` (from a file to numbers),
 `stroke`, `draw`, `disc_marker`, `skewt` and `energy` (numbers to ink), `tick`, `caption` and `number_card` (what is
 written), `theme` (how large), `tilt` and `pen` (one panel), `place` and `layout` (all of them), `comparison`
-(several runs in one figure), `varied`, `field` and `sweep_figure` (many runs), `tradeoff_choice`, `direct_label` and
-`tradeoff_figure` (speed against accuracy), `camera`, `box_picture`, `atmosphere_picture` and `box_figure` (the
-molecules in their box, the parcel in its atmosphere), `figure_file` (PNG, SVG, PDF).
+(several runs in one figure), `varied`, `field`, `coexistence_figure` and `sweep_figure` (many runs),
+`tradeoff_choice`, `direct_label` and `tradeoff_figure` (speed against accuracy), `camera`, `box_picture`,
+`atmosphere_picture` and `box_figure` (the molecules in their box, the parcel in its atmosphere), `figure_file` (PNG,
+SVG, PDF).
 """
 
 import sys

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from atmosbox.plot.caption import number
+from atmosbox.plot.coexistence_figure import draw_coexistence, is_coexistence
 from atmosbox.plot.field import draw_fields
 from atmosbox.plot.layout import figure as figure_of_panels
 from atmosbox.plot.theme import find, style
@@ -56,7 +57,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     """Draw the headlines of a sweep against what was varied.
 
     One setting becomes the axis across. A second one becomes curves, or the other axis of a field where it has many
-    values; then the theory is drawn as contours. Theory is known at the points of the sweep alone, and joined.
+    values; then the theory is drawn as contours. Theory is known at the points of the sweep alone, and joined. Vapour
+    pressures of several temperatures are drawn as ln p against 1/T, each with the slope that was measured with it.
 
     Parameters
     ----------
@@ -93,6 +95,8 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     look = find(theme)
     swept = Varied.read(dataset)
     across, other = swept.across, swept.other
+    if is_coexistence(swept):
+        return draw_coexistence(swept, look)
     if other is not None and swept.dataset.sizes[other] > _MOST_CURVES:
         return draw_fields(swept, swept.names[:MOST_PANELS], look)
     flat, made = _panels(swept)

@@ -1,11 +1,10 @@
 """Liquid and vapour of molecules that attract each other, at six temperatures: what follows from attraction alone."""
 
 import numpy as np
-from jobs.drawing import BLUE, VERMILLION, axes_of, save
 from jobs.registry import Findings, job
 
 from atmosbox import theory
-from atmosbox.plot.theme import DARK, REFERENCE_COLOURS
+from atmosbox.plot import sweep_figure
 from atmosbox.sweep import plan, sweep
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -58,35 +57,4 @@ def coexistence(found: Findings) -> None:
     )
     found.number("critical-temperature", f"{point.temperature:.1f} ± {point.temperature_se:.1f} K")
     found.number("critical-density", f"{point.density:.0f} ± {point.density_se:.0f} kg/m³")
-    _draw(found, kelvin, value, error)
-
-
-def _draw(found: Findings, kelvin: np.ndarray, value: dict[str, np.ndarray], error: dict[str, np.ndarray]) -> None:
-    """Draw ln p against 1/T with the slope that each run measured, and both densities."""
-    fluid = theory.SIMPLE_FLUIDS["argon"]
-    fine = np.linspace(kelvin.min() - 3.0, kelvin.max() + 3.0, 100)
-    warmth = fine * BOLTZMANN / fluid.well_depth
-    with axes_of(2, (9.6, 4.2)) as (drawing, (left, right)):
-        pressure, bars = value["vapor_pressure"] / 1e5, error["vapor_pressure"] / 1e5
-        left.errorbar(1e3 / kelvin, pressure, bars, fmt="o", color=BLUE, label="runs", zorder=3)
-        for k, each in enumerate(kelvin):
-            ends = 1.0 / each + np.array([-1.0, 1.0]) * 1.6e-4
-            line = pressure[k] * np.exp(-value["clapeyron_slope"][k] * (ends - 1.0 / each))
-            left.plot(1e3 * ends, line, color=VERMILLION, label="slope L/ΔZ of each run" if k == 0 else None)
-        unit = fluid.well_depth / fluid.well_diameter**3
-        left.plot(1e3 / fine, theory.well_vapor_pressure(warmth) * unit / 1e5, color=DARK, ls="--", lw=1.2,
-                  label="published simulations")  # fmt: skip
-        left.plot(1e3 / fine, fluid.vapor_pressure(fine) / 1e5, color=REFERENCE_COLOURS[0], ls=":", label="argon")
-        left.set(title="Vapour pressure", xlabel="1000 K / T", ylabel="pressure (bar)", yscale="log")
-        left.yaxis.set_major_formatter("{x:g}")
-        left.yaxis.set_minor_formatter("{x:g}")
-        left.legend(frameon=False)
-        for name, label in (("liquid_density", "liquid"), ("vapor_density", "vapour")):
-            right.errorbar(value[name], kelvin, xerr=error[name], fmt="o", label=label)
-        mean = 0.5 * (value["liquid_density"] + value["vapor_density"])
-        right.plot(mean, kelvin, "x", color=DARK, label="mean of both")
-        right.set_ylim(top=fluid.critical_temperature + 10.0)
-        right.axhline(fluid.critical_temperature, color=DARK, ls="--", lw=1.2, label="critical temperature")
-        right.set(title="Both densities", xlabel="density (kg m⁻³)", ylabel="temperature (K)")
-        right.legend(frameon=False, loc="upper center", ncols=2)
-        save(found, drawing, "coexistence")
+    found.figure(sweep_figure.figure(data), "coexistence", 130)
