@@ -139,7 +139,7 @@ def run(
     duration: float | str = 3.0,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Two gases mix, though no molecule knows where to go.
+    r"""Two gases mix, because their molecules move at random.
 
     molecules: number of molecules of both gases together; 100 to 1000000
     length [nm]: length of the box; 10 nm to 10000 nm

@@ -430,7 +430,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     time = "elapsed_time"
     grown = Panel(
         "line",
-        "A drop that nobody put in" if settings.start == "vapour" else "Drop and vapour",
+        "A drop forms in the vapour" if settings.start == "vapour" else "Drop and vapour",
         (
             Line(time, "largest_drop_molecule_count", "largest drop"),
             Line(time, "vapor_molecule_count", "free vapour"),

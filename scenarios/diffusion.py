@@ -1,4 +1,4 @@
-"""Two gases mix, though no molecule knows where to go.
+"""Two gases mix, because their molecules move at random.
 
 One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall
 between them is taken away. Every molecule flies on as it did; it is the collisions that turn its way into a random

@@ -4,7 +4,7 @@
 
     0           stack and constants of the module
     BASE        arrays, each at a multiple of 64 bytes; views of one piece of memory keep their distance
-    ...         for each kernel a block: 128 bytes for what it returns, 128 that nobody reads, then its arguments,
+    ...         for each kernel a block: 128 bytes for what it returns, 128 unused, then its arguments,
                 8 bytes each, as numba passes them
     size        the end
 

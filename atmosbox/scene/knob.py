@@ -127,7 +127,7 @@ def warmed_walls(
 ) -> Knob:
     """Return the knob that makes heat baths of smooth walls, at its first turn, and sets their temperature.
 
-    Until then the walls are as the scene has them, so that a box that nobody touches is the one of ``atmosbox run``.
+    Until then the walls are as the scene has them, so that a box that is left alone is the one of ``atmosbox run``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The parcel of molecules that attract each other, advanced exactly: a liquid that nobody put in."""
+"""The parcel of molecules that attract each other, advanced exactly: a gas that condenses to a liquid."""
 
 from typing import ClassVar, Unpack
 

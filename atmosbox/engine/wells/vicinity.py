@@ -5,9 +5,10 @@ are within their shells, two molecules whose anchors are farther apart than
 
 .. math:: \lambda\sigma + s_i + s_j
 
-cannot reach the edge of each other's well. So each lists those that are nearer, asks nobody else, and makes its list
-anew when it leaves its shell; the lists of the others are changed along with it, so that each of a pair always lists
-the other or neither does. A shell is narrow where molecules are crowded, and wide in a thin gas::
+cannot reach the edge of each other's well. So each lists those that are nearer, searches for contacts among these
+alone, and makes its list anew when it leaves its shell; the lists of the others are changed along with it, so that each
+of a pair always lists the other or neither does. A shell is narrow where molecules are crowded, and wide in a thin
+gas::
 
     list of i    | n | 2 j + 1 | 2 k | ...        j is in the well of i, k is near but outside
 

@@ -79,7 +79,7 @@ class Live {
     this.start(state);
   }
 
-  // A box that nobody has started yet plays, unless the reader prefers that nothing moves.
+  // A box that has not been started yet plays, unless the reader prefers that nothing moves.
   start({ playing, time }) {
     if (this.started) return;
     this.started = true;
