@@ -30,6 +30,8 @@ FETCHED = {"stylesheet", "icon", "shortcut", "preload", "prefetch", "moduleprelo
 """Kinds of ``<link>`` whose target a browser fetches."""
 VERBATIM = {"code", "pre", "script", "style", "math", "title"}
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
+FILMED = "elastic-collisions"
+"""The one scene that is filmed here: each film takes seconds."""
 PARTS = ["Run it", "What to notice, what to try", "Settings", "What is modelled, left out, exaggerated", "Theory"]
 PARTS += ["What it does not show", "Questions"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", "MPLBACKEND": "agg"}
@@ -74,7 +76,7 @@ def site(tmp_path_factory):
     """Return the folder of the site as it was built, what the build said, and its exit status."""
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", str(folder / "trees")]
-    command += [str(DOCS), str(folder / "site")]
+    command += ["-D", f"gallery_films={FILMED}", str(DOCS), str(folder / "site")]
     done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=False)
     said = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("[IPKernelApp] WARNING")]
     return folder / "site", "\n".join(said), done.returncode
@@ -102,6 +104,9 @@ def test_the_gallery_has_a_page_that_plays_and_a_worksheet_of_every_scene(site, 
         assert made.pop(f"{name}.html") == b"<!doctype html>"
         assert made.pop(f"{name}-sheet.pdf").startswith(b"%PDF")
         assert {f"gallery/{name}.html", f"gallery/{name}-sheet.pdf"} <= set(pages["gallery.html"].links)
+        assert f"gallery/{name}.html" in pages["gallery.html"].loads, "it plays in the gallery itself"
+    assert made.pop(f"{FILMED}.mp4")[4:8] == b"ftyp"
+    assert f"gallery/{FILMED}.mp4" in pages["gallery.html"].loads
     for name in SCENES:
         assert made.pop(f"{name}-lab.html") == b"<!doctype html>"
         assert f"gallery/{name}-lab.html" in pages["gallery.html"].links

@@ -1,8 +1,9 @@
-"""The gallery: of every scene a page that plays and a worksheet, and of some a lab, made when the site is built.
+"""The gallery: of every scene a page that plays, a film and a worksheet, of some a lab, made when the site is built.
 
-A page is a megabyte or two, so none is kept: each is made of a run with few molecules. In the source the gallery has
-the pictures and the commands; on the site each scene has two links more, or three. The page of a scene that has a lab
-holds it, too: it is loaded when it is opened.
+A page or a film is a megabyte or two, so none is kept: each is made of a run with few molecules. In the source the
+gallery has the pictures and the commands; on the site each scene has its page and its film as well, which are loaded
+when they are opened, and links to them. The page of a scene that has a lab holds it, too. With the option
+``-D gallery_films=NAME`` of Sphinx only this scene is filmed.
 """
 
 import subprocess
@@ -39,62 +40,81 @@ FEW = {
 """So few molecules that a page is small and quick to make."""
 
 
-def make(folder: Path) -> None:
-    """Make pages and worksheets in a folder."""
+FILM = {"seconds": 8.0, "fps": 8.0}
+"""How long a film is, and of how many pictures a second: it takes seconds to make, and a megabyte."""
+
+
+def make(folder: Path, filmed: str) -> None:
+    """Make pages, films and worksheets in a folder."""
     import atmosbox as ab
-    from atmosbox import scenarios, sheet
+    from atmosbox import film, scenarios, sheet
     from atmosbox.lab import save_lab
     from atmosbox.page import save
     from atmosbox.simulation.preparation import prepare
 
     for name in scenarios.names():
-        save([ab.run(name, save_molecules=True, **FEW.get(name, {}))], folder / f"{name}.html", force=True)
+        run = ab.run(name, save_molecules=True, **FEW.get(name, {}))
+        save([run], folder / f"{name}.html", force=True)
+        if filmed in ("all", name):
+            film.save(run, folder / f"{name}.mp4", force=True, **FILM)
         sheet.save(sheet.worksheet(name, {}), folder / f"{name}-sheet.pdf", force=True)
     for name, settings in LABS.items():
         save_lab(prepare(name, settings), folder / f"{name}-lab.html", force=True)
 
 
 def add_links(app: Sphinx, docname: str, source: list[str]) -> None:
-    """Put the links to what is made below the heading of each scene, and its lab into its own page."""
+    """Put what is made below the heading of each scene, and its lab into its own page."""
     scene = docname.removeprefix("scenes/")
     if docname != scene and scene in LABS:
         heading, _, rest = source[0].partition("\n")
-        source[0] = f"{heading}\n\n{_lab(scene)}\n{rest}"
+        lab = _framed(f"../{NAME}/{scene}-lab.html", "Let it run here", f"{scene}, running")
+        source[0] = f"{heading}\n\n{lab}\n{rest}"
     if docname != NAME:
         return
+    from atmosbox import scenarios
+
     lines = []
     for line in source[0].splitlines():
         lines.append(line)
         name = line.removeprefix("## ")
-        if line.startswith("## "):
-            play = f'<a href="{NAME}/{name}.html">Play it in the browser</a>'
-            lab = f' · <a href="{NAME}/{name}-lab.html">let it run</a>' if name in LABS else ""
-            lines += ["", f'<p>{play}{lab} · <a href="{NAME}/{name}-sheet.pdf">worksheet (PDF)</a></p>']
+        if name not in scenarios.names() or line == name:
+            continue
+        lab = f'<a href="{NAME}/{name}-lab.html">let it run</a> · ' if name in LABS else ""
+        lines += ["", f'<p>{lab}<a href="{NAME}/{name}-sheet.pdf">worksheet (PDF)</a></p>', ""]
+        lines += [_framed(f"{NAME}/{name}.html", "Play it here", f"{name}, to play")]
+        if app.config.gallery_films in ("all", name):
+            lines += [_film(f"{NAME}/{name}.mp4", name)]
     source[0] = "\n".join(lines)
 
 
-def _lab(scene: str) -> str:
-    """Return the lab of a scene, closed: a browser loads the frame only when it is to be seen."""
-    place = f"../{NAME}/{scene}-lab.html"
+def _framed(place: str, words: str, title: str) -> str:
+    """Return a page in a frame, closed: a browser loads it only when it is to be seen."""
     links = f'<a href="{place}" target="_blank">in its own window</a> · <a href="{place}" download>download</a>'
-    frame = f'<iframe src="{place}" title="{scene}, running" loading="lazy"></iframe>'
-    return f'<details class="lab"><summary>Let it run here</summary>\n<p>{links}</p>\n{frame}\n</details>\n'
+    frame = f'<iframe src="{place}" title="{title}" loading="lazy"></iframe>'
+    return f'<details class="lab"><summary>{words}</summary>\n<p>{links}</p>\n{frame}\n</details>\n'
+
+
+def _film(place: str, name: str) -> str:
+    """Return a film, closed: a browser loads it only when it is started."""
+    film = f'<video src="{place}" controls loop muted preload="none" aria-label="film of {name}"></video>'
+    return f'<details class="lab"><summary>Watch the film</summary>\n{film}\n</details>\n'
 
 
 def build(app: Sphinx, problem: Exception | None) -> None:
-    """Make pages and worksheets beside the site, in a process of its own, whose engine is compiled."""
+    """Make pages, films and worksheets beside the site, in a process of its own, whose engine is compiled."""
     if problem is None and app.builder.format == "html":
         folder = Path(app.outdir) / NAME
         folder.mkdir(exist_ok=True)
-        subprocess.run([sys.executable, __file__, str(folder)], check=True)
+        subprocess.run([sys.executable, __file__, str(folder), app.config.gallery_films], check=True)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx."""
+    app.add_config_value("gallery_films", "all", "html", str)
     app.connect("source-read", add_links)
     app.connect("build-finished", build)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
 if __name__ == "__main__":
-    make(Path(sys.argv[1]))
+    make(Path(sys.argv[1]), sys.argv[2])

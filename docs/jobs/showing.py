@@ -2,6 +2,8 @@
 
 import os
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -30,16 +32,46 @@ def warm_and_cold(found: Findings) -> None:
     found.figure(figure(runs, labels, spoken(f"Lifting dry air: {names.title}")), "compared", 115)
 
 
+def browser_of(playwright):
+    """Return a browser without a window."""
+    named = (os.environ.get("ATMOSBOX_BROWSER"), shutil.which("chromium"), shutil.which("google-chrome"))
+    return playwright.chromium.launch(executable_path=next(filter(None, named), None), args=FLAGS.split())
+
+
+@job("live")
+def live(found: Findings) -> None:
+    """Open a box that runs, turn its walls from 30 to 10 degrees, and look at it some seconds later."""
+    from playwright.sync_api import sync_playwright
+
+    words = [sys.executable, "-m", "atmosbox", "live", "evaporation", "--no-browser", "--quiet"]
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        sync_playwright() as playwright,
+        subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, text=True) as served,
+    ):
+        browser = browser_of(playwright)
+        shown = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT}, locale="en-GB")
+        shown.goto(served.stdout.readline().strip())
+        shown.wait_for_selector("body[data-playing=true]", timeout=120_000)
+        shown.wait_for_timeout(15_000)
+        slider = shown.locator("input[type=range][aria-label=temperature]")
+        slider.fill("10")
+        slider.dispatch_event("change")
+        shown.wait_for_timeout(15_000)
+        found.picture(shown.screenshot(), "live")
+        browser.close()
+        served.terminate()
+
+
 @job("page")
 def page(found: Findings) -> None:
     """Open the page of a run in a browser, two thirds through."""
     from playwright.sync_api import sync_playwright
 
-    named = (os.environ.get("ATMOSBOX_BROWSER"), shutil.which("chromium"), shutil.which("google-chrome"))
     run = atmosbox.run("condensation", save_molecules=True, molecules=1500, drops=6, humidity=400, duration="60 ns")
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         file = save([run], Path(folder, "page.html"))
-        browser = playwright.chromium.launch(executable_path=next(filter(None, named), None), args=FLAGS.split())
+        browser = browser_of(playwright)
         shown = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT}, reduced_motion="reduce")
         shown.goto(file.as_uri())
         shown.wait_for_selector("body[data-ready]")
