@@ -308,27 +308,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the share across the box at three moments, the decay of the slowest mode, and the entropy."""
     shares = {"early": "τ/10", "middle": "τ/2", "late": "2τ"}
     return (
-        Panel(
-            "line",
-            "The difference decays",
-            (
-                Line("elapsed_time", "mixing_amplitude", "slowest mode"),
-                Line("elapsed_time", "mixing_amplitude_theory", "theory", "theory"),
-            ),
-            x_label="time",
-            y_label="difference",
-            headlines=("diffusion_coefficient",),
-        ),
-        Panel(
-            "line",
-            "Mixing makes entropy",
-            (
-                Line("elapsed_time", "mixing_entropy", "counted"),
-                Line("elapsed_time", "mixing_entropy_theory", "theory", "theory"),
-            ),
-            x_label="time",
-            y_label="entropy / N k ln 2",
-            headlines=("entropy_after_one_mixing_time",),
+        _over_time("The difference decays", "mixing_amplitude", "slowest mode", "difference", "diffusion_coefficient"),
+        _over_time(
+            "Mixing makes entropy", "mixing_entropy", "counted", "entropy / N k ln 2", "entropy_after_one_mixing_time"
         ),
         Panel(
             "line",
@@ -347,3 +329,9 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="percent",
         ),
     )
+
+
+def _over_time(title: str, name: str, label: str, y_label: str, headline: str) -> Panel:
+    """Return a panel of what changes with time, with its theory."""
+    lines = Line("elapsed_time", name, label), Line("elapsed_time", f"{name}_theory", "theory", "theory")
+    return Panel("line", title, lines, x_label="time", y_label=y_label, headlines=(headline,))

@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from atmosbox.cli.application import app, examples
 from atmosbox.cli.option import (
     Accuracy,
+    Colours,
     Config,
     Engine,
     Force,
     Language,
+    PageTheme,
     SceneName,
     Seed,
     Source,
@@ -25,7 +25,6 @@ from atmosbox.cli.option import (
 from atmosbox.cli.output_name import for_scene
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import guarded, prints_to_stderr, say
-from atmosbox.cli.view import Colours
 from atmosbox.text.progress import progress
 
 
@@ -45,9 +44,7 @@ def lab(
     engine: Engine = None,
     accuracy: Accuracy = None,
     out: Annotated[str | None, out_option("The page.  [default: SCENE-lab.html in this folder]")] = None,
-    theme: Annotated[
-        Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
-    ] = Colours.auto,
+    theme: PageTheme = Colours.auto,
     language: Language = Tongue.auto,
     force: Force = False,
     verbose: Verbose = False,

@@ -51,6 +51,14 @@ class Theme(StrEnum):
     slides = "slides"
 
 
+class Colours(StrEnum):
+    """The colours of a page."""
+
+    auto = "auto"
+    light = "light"
+    dark = "dark"
+
+
 def _completed(incomplete: str) -> list[str]:
     """Return the scenes whose names begin like what is typed."""
     from atmosbox import scenarios
@@ -108,6 +116,7 @@ Accuracy = Annotated[
 Language = Annotated[
     Tongue, typer.Option("--language", help="Words of the page; auto takes the reader's browser's language.")
 ]
+PageTheme = Annotated[Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Verbose = Annotated[bool, typer.Option("--verbose", help="Say more, with the traceback of a bug.")]
 AllPanels = Annotated[

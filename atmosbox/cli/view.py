@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from atmosbox.cli.application import app, examples
-from atmosbox.cli.option import Force, Language, Tongue, Verbose, out_option
+from atmosbox.cli.option import Colours, Force, Language, PageTheme, Tongue, Verbose, out_option
 from atmosbox.cli.output_name import beside
 from atmosbox.cli.terminal import guarded, say
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
 
 MOST = 2
-
-
-class Colours(StrEnum):
-    """The colours of a page."""
-
-    auto = "auto"
-    light = "light"
-    dark = "dark"
 
 
 @app.command(
@@ -40,9 +31,7 @@ def view(
         list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two, made with --save-molecules.")
     ],
     out: Annotated[str | None, out_option("The page.  [default: beside FILE, by its name]")] = None,
-    theme: Annotated[
-        Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
-    ] = Colours.auto,
+    theme: PageTheme = Colours.auto,
     language: Language = Tongue.auto,
     force: Force = False,
     verbose: Verbose = False,

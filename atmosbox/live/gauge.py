@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 __all__ = ["GAUGES", "readings"]
 
 _FRAMES = 20
+_FEW = 50  # molecules that would saturate the air: with fewer a hygrometer scatters by more than a seventh
 GAUGES = (
     ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
     ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
@@ -42,6 +43,12 @@ def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
     >>> found = xr.Dataset({"air_temperature": ("elapsed_time", [300.0, 296.3])})
     >>> readings(found, moving=False)
     [{'name': 'thermometer', 'value': 25.0, 'unit': '°C'}]
+
+    Cold air would be saturated by a molecule or two, and has no hygrometer:
+
+    >>> share, number = ("elapsed_time", [3.7]), ("elapsed_time", [2])
+    >>> readings(xr.Dataset({"relative_humidity": share, "vapor_molecule_count": number}), moving=True)
+    []
     """
     made = []
     for name, variables, unit, factor, offset in GAUGES:
@@ -49,6 +56,9 @@ def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
         if known is None:
             continue
         last = found[known].values[-1 if moving else -_FRAMES :]
+        if name == "hygrometer" and "vapor_molecule_count" in found:
+            vapour = found["vapor_molecule_count"].values[-last.size :]
+            last = last[vapour >= _FEW * last]
         last = last[np.isfinite(last)]
         if last.size:
             value = float(last.mean()) * factor + offset

@@ -11,11 +11,15 @@ const COLOURS = {
   dark: { low: "#3b5468", high: "#1d3247", ground: "#4d6342", rock: "#6b6256", cloud: "#dfe6ee", rim: "#8c97a3", clear: "#4d7390" },
 };
 
+// A hygrometer says nothing where so few molecules, or fewer, would saturate the air: their number scatters too much.
+const FEW = 50;
+
 // The way of a run as a curve of its graph: heights [km] over time, and what was measured on it.
 export function wayOf(panel, numbers) {
   const time = numbers.get("elapsed_time"), height = numbers.get("parcel_height");
   if (!time?.length || !height?.length) return [];
-  const [temperature, pressure, liquid, rain, humidity, base] = panel.along.map((name) => numbers.get(name) ?? []);
+  const [temperature, pressure, liquid, rain, humid, base, vapour] = panel.along.map((name) => numbers.get(name) ?? []);
+  const humidity = humid.map((share, frame) => (vapour[frame] < FEW * share ? NaN : share));
   const y = height.map((value) => (value === null ? NaN : value / 1000));
   return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, rain, humidity, base: base[0] ?? Infinity } }];
 }

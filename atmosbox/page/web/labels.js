@@ -63,7 +63,8 @@ export class Labels {
       const spot = project(at.map((old, other) => (other === axis ? value : old)));
       this.#text(round(value), spot.x + across.x * scaled(GAP), spot.y + across.y * scaled(GAP), "tick");
     }
-    const name = `${AXES[axis]} (${this.box.unit})`;
+    const flat = axis === 2 && this.box.planar && !this.box.gravity; // a table has no height
+    const name = `${flat ? "z" : AXES[axis]} (${this.box.unit})`;
     const far = scaled(FAR);
     this.#text(name, (low.x + high.x) / 2 + across.x * far, (low.y + high.y) / 2 + across.y * far, axis === 2 ? "axis up" : "axis");
   }

@@ -26,6 +26,7 @@ ATMOSPHERE_VARIABLES = (
     "rain_mixing_ratio",
     "relative_humidity",
     "cloud_base",
+    "vapor_molecule_count",
 )
 """What the picture of an atmosphere shows of the parcel beside its height, where the run measures it."""
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
