@@ -11,8 +11,13 @@ molecule that rises loses speed, but only fast ones get high, and both effects c
 from below and stirred, and therefore cools with height; left alone for long enough it would become isothermal like
 this one. The figure shows both.
 
+With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on the air around
+it, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much faster than
+molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre.
+
 Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
-smooth, a smooth ceiling. Left out: rotation (it changes no profile at rest), water, wind, sunshine. Each
+smooth, a smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Left out: water,
+wind, sunshine. Each
 molecule stands for some 10^34 real ones and is a hundred metres wide or more, so that it meets others within a
 stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it becomes for
 molecules so wide: they exclude volume from each other, and no centre comes nearer to floor or ceiling than its radius,
@@ -21,12 +26,21 @@ one scale height thick stands for the third dimension.
 """
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import HeatBath, Periodic, RandomNumbers, Specular, maxwell_velocities
+from atmosbox.engine import (
+    HeatBath,
+    Periodic,
+    RandomNumbers,
+    Specular,
+    Stirring,
+    maxwell_velocities,
+    rotational_energies,
+)
+from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
     EngineChoice,
@@ -38,9 +52,12 @@ from atmosbox.scene import (
     SceneSettings,
     Series,
     Setup,
+    Stirrer,
     setting,
 )
 from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.instruments.stirrer import weighted_slope
 from atmosbox.scene.knob import gravity, wall_temperature
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import average_beside
@@ -60,6 +77,19 @@ FILLED = 3.0
 """How many scale heights of the column hold molecules at a uniform start."""
 JUMP = 0.563
 """Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas whose molecules never meet."""
+
+STIRRED = {"rotation": True, "height": 11.0, "knudsen": 0.03, "molecules": 4000, "start": "equilibrium"}
+"""What is not set is so in a column that is stirred: air that rotates, a troposphere, and little conduction."""
+PARCEL, LIFT = 0.05, 0.25
+"""Shares of all molecules that are in a parcel, and by which it rises or sinks."""
+TURN = 0.03
+"""Time between two sets of exchanges, in those that sound takes to climb a scale height."""
+INNER = 0.1
+"""Below and above so large a part of the molecules the lapse rate is not measured: few parcels come so far."""
+COLDEST = 0.3
+"""The adiabat may fall so far below the ceiling, in temperatures of the floor: higher up there is hardly any air."""
+FOURIER = 3.0
+"""By this share, times the Knudsen number, stirred air was measured to conduct less than Fourier's law says."""
 
 ladder = (
     Series("exact", "duration", (50, 100, 200, 400)),
@@ -95,10 +125,70 @@ class Settings(SceneSettings):
         "where the molecules start: spread evenly, in the profile of equilibrium, or near the floor",
         choices=("uniform", "equilibrium", "bottom"),
     )
+    rotation: bool = setting(False, "", "whether molecules rotate, as those of air do")
+    stirring: float = setting(
+        0.0,
+        "1",
+        "how many times as much heat stirring carries as molecules conduct; 0 for air at rest. Above 0, what is not "
+        "set suits it: rotation on, height 11 km, knudsen 0.03, 4000 molecules, start equilibrium",
+        low=0.0,
+        high=1000.0,
+    )
+    exchange: str = setting(
+        "parcels",
+        "",
+        "what changes places when stirred: parcels that do work as they expand, or molecules one by one, which do none",
+        choices=("parcels", "molecules"),
+    )
     plane: bool = setting(False, "", "whether the air is a plane of discs")
     duration: float = setting(
         400.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5
     )
+
+    def __init__(self, /, **values: Any) -> None:
+        declared = {parameter.name: parameter for parameter in self.describe()}["stirring"]
+        stirred = declared.parse(values.get("stirring", declared.default))
+        super().__init__(**(STIRRED | values if stirred else values))
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of a molecule."""
+        return (2 if self.plane else 3) + (2 if self.rotation else 0)
+
+    @property
+    def lapse(self) -> float:
+        r"""Lapse rate of the adiabat, :math:`g / c_p` [K/m]."""
+        lapse: float = 2.0 * DRY_AIR.molecule_mass * self.si.gravity / ((self.freedom + 2) * BOLTZMANN)
+        return lapse
+
+    def check(self) -> None:
+        """Refuse what cannot be stirred, and discs that rotate."""
+        if self.plane and self.rotation:
+            raise SettingError("rotation", True, "is not for the discs of a plane", "give --set rotation=off")
+        if not self.stirring:
+            return
+        if self.plane:
+            raise SettingError("stirring", self.stirring, "is for air in space, not in a plane", "give --set plane=off")
+        if self.floor == "isolated":
+            raise SettingError(
+                "stirring",
+                self.stirring,
+                "heats the air, and an isolated floor keeps it in",
+                "give --set floor=heat-bath",
+            )
+        least = math.ceil(10.0 / PARCEL)
+        if self.molecules < least:
+            raise SettingError(
+                "molecules", self.molecules, "are too few to stir in parcels", f"give --set molecules={least} or more"
+            )
+        most = math.floor((1.0 - COLDEST) * self.si.temperature / self.lapse / 100.0) / 10.0
+        if self.height > most:
+            raise SettingError(
+                "height",
+                f"{self.height:g} km",
+                "is higher than stirred air reaches",
+                f"give --set height={most:g} or less",
+            )
 
 
 class Column:
@@ -113,9 +203,13 @@ class Column:
         self.energy = BOLTZMANN * si.temperature
         self.scale_height = self.energy / (DRY_AIR.molecule_mass * si.gravity)
         self.height = si.height / self.scale_height
-        self.width = 1.0
         self.dimensions = 2 if settings.plane else 3
+        self.freedom = settings.freedom
         n = settings.molecules
+        self.width = 1.0
+        if settings.stirring:
+            # a slender column: with ten molecules in a cell its side is a mean free path
+            self.width = rounded(min(math.sqrt(settings.knudsen**3 * n / (10.0 * self.height)), 1.0))
         held = -math.expm1(-min(self.height, 700.0))
         self.per_area = n / self.width ** (self.dimensions - 1)
         density = n / (self.width ** (self.dimensions - 1) * held)
@@ -132,6 +226,11 @@ class Column:
         self.scale = Scale(self.scale_height, DRY_AIR.molecule_mass, self.energy, weight)
         self.bottom = 0.5 * self.diameter
         self.top = self.height - self.bottom
+        self.works = settings.exchange == "parcels"
+        # the eddy conductivity n f/2 K, K = rate * lift^2 / 2, is so many times that of the molecules
+        thin = law.thin_gas_conductivity(1.0, 1.0, self.diameter, self.freedom)
+        lift = LIFT * self.per_area / density
+        self.rate = rounded(4.0 * settings.stirring * thin / (self.freedom * density * lift**2))
 
     @property
     def memory(self) -> float:
@@ -149,15 +248,27 @@ class Column:
         of the floor than the molecules that hit it. Its jump is that along 2.127 mean free paths (Sone 2007), 0.563 of
         what the hits alone would make it, and taken for discs, too.
         """
-        a, d = min(self.height, 700.0), self.dimensions
+        if self.rate:
+            return self.stirred().memory
+        a, d, turns = min(self.height, 700.0), self.dimensions, self.freedom - self.dimensions
         held = -math.expm1(-a)
-        capacity = 0.5 * d + 1.0 - a * a * math.exp(-a) / held**2
-        leaves = JUMP * capacity * held / ((d + 1.0) / 2.0 / math.sqrt(2.0 * math.pi))
-        thin = 1.025 * 75.0 / 64.0 / self.diameter**2 if d == 3 else 1.029 * 2.0 / self.diameter
+        capacity = 0.5 * self.freedom + 1.0 - a * a * math.exp(-a) / held**2
+        leaves = JUMP * capacity * held / ((d + 1.0 + turns) / 2.0 / math.sqrt(2.0 * math.pi))
+        thin = (
+            1.025 * 75.0 / 64.0 / self.diameter**2 * (1.25 if turns else 1.0) if d == 3 else 1.029 * 2.0 / self.diameter
+        )
         above = 0.5 - 2.0 * math.exp(-a) + (a + 1.5) * math.exp(-2.0 * a)
         conducted = capacity * self.per_area * above / held**2 / (thin / math.sqrt(math.pi))
         total: float = leaves + conducted
         return total
+
+    def stirred(self, kT: float = 1.0, gravity: float = 1.0) -> law.StirredColumn:
+        """Return the profile of the column that is stirred, above a floor of this temperature."""
+        ends = self.bottom, self.top
+        return law.stirred_column(
+            self.per_area, *ends, kT, gravity, self.diameter,
+            freedom=self.freedom, parcel=PARCEL, lift=LIFT, rate=self.rate, works=self.works,
+        )  # fmt: skip
 
     def settling(self, settings: Settings) -> float:
         r"""Return how long after an uneven start the column has forgotten it [reduced time].
@@ -179,10 +290,12 @@ class Column:
         """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
         if settings.floor == "heat-bath":
             return float(dataset.wall_temperature.values[-1, 4]) / self.scale.temperature
-        energy = float(dataset.kinetic_energy.values[0] + dataset.potential_energy.values[0])
+        stores = dataset.kinetic_energy, dataset.rotational_energy, dataset.potential_energy
+        energy = float(sum(store.values[0] for store in stores))
         each = energy / self.scale.total_energy / settings.molecules
         column = self.per_area, self.bottom, self.top, self.room
-        return law.column_temperature(each, *column, dimensions=self.dimensions)
+        rotation = self.freedom - self.dimensions
+        return law.column_temperature(each, *column, dimensions=self.dimensions, rotation=rotation)
 
     def textbook_pressure(self, height: np.ndarray, kT: float, gravity: float = 1.0) -> np.ndarray:
         r"""Return the pressure of the textbook, :math:`p_0 e^{-m g z / kT}` [kT/scale height^3].
@@ -205,9 +318,14 @@ class Column:
 
 def _settled(column: Column, settings: Settings) -> int:
     """Return how many frames pass until equilibrium."""
-    if settings.start == "equilibrium":
+    if settings.start == "equilibrium" and not settings.stirring:
         return SETTLE
     return min(max(math.ceil(column.settling(settings) / settings.duration * FRAMES), SETTLE), FRAMES - 1)
+
+
+def usual_engine(settings: Settings) -> str:
+    """Return the engine on which the column runs unless another is asked for: where it is stirred, one that can."""
+    return "dsmc" if settings.stirring else "exact"
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -224,9 +342,21 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     else:
         filled = min(FILLED if settings.start == "uniform" else 0.1, column.height)
         position = engine.scatter(length, diameter, rng, periodic=sides, planar=plane, top=filled)
+    velocity = maxwell_velocities(1.0, np.ones(n), rng, planar=plane, exact=True)
+    more: dict[str, Any] = {}
+    if settings.rotation:
+        more |= {"rotation": 2.0, "rotational_energy": rotational_energies(1.0, np.full(n, 2.0), rng)}
+    stirrer: tuple[Stirrer, ...] = ()
+    if settings.stirring:
+        # so many exchanges that each molecule between the ends changes places at that rate
+        exchanges = column.rate * (1.0 - LIFT - PARCEL) / (2.0 * PARCEL)
+        more["stirring"] = Stirring(round(PARCEL * n), round(LIFT * n), exchanges, TURN, column.works)
+        reached = column.stirred().height
+        inner = round(INNER * len(reached))
+        stirrer = (Stirrer(LAYERS, float(reached[inner]), float(reached[-1 - inner])),)
     parcel = engine.make(
         position,
-        maxwell_velocities(1.0, np.ones(n), rng, planar=plane, exact=True),
+        velocity,
         length=length,
         walls=(Periodic(),) * 4 + (HeatBath(1.0) if settings.floor == "heat-bath" else Specular(), Specular()),
         diameter=column.diameter,
@@ -234,6 +364,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         planar=plane,
         layers=LAYERS,
         seed=settings.seed,
+        **more,
     )
     scale = column.scale
     settled = _settled(column, settings)
@@ -245,7 +376,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         scale,
         settings.duration,
         FRAMES,
-        (Air("floor"), Layers(LAYERS, column.memory)),
+        (Air("floor"), Layers(LAYERS, column.memory), *stirrer),
         samples=8,
         settle=settled,
         time_unit="s",
@@ -253,13 +384,18 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
             "weight of a molecule": f"{scale.weight:.2g} real molecules",
             "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
-            "gamma": "2: the discs move in a plane and do not rotate" if plane else "5/3: the molecules do not rotate",
+            "gamma": "2: the discs move in a plane and do not rotate"
+            if plane
+            else "7/5"
+            if settings.rotation
+            else "5/3: the molecules do not rotate",
             "scale height": f"{scale.length / 1000.0:.2f} km",
             "Knudsen number": f"{settings.knudsen:g}, mean free path at the floor in scale heights",
             "time": f"{settings.duration * scale.time / 60.0:.0f} minutes, of which the first "
             f"{settled * settings.duration / FRAMES * scale.time / 60.0:.0f} are left out of the means",
             "noise": f"the thermometer of a layer of {n // LAYERS} molecules scatters by "
             f"{settings.temperature * math.sqrt(2.0 * LAYERS / (column.dimensions * n)):.0f} K in each sample",
+            **_stirring_facts(settings, column),
         },
         knobs=(
             wall_temperature(parcel, scale, settings, low=100.0, high=600.0),
@@ -270,8 +406,47 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
 
 
+def _stirring_facts(settings: Settings, column: Column) -> dict[str, str]:
+    """Return what the model card says of the stirring."""
+    if not settings.stirring:
+        return {}
+    lift = f"by {100.0 * LIFT:g} % of the mass of the air"
+    what = f"parcels of {100.0 * PARCEL:g} % of it rise and sink {lift}" if column.works else f"molecules swap {lift}"
+    return {
+        "stirring": f"{what}, each molecule {column.rate:.3g} times while sound climbs a scale height; that carries "
+        f"{settings.stirring:g} times as much heat as molecules conduct",
+        "adiabat": f"g/c_p = {1000.0 * settings.lapse:.2f} K/km",
+    }
+
+
+def _stirred_theory(
+    dataset: "xr.Dataset", column: Column, settings: Settings, kT: float, gravity: float
+) -> dict[str, np.ndarray]:
+    """Return the profiles of the stirred column, and the adiabat that meets them in the middle of the air."""
+    scale = column.scale
+    profile = column.stirred(kT, gravity)
+    edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
+    middle, thick = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    nodes = len(profile.height)
+    room = column.per_area / nodes * profile.temperature / profile.pressure
+    below = np.append(profile.height - 0.5 * room, profile.height[-1] + 0.5 * room[-1])
+    density = np.diff(np.interp(edges, below, np.linspace(0.0, column.per_area, nodes + 1))) / thick
+    temperature = np.interp(middle, profile.height, profile.temperature)
+    half = nodes // 2
+    lapse = 2.0 * gravity / (column.freedom + 2.0)
+    return {
+        "number_density_theory": density * scale.number_density,
+        "air_density_theory": density * scale.mass_density,
+        "layer_pressure_theory": density * temperature * scale.pressure,
+        "layer_temperature_theory": temperature * scale.temperature,
+        "layer_temperature_adiabat": (profile.temperature[half] - lapse * (middle - profile.height[half]))
+        * scale.temperature,
+        "layer_temperature_at_rest": np.full(len(thick), kT * scale.temperature),
+    }
+
+
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the textbook's barometric law, and what it becomes between walls and with molecules of some size."""
+    """Return the barometric law, and what it becomes between walls, with molecules of some size, or stirred."""
     column = Column(settings, used(dataset))
     scale = column.scale
     kT = column.equilibrium_kT(dataset, settings)
@@ -284,7 +459,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     within = np.divide(density, reached, out=np.zeros_like(density), where=reached > 0.0)
     pressure = column.pressure(within, kT) * reached
     light = column.textbook_pressure(0.5 * (edges[1:] + edges[:-1]), kT, pull)
-    return {
+    found = {
         "number_density_theory": density * scale.number_density,
         "air_density_theory": density * scale.mass_density,
         "layer_pressure_theory": pressure * scale.pressure,
@@ -293,6 +468,42 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         "number_density_barometric": light / kT * scale.number_density,
         "layer_pressure_barometric": light * scale.pressure,
     }
+    return found | (_stirred_theory(dataset, column, settings, kT, pull) if settings.stirring else {})
+
+
+def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headline:
+    """Return the lapse rate of the stirred air; what theory says, in the same layers, with the same weights."""
+    profile = column.stirred()
+    inner = round(INNER * len(profile.height))
+    low, high = profile.height[inner], profile.height[-1 - inner]
+    edges = late.height_bnds.values / column.scale.length
+    inside = (edges[:, 0] >= low) & (edges[:, 1] <= high)
+    expected = -weighted_slope(
+        late.height.values[inside],
+        late.layer_temperature_theory.values[inside],
+        late.number_density_theory.values[inside],
+    )
+    memory = column.memory * FRAMES / settings.duration
+    measured = average_beside(late.lapse_rate.values, _energy(late), memory)
+    # a part 1/(1 + S) of the gradient is what conduction takes from it
+    unknown = min(FOURIER * settings.knudsen, 1.0) / (1.0 + settings.stirring)
+    return Headline(
+        "lapse_rate_of_the_air",
+        float(measured.mean),
+        float(measured.standard_error),
+        expected,
+        unknown * settings.lapse,
+        "air in which molecules fly so far conducts heat less than Fourier's law says",
+        "K m-1",
+        "K/km",
+        "lapse rate of the stirred air",
+    )
+
+
+def _energy(late: "xr.Dataset") -> np.ndarray:
+    """Return the energy of the column in each frame [J]."""
+    stores = late.kinetic_energy, late.rotational_energy, late.potential_energy
+    return np.asarray(sum(store.values for store in stores))
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
@@ -309,24 +520,27 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     # what floor minus ceiling give beyond the weight is the change of momentum: its variance is N m kT at either end
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[settled, -1], [0, 1]])[0]) / column.scale.time
     chance = math.sqrt(2.0 * column.per_area * kT / column.width ** (column.dimensions - 1)) / lasted
-    energy = late.kinetic_energy.values + late.potential_energy.values
+    weight_headline = Headline(
+        "weight_of_the_air",
+        float(weight.mean()),
+        chance * column.scale.pressure,
+        expected,
+        0.0,
+        CHANCE_ALONE,
+        "Pa",
+        "hPa",
+        "weight of the air, floor minus ceiling",
+    )
+    if settings.stirring:
+        return weight_headline, _lapse_rate(late, column, settings)
+    energy = _energy(late)
     memory = column.memory * FRAMES / settings.duration
     temperature = average_beside(late.air_temperature.values, energy, memory)
     height = column.mean_height(kT) * column.scale.length
     per_metre = settings.molecules * column.scale.weight * DRY_AIR.molecule_mass * settings.gravity
     climbed = average_beside(late.potential_energy.values / per_metre, energy, memory)
     return (
-        Headline(
-            "weight_of_the_air",
-            float(weight.mean()),
-            chance * column.scale.pressure,
-            expected,
-            0.0,
-            "none: the model has no other error than chance",
-            "Pa",
-            "hPa",
-            "weight of the air, floor minus ceiling",
-        ),
+        weight_headline,
         Headline(
             "mean_temperature",
             float(temperature.mean),
@@ -354,12 +568,13 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return density, pressure and temperature against height."""
+    stirs = bool(settings.stirring)
 
     def against_height(
-        title: str, name: str, theory: str, other: Line, label: str, unit: str, scale: str, headline: str
+        title: str, name: str, theory: str, others: tuple[Line, ...], label: str, unit: str, scale: str, headline: str
     ) -> Panel:
         measured = Line(name, "height", "molecules", error=f"{name}_se")
-        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), other
+        lines = measured, Line(f"{name}_theory", "height", theory, "theory"), *others
         return Panel(
             "profile",
             title,
@@ -372,19 +587,31 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             headlines=(headline,),
         )
 
-    smooth, barometric = "with walls and size", "barometric law"
+    smooth, barometric = "stirred" if stirs else "with walls and size", "barometric law"
     thin = Line("number_density_barometric", "height", barometric, "reference")
     light = Line("layer_pressure_barometric", "height", barometric, "reference")
     stirred = Line("layer_temperature_standard", "height", "standard atmosphere, stirred", "environment")
+    title, curve = "At rest it is isothermal", "isothermal"
+    others: tuple[Line, ...] = (stirred,)
+    number = "mean_temperature"
+    if stirs:
+        works = settings.exchange == "parcels"
+        title = "Stirred, it cools with height" if works else "Single molecules do no work: it is isothermal"
+        standard = Line("layer_temperature_standard", "height", "standard atmosphere", "environment")
+        rest = Line("layer_temperature_at_rest", "height", "at rest", "environment")
+        adiabat = Line(
+            "layer_temperature_adiabat", "height", f"adiabat, {1000.0 * settings.lapse:.1f} K/km", "reference"
+        )
+        curve, others = "stirring and conduction", (adiabat, standard, rest)
+        number = "lapse_rate_of_the_air"
     return (
         against_height(
-            "Density falls with height", "number_density", smooth, thin, "number density", "", "log", "mean_height"
+            "Density falls with height", "number_density", smooth, (thin,), "number density", "", "log",
+            "weight_of_the_air" if stirs else "mean_height",
         ),
         against_height(
-            "Pressure falls with height", "layer_pressure", smooth, light, "pressure", "hPa", "log", "weight_of_the_air"
+            "Pressure falls with height", "layer_pressure", smooth, (light,), "pressure", "hPa", "log",
+            "weight_of_the_air",
         ),
-        against_height(
-            "At rest it is isothermal", "layer_temperature", "isothermal", stirred, "temperature", "K", "linear",
-            "mean_temperature",
-        ),
+        against_height(title, "layer_temperature", curve, others, "temperature", "K", "linear", number),
     )  # fmt: skip

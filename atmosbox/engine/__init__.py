@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.core.refusal import CoarseStepWarning, PackingError, RefusedError, StalledError
     from atmosbox.engine.core.schedule import Constant, Ramp, Schedule, Steps
     from atmosbox.engine.core.walls import HeatBath, Periodic, Piston, Specular, Wall
+    from atmosbox.engine.dsmc.stirring import Stirring
     from atmosbox.engine.exact.parcelset import ParcelSet
     from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
     from atmosbox.engine.start.lattice import lattice_positions
@@ -44,6 +45,7 @@ _HOMES = {
     "core.refusal": "CoarseStepWarning PackingError RefusedError StalledError",
     "core.schedule": "Constant Ramp Schedule Steps",
     "core.walls": "HeatBath Periodic Piston Specular Wall",
+    "dsmc.stirring": "Stirring",
     "exact.parcelset": "ParcelSet",
     "liquid.substance": "Drops Liquid Mist Pool Substance",
     "start.lattice": "lattice_positions",
@@ -81,6 +83,7 @@ __all__ = [
     "SquareWell",
     "StalledError",
     "Steps",
+    "Stirring",
     "Substance",
     "Wall",
     "equal_speeds",

@@ -15,7 +15,7 @@ from atmosbox.live.tape import Change
 from atmosbox.scene.engines import EngineChoice, choose
 from atmosbox.scene.parameter import Value
 from atmosbox.scene.setup import Setup
-from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.preparation import Prepared, usual_engine
 
 __all__ = ["MOST_CHANGES", "Hand", "begun_anew", "meeting", "with_collisions"]
 
@@ -126,7 +126,7 @@ def with_collisions(engine: EngineChoice, wanted: bool) -> str:
 
 
 def begun_anew(prepared: Prepared, values: Mapping[str, Any], engine: str) -> Prepared:
-    """Return a scene with other settings and another engine.
+    """Return a scene with other settings and another engine; if that is its usual one, the usual one of these settings.
 
     Raises
     ------
@@ -140,4 +140,7 @@ def begun_anew(prepared: Prepared, values: Mapping[str, Any], engine: str) -> Pr
     10
     """
     settings = type(prepared.settings).from_user(dict(values))
-    return replace(prepared, settings=settings, engine=choose(engine), expectation=None)
+    chosen = choose(engine)
+    if chosen == usual_engine(prepared.module, prepared.settings):
+        chosen = usual_engine(prepared.module, settings)
+    return replace(prepared, settings=settings, engine=chosen, expectation=None)

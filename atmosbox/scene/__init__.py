@@ -43,6 +43,7 @@ if TYPE_CHECKING:
         Readings,
         Slab,
         Speeds,
+        Stirrer,
         Water,
         wall_laws,
     )
@@ -57,7 +58,7 @@ _HOMES = {
     "headline": "Headline",
     "instruments": (
         "LAWS Air Clusters Discs DropSizes Environment Instrument Layers Leaving "
-        "Lift Mixing MoistLift Molecules Readings Slab Speeds Water wall_laws"
+        "Lift Mixing MoistLift Molecules Readings Slab Speeds Stirrer Water wall_laws"
     ),
     "panels": "Line Panel",
     "settings": "SceneSettings setting",
@@ -92,6 +93,7 @@ __all__ = [
     "Setup",
     "Slab",
     "Speeds",
+    "Stirrer",
     "Water",
     "block_average",
     "setting",

@@ -23,7 +23,7 @@ from atmosbox.simulation import accuracy as accuracies
 from atmosbox.simulation.accuracy import Expectation
 from atmosbox.version import __version__
 
-__all__ = ["Card", "Prepared", "build", "card", "prepare"]
+__all__ = ["Card", "Prepared", "build", "card", "prepare", "usual_engine"]
 
 _MEMORY = 8e9  # bytes that saved molecules may need
 
@@ -83,7 +83,7 @@ def prepare(
     settings
         Values by name, numbers in the documented unit or texts with a unit.
     engine
-        The engine with its options: ``stepped:delta=0.02``; ``exact`` if None.
+        The engine with its options: ``stepped:delta=0.02``; if None that of the scene, see `usual_engine`.
     accuracy
         A wish that picks the engine and the settings that trade accuracy for time, as
         `atmosbox.simulation.accuracy.parse` reads it; what is in `settings` stays as it is.
@@ -116,7 +116,7 @@ def prepare(
         given = {field_name(setting) for setting in settings}
         checked = checked.model_copy(update={n: value for n, value in picked.sets.items() if n not in given})
         engine = picked.way.engine
-    chosen = choose(EXACT if engine is None else engine)
+    chosen = usual_engine(module, checked) if engine is None else choose(engine)
     if chosen != EXACT and not _takes_engine(module):
         raise SettingError(
             "engine", str(chosen), f"is not for the scene {os.fspath(scene)}, whose build takes no engine",
@@ -145,6 +145,20 @@ def card(prepared: Prepared) -> Card:
     story = (prepared.module.__doc__ or "").strip()
     title = getattr(prepared.module, "title", prepared.scene)
     return Card(prepared.scene, title, story, tuple(setup.facts.items()), tuple(prepared.settings.describe()))
+
+
+def usual_engine(module: ModuleType, settings: SceneSettings) -> EngineChoice:
+    """Return the engine on which a scene runs unless another is asked for.
+
+    It is the exact one, unless the scene has a function ``usual_engine`` of its settings that names another.
+
+    Examples
+    --------
+    >>> str(prepare("atmosphere", {"stirring": 10}).engine).partition(":")[0]
+    'dsmc'
+    """
+    own = getattr(module, "usual_engine", None)
+    return EXACT if own is None else choose(own(settings))
 
 
 def _takes_engine(module: ModuleType) -> bool:

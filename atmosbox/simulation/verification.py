@@ -136,8 +136,8 @@ def _balance(dataset: xr.Dataset) -> Check:
     stores = ("kinetic_energy", "rotational_energy", "potential_energy", "condensed_energy")
     total = sum(dataset[name].values for name in stores if name in dataset)
     heat, work = dataset["heat_from_wall"].values, dataset["work_by_piston"].values
-    if "work_by_gravity" in dataset:
-        work = work + dataset["work_by_gravity"].values
+    for name in ("work_by_gravity", "work_by_stirring"):
+        work = work + dataset[name].values if name in dataset else work
     made = dataset["numerical_heat"].values if "numerical_heat" in dataset else 0.0
     start = total - (heat.sum(axis=1) + work + made)
     scale = np.maximum.reduce([np.abs(total), np.abs(start), np.abs(heat).sum(axis=1) + np.abs(work)])

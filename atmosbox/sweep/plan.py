@@ -263,7 +263,7 @@ def plan(
         kept | {"seed": chosen},
         members,
         chosen,
-        str(first.engine) if accuracy is None else None,
+        str(first.engine) if accuracy is None and len({str(each.engine) for each in prepared.values()}) == 1 else None,
         accuracy,
         tuple(str(prepared[k].engine) if k in prepared else "" for k in range(1, draft.points + 1)),
         refused,

@@ -20,6 +20,7 @@ wall_law            with which energy they leave a wall; the heat between two wa
 barometric          how a gas thins out with height
 column_temperature  which temperature an isolated column comes to
 hydrostatic         a column of spheres or discs with excluded volume
+stirred_column      how the temperature of a stirred column falls with height
 lifting             what becomes of a parcel that is lifted, compressed or held at its temperature
 finite_rate         what the finite rate of an ascent, and excluded volume, add to that
 environment         the environment of a parcel: lapse rates, pressures and heights
@@ -144,6 +145,7 @@ from atmosbox.theory.simple_fluid import (
     well_vapor_pressure,
 )
 from atmosbox.theory.standard_atmosphere import isa_pressure, isa_temperature
+from atmosbox.theory.stirred_column import StirredColumn, stirred_column, thin_gas_conductivity
 from atmosbox.theory.vapor_number import VaporNumber, isolated_vapor_number, isothermal_vapor_number
 from atmosbox.theory.wall_law import (
     FreeMolecularSlab,
@@ -180,6 +182,7 @@ __all__ = [
     "IsobaricWater",
     "ParcelPath",
     "SimpleFluid",
+    "StirredColumn",
     "VaporNumber",
     "adiabatic_index",
     "barometric_density",
@@ -256,7 +259,9 @@ __all__ = [
     "square_well_second_virial",
     "square_well_third_virial",
     "staying_energy_density",
+    "stirred_column",
     "temperature_noise",
+    "thin_gas_conductivity",
     "vapor_pressure",
     "virtual_temperature",
     "well_vapor_pressure",

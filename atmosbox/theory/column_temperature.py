@@ -15,8 +15,9 @@ def column_temperature(
     mass: float = 1.0,
     gravity: float = 1.0,
     dimensions: int = 3,
+    rotation: int = 0,
 ) -> float:
-    r"""Return the temperature kT at which molecules have so much energy each, :math:`\tfrac{d}{2} kT + m g \bar z`.
+    r"""Return the temperature kT at which molecules have so much energy each, :math:`\tfrac{d + r}{2} kT + m g \bar z`.
 
     The mean height rises with temperature, so there is one.
 
@@ -34,6 +35,8 @@ def column_temperature(
         Mass of a molecule [mass] and acceleration of gravity [length time^-2].
     dimensions
         3, or 2 for discs in a plane.
+    rotation
+        Degrees of freedom of rotation.
 
     Returns
     -------
@@ -54,12 +57,14 @@ def column_temperature(
     """
     from scipy.optimize import brentq
 
+    freedom = dimensions + rotation
+
     def missing(kT: float) -> float:
         column = molecules_per_area, bottom, top, kT, mass, gravity, diameter
         height = hydrostatic_mean_height(*column, dimensions=dimensions)
-        return 0.5 * dimensions * kT + mass * gravity * height - energy
+        return 0.5 * freedom * kT + mass * gravity * height - energy
 
     # all of it may be motion; in a high column of points one kT a molecule is height, of spheres a little more
-    most = 2.0 * energy / dimensions
-    kT: float = brentq(missing, 0.5 * most * dimensions / (dimensions + 2.0), most, xtol=1e-14 * energy)
+    most = 2.0 * energy / freedom
+    kT: float = brentq(missing, 0.5 * most * freedom / (freedom + 2.0), most, xtol=1e-14 * energy)
     return kT

@@ -8,4 +8,6 @@
 `dsmc`                one time step
 `dsmc_parcel`         the box, advanced so
 `moist_dsmc_parcel`   the box of moist air, advanced so
+`stirring`            parcels that change places in a column, with the work of each
+`stirred_dsmc_parcel` the column that is stirred
 """

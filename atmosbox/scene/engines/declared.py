@@ -38,6 +38,8 @@ class Engine:
         Returns the class of its parcels with a liquid in them, if it has one.
     attracting
         Returns the class of its parcels of molecules that attract each other, if it has one.
+    stirred
+        Returns the class of its columns that are stirred, if it has one.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Engine:
     reference: str = ""
     moist: Callable[[Liquid], type[Parcel]] | None = None
     attracting: Callable[[], type[Parcel]] | None = None
+    stirred: Callable[[], type[Parcel]] | None = None
 
 
 def _exact() -> type[Parcel]:
@@ -89,6 +92,12 @@ def _moist_dsmc(liquid: Liquid) -> type[Parcel]:
     if isinstance(liquid, Drops):
         raise SettingError("engine", "dsmc", "has no drops with a size of their own", "give --engine exact, or a mist")
     return MoistDsmcParcel
+
+
+def _stirred_dsmc() -> type[Parcel]:
+    from atmosbox.engine.dsmc.stirred_dsmc_parcel import StirredDsmcParcel
+
+    return StirredDsmcParcel
 
 
 def _classic() -> type[Parcel]:
@@ -160,6 +169,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
                 ideal=True,
                 reference="https://doi.org/10.1063/1.869674 (cells and steps of direct simulation Monte Carlo)",
                 moist=_moist_dsmc,
+                stirred=_stirred_dsmc,
             ),
             Engine(
                 "classic",

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from atmosbox.engine import Liquid, Parcel, RandomBath, RefusedError, Snapshot, SquareWell
+from atmosbox.engine import Liquid, Parcel, RandomBath, RefusedError, Snapshot, SquareWell, Stirring
 from atmosbox.engine.core.parcel import Arrangement, Array
 
 __all__ = ["DescribedParcel"]
@@ -25,6 +25,8 @@ class DescribedParcel(Parcel):
         The liquid in the box, of which nothing is asked.
     well, species, strength, bath
         What molecules that attract each other have besides, of which nothing is asked either.
+    stirring
+        How the air is stirred, of which nothing is asked either.
 
     Examples
     --------
@@ -45,6 +47,7 @@ class DescribedParcel(Parcel):
         species: ArrayLike = 0,
         strength: float = 1.0,
         bath: RandomBath | None = None,
+        stirring: Stirring | None = None,
         **box: Unpack[Arrangement],
     ) -> None:
         super().__init__(position, velocity, **box)

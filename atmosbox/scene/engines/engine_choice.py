@@ -76,7 +76,8 @@ class EngineChoice:
         RefusedError
             If the engine cannot do what the box asks for.
         SettingError
-            If there is a ``liquid`` in the box, or a ``well`` about its molecules, and the engine knows none.
+            If there is a ``liquid`` in the box, a ``well`` about its molecules, or ``stirring``, and the engine
+            knows none.
         """
         parcel: Callable[..., Parcel] = self.engine.parcel()
         if "liquid" in box:
@@ -88,6 +89,15 @@ class EngineChoice:
             if self.engine.attracting is None:
                 raise SettingError("engine", str(self), "knows no attraction", "give --engine exact")
             parcel = self.engine.attracting()
+        if "stirring" in box:
+            if self.engine.stirred is None:
+                raise SettingError(
+                    "engine",
+                    str(self),
+                    "cannot stir, for spheres that are put where others were would overlap",
+                    "give --engine dsmc",
+                )
+            parcel = self.engine.stirred()
         if self.described:
             from atmosbox.scene.engines.described_parcel import DescribedParcel
 

@@ -18,6 +18,7 @@ from atmosbox.scene.instruments.moist_lift import MoistLift
 from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
 from atmosbox.scene.instruments.slab import Slab
 from atmosbox.scene.instruments.speeds import Speeds
+from atmosbox.scene.instruments.stirrer import Stirrer
 from atmosbox.scene.instruments.water import Water
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "Readings",
     "Slab",
     "Speeds",
+    "Stirrer",
     "Water",
     "wall_laws",
 ]

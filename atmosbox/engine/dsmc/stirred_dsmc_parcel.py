@@ -1,0 +1,150 @@
+"""A column of dilute gas that is stirred, advanced by direct simulation Monte Carlo."""
+
+from typing import Any, ClassVar, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.engine.core.inputs import number, whole
+from atmosbox.engine.core.parcel import Arrangement, Array
+from atmosbox.engine.core.random import new_state
+from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.walls import PISTON
+from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
+from atmosbox.engine.dsmc.stirring import Stirring, stir
+
+__all__ = ["StirredDsmcParcel"]
+
+_FEWEST = 10
+_USE = 2  # of the seed: beside what happens in the box, and its start
+
+
+class StirredDsmcParcel(DsmcParcel):
+    """A column of gas in which parcels change places up and down, each with the work of its piston.
+
+    What it is given besides, and what it tells, is described at `DsmcParcel`; what stirring does, at `stirring`.
+
+    Parameters
+    ----------
+    stirring
+        How large parcels are, how far they go, how often.
+
+    Raises
+    ------
+    RefusedError
+        If parcels have fewer than ten molecules, do not fit into the column or rise by less than their own size; if
+        there is a piston, or no floor and ceiling.
+
+    Notes
+    -----
+    Parcels change places between two steps, at times that stand on the grid of steps: a run is the same however it is
+    cut into pieces. Work is booked as the sum of what each molecule gained.
+
+    Examples
+    --------
+    Cold air above warm air of the same weight is mixed to one potential temperature, and the work is in the ledger:
+
+    >>> rng = np.random.default_rng(1)
+    >>> column = StirredDsmcParcel(
+    ...     rng.random((1000, 3)),
+    ...     rng.normal(size=(1000, 3)),
+    ...     length=(1, 1, 1),
+    ...     diameter=0.0,
+    ...     gravity=1.0,
+    ...     stirring=Stirring(parcel=100, lift=300, rate=20.0, interval=0.1),
+    ... )
+    >>> column.advance(2.0)
+    >>> column.exchanges, column.stirring_work > 0.0, column.ledger() < 1e-12
+    (40, True, True)
+    """
+
+    engine: ClassVar[str] = "dsmc"
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        *,
+        stirring: Stirring,
+        dt: float = 0.2,
+        occupancy: float = 10.0,
+        cell: float | None = None,
+        threads: int = 1,
+        **box: Unpack[Arrangement],
+    ) -> None:
+        self._stirring = stirring
+        self._counted = np.zeros(2)
+        self._owed = np.zeros(1)
+        super().__init__(position, velocity, dt=dt, occupancy=occupancy, cell=cell, threads=threads, **box)
+
+    # ------------------------------------------------------------------ what it tells
+
+    @property
+    def stirring_work(self) -> float:
+        """Work that the stirrer has done on the molecules since the start [energy]."""
+        return float(self._counted[0])
+
+    @property
+    def exchanges(self) -> int:
+        """How many pairs of parcels have changed places since the start."""
+        return int(self._counted[1])
+
+    def set_stirring(self, rate: float) -> None:
+        """Let so many parcels change places in a unit of time [1/time] from now on.
+
+        Raises
+        ------
+        RefusedError
+            If the rate is negative or not finite.
+        """
+        self._stirring = self._stirring._replace(rate=number(rate, "rate of the stirring", least=0.0))
+
+    def _given(self) -> float:
+        return super()._given() + self.stirring_work
+
+    # ------------------------------------------------------------------ how
+
+    def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        parcel = whole(self._stirring.parcel, "parcel of the stirring", least=_FEWEST)
+        lift = whole(self._stirring.lift, "lift of the stirring", least=parcel)
+        if parcel + lift > len(position):
+            raise RefusedError(
+                f"parcels of {parcel} molecules that rise by {lift} do not fit into a column of {len(position)}: make "
+                "them smaller"
+            )
+        rate = number(self._stirring.rate, "rate of the stirring", least=0.0)
+        interval = number(self._stirring.interval, "interval of the stirring")
+        if not interval > 0.0:
+            raise RefusedError(f"interval of the stirring = {interval:g} must be above 0")
+        if self._walls.law[5] == PISTON or self._periodic[2]:
+            raise RefusedError("a column that is stirred has a floor and a ceiling at rest: make both walls")
+        self._stirring = Stirring(parcel, lift, rate, interval, bool(self._stirring.works))
+        self._dice = new_state(self._seed, _USE)
+        self._factor = np.ones(len(position))
+        super()._begin(position, velocity, rotational_energy)
+
+    def _resolve(self, first: int, many: int, ceilings: Array) -> None:
+        period = max(1, round(self._stirring.interval / self._time_step))
+        if not many:
+            super()._resolve(first, many, ceilings)
+            self._stir(0)  # compiles
+        done = 0
+        while done < many:
+            part = min(many - done, period - (first + done) % period)
+            super()._resolve(first + done, part, ceilings[done : done + part + 1])
+            done += part
+            if (first + done) % period == 0:
+                self._owed[0] += period * self._time_step * self._stirring.rate
+                due = int(self._owed[0])
+                self._owed[0] -= due
+                if due:
+                    self._stir(due)
+
+    def _stir(self, exchanges: int) -> None:
+        n = self._number
+        wide, deep, _ = self._open_sides()
+        order: Any = np.argsort(self._columns.z[:n], kind="stable")
+        column = self._gravity, wide * deep, self._gas.radius, self.ceiling - self._gas.radius
+        stir(
+            exchanges, self._stirring, order, self._columns, self._gas, column, self._dice, self._counted, self._factor
+        )

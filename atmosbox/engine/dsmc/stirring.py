@@ -1,0 +1,177 @@
+r"""Stirring: two parcels of finite size change places, one up and one down, each with the work of its piston.
+
+The molecules stand in the order of their heights. Those of a parcel are next to each other in that order, over the
+whole width of the box; an exchange takes two parcels of as many molecules, one higher by a *lift* of so many places::
+
+    order of heights   0 . . . . a ooooooo a+n . . . . a+d xxxxxxx a+d+n . . . . N
+    after it           0 . . . . a xxxxxxx a+n . . . . a+d ooooooo a+d+n . . . . N
+
+Each molecule takes the height of its counterpart in the other parcel. So every layer has as many molecules as before,
+each at a height where one was: neither the density nor the potential energy changes, and no sound is made by a gap.
+
+What changes is the energy of the parcels. The pressure at a place in the order is the weight of all that is above,
+:math:`p(r) = p_0 - r\,m g / A`. Air that goes slowly from p to p' expands and does work on what surrounds
+it, or is compressed, and by the law of Poisson its temperature is multiplied by
+
+.. math:: s = (p' / p)^{R / c_p}, \qquad R / c_p = 2 / (f + 2).
+
+So every energy of the disordered motion is multiplied by s, in all f degrees of freedom, rotation included: velocities
+relative to that of the parcel by :math:`\sqrt s`. The momentum of each parcel stays. The work that the air has
+not done itself is that of the stirrer, and is entered in the ledger.
+
+Where the air is on an adiabat, what comes is as warm as what was there, and stirring changes nothing; elsewhere it
+mixes the potential temperature. How large the pressure :math:`p_0` below all of them is follows from the virial
+theorem: it is measured, and no temperature profile is put in.
+
+Single molecules that change places show what makes the difference: nothing expands, so that they do no work, and
+keep their energies. Then stirring mixes the temperature, as conduction does.
+
+References
+----------
+Poisson, S. D. (1823), Ann. Chim. Phys. 23, 337; Prandtl, L. (1925), doi:10.1002/zamm.19250050212 (mixing length).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.elementary import exp, log
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.random import uniform
+
+__all__ = ["Stirring", "stir"]
+
+_LEAST = 1e-3  # of the pressure at the floor: where there is hardly any, before the air has fallen, nothing is expanded
+
+
+class Stirring(NamedTuple):
+    """How the air of a column is stirred.
+
+    ``parcel`` molecules in a parcel; ``lift`` places in the order of heights by which it rises or sinks, at least as
+    many; ``rate`` exchanges in a unit of time [1/time]; ``interval`` time from one set of exchanges to the next, as
+    nearly as whole steps allow [time]; ``works`` whether what changes places is parcels, which do work, or as many
+    molecules one by one, which do none.
+    """
+
+    parcel: int
+    lift: int
+    rate: float
+    interval: float
+    works: bool = True
+
+
+@kernel
+def _pressure_at_floor(order, columns, gas, column):
+    r"""Return the pressure below all molecules, from the virial theorem of a column at rest [energy/length^3].
+
+    The integral of the pressure over the volume is the sum of kT; below the weight of the molecules it is
+    :math:`p_0 V = N k T + \sum m g (z_{top} - z)`.
+    """
+    gravity, area, low, high = column
+    total = 0.0
+    for i in range(order.size):
+        p = order[i]
+        vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
+        total += (vx * vx + vy * vy + vz * vz) / 3.0 + gravity * (high - columns.z[p])
+    return gas.mass * total / (area * (high - low))
+
+
+@kernel
+def _mean_velocity(first, number, order, columns):
+    """Return the mean velocity of a parcel [length/time]."""
+    ux = uy = uz = 0.0
+    for i in range(first, first + number):
+        p = order[i]
+        ux, uy, uz = ux + columns.vx[p], uy + columns.vy[p], uz + columns.vz[p]
+    return ux / number, uy / number, uz / number
+
+
+@kernel
+def _scale(first, number, below, rises, order, columns, mean, mass, rotates, factor):
+    """Multiply the energies of a parcel as it comes to another pressure; return what they gain [energy].
+
+    ``below`` is the place of the lower of the two parcels, and ``factor`` by how much velocities fall from each place
+    to the one that is a lift above it.
+    """
+    ux, uy, uz = mean
+    sx = sy = sz = gain = 0.0
+    for i in range(number):
+        p = order[first + i]
+        root = factor[below + i] if rises else 1.0 / factor[below + i]
+        vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
+        gain -= 0.5 * mass * (vx * vx + vy * vy + vz * vz)
+        vx, vy, vz = root * (vx - ux), root * (vy - uy), root * (vz - uz)
+        sx, sy, sz = sx + vx, sy + vy, sz + vz
+        columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
+        if rotates:
+            gain += (root * root - 1.0) * columns.spin[p]
+            columns.spin[p] *= root * root
+    # what was at rest relative to the parcel is so again, and the parcel moves on as it did
+    sx, sy, sz = ux - sx / number, uy - sy / number, uz - sz / number
+    for i in range(first, first + number):
+        p = order[i]
+        vx, vy, vz = columns.vx[p] + sx, columns.vy[p] + sy, columns.vz[p] + sz
+        columns.vx[p], columns.vy[p], columns.vz[p] = vx, vy, vz
+        gain += 0.5 * mass * (vx * vx + vy * vy + vz * vz)
+    return gain
+
+
+@kernel
+def _swap(i, j, order, z):
+    """Let the molecules at two places in the order of heights change places."""
+    p, q = order[i], order[j]
+    z[p], z[q] = z[q], z[p]
+    order[i], order[j] = q, p
+
+
+@kernel(entry=True)
+def stir(number, stirring, order, columns, gas, column, state, counted, factor):
+    """Make a number of exchanges at places that are drawn at random.
+
+    Parameters
+    ----------
+    number
+        How many.
+    stirring
+        The `Stirring`.
+    order : (molecule,)
+        Their slots in the order of heights, changed.
+    columns, gas
+        The molecules, and what all of them are.
+    column
+        Acceleration of gravity [length/time^2], area of the column [length^2], height of its lower and upper end.
+    state : (1,)
+        State of the random numbers, moved on.
+    counted : (2,)
+        Work done on the molecules [energy] and exchanges: added to.
+    factor : (molecule,)
+        Scratch memory.
+    """
+    n, lift = stirring.parcel, stirring.lift
+    places = order.size - n - lift + 1
+    rotates = gas.rotation > 0.0
+    z = columns.z
+    if number and stirring.works:
+        # the pressure has fallen from the floor by the weight of what is below
+        pressure = _pressure_at_floor(order, columns, gas, column)
+        fall = gas.mass * column[0] / column[1]
+        power = 1.0 / (5.0 + gas.rotation)  # R / c_p for energies, half of it for velocities
+        for i in range(order.size - lift):
+            here = pressure - fall * (i + 0.5)
+            there = here - fall * lift
+            factor[i] = exp(power * log(there / here)) if there > _LEAST * pressure else 1.0
+    for _ in range(number):
+        first = np.int64(uniform(state) * places)
+        if stirring.works:
+            above = first + lift
+            lower, upper = _mean_velocity(first, n, order, columns), _mean_velocity(above, n, order, columns)
+            counted[0] += _scale(first, n, first, True, order, columns, lower, gas.mass, rotates, factor)
+            counted[0] += _scale(above, n, first, False, order, columns, upper, gas.mass, rotates, factor)
+            for i in range(first, above - lift + n):
+                _swap(i, i + lift, order, z)
+        else:
+            for i in range(n):
+                one = first + i
+                _swap(one, one + lift, order, z)
+                first = np.int64(uniform(state) * places)
+        counted[1] += 1.0

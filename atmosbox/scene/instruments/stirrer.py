@@ -1,0 +1,72 @@
+"""What stirs a column: its work, and the lapse rate that comes of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from atmosbox.engine import Snapshot
+from atmosbox.engine.core.measure import layer_sample
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.units import Scale
+
+__all__ = ["Stirrer", "weighted_slope"]
+
+Array = NDArray[np.float64]
+
+
+def weighted_slope(x: Array, y: Array, weight: Array) -> float:
+    """Return the slope of the straight line that is closest to points of some weight.
+
+    Examples
+    --------
+    >>> weighted_slope(np.arange(3.0), np.array([1.0, 3.0, 9.0]), np.array([1.0, 1.0, 0.0]))
+    2.0
+    """
+    away = x - np.sum(weight * x) / np.sum(weight)
+    return float(np.sum(weight * away * y) / np.sum(weight * away * away))
+
+
+class Stirrer:
+    """The work of a stirrer since the start, and the lapse rate of the air between two heights, frame by frame.
+
+    The lapse rate is the slope of the line through the temperatures of layers, each with the weight of its molecules.
+
+    Parameters
+    ----------
+    layers
+        Number of layers between floor and ceiling.
+    low, high
+        The heights [reduced length]; only layers that are wholly between them count.
+    """
+
+    def __init__(self, layers: int, low: float, high: float) -> None:
+        self._layers = layers
+        self._between = low, high
+        self._sum = np.zeros((2, layers))
+        self._rows: list[tuple[float, float]] = []
+
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Add up the energy of the disordered motion, and the degrees of freedom that share it."""
+        _, energy, freedom = layer_sample(parcel, snapshot, self._layers)
+        self._sum += energy, freedom
+
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Read the slope off the sums of a frame, and the work off the box."""
+        edges = np.linspace(0.0, float(parcel.length[2]), self._layers + 1)
+        inside = (edges[:-1] >= self._between[0]) & (edges[1:] <= self._between[1])
+        energy, freedom = self._sum
+        inside &= freedom > 0.0
+        middle = 0.5 * (edges[1:] + edges[:-1])[inside]
+        slope = weighted_slope(middle, 2.0 * energy[inside] / freedom[inside], freedom[inside])
+        self._rows.append((-slope, parcel.stirring_work))
+        self._sum = np.zeros((2, self._layers))
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series; see `Instrument`."""
+        if not self._rows:
+            return Readings()
+        slope, work = np.array(self._rows).T
+        return Readings(lapse_rate=slope * scale.temperature / scale.length, work_by_stirring=work * scale.total_energy)
