@@ -78,11 +78,18 @@ FILLED = 3.0
 JUMP = 0.563
 """Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas whose molecules never meet."""
 
-STIRRED = {"rotation": True, "height": 11.0, "knudsen": 0.03, "molecules": 4000, "start": "equilibrium"}
+STIRRED = {
+    "rotation": True,
+    "height": 11.0,
+    "knudsen": 0.02,
+    "molecules": 4000,
+    "start": "equilibrium",
+    "duration": 300.0,
+}
 """What is not set is so in a column that is stirred: air that rotates, a troposphere, and little conduction."""
-PARCEL, LIFT = 0.05, 0.25
-"""Shares of all molecules that are in a parcel, and by which it rises or sinks."""
-TURN = 0.03
+PARCEL, LIFTS = 0.05, (0.15, 0.35)
+"""Shares of all molecules that are in a parcel, and by which it rises or sinks, at least and at most."""
+TURN = 0.05
 """Time between two sets of exchanges, in those that sound takes to climb a scale height."""
 INNER = 0.1
 """Below and above so large a part of the molecules the lapse rate is not measured: few parcels come so far."""
@@ -130,7 +137,7 @@ class Settings(SceneSettings):
         0.0,
         "1",
         "how many times as much heat stirring carries as molecules conduct; 0 for air at rest. Above 0, what is not "
-        "set suits it: rotation on, height 11 km, knudsen 0.03, 4000 molecules, start equilibrium",
+        "set suits it: rotation on, height 11 km, knudsen 0.02, 4000 molecules, start equilibrium, duration 300",
         low=0.0,
         high=1000.0,
     )
@@ -163,12 +170,12 @@ class Settings(SceneSettings):
 
     def check(self) -> None:
         """Refuse what cannot be stirred, and discs that rotate."""
+        if self.stirring and self.plane:
+            raise SettingError("stirring", self.stirring, "is for air in space, not in a plane", "give --set plane=off")
         if self.plane and self.rotation:
             raise SettingError("rotation", True, "is not for the discs of a plane", "give --set rotation=off")
         if not self.stirring:
             return
-        if self.plane:
-            raise SettingError("stirring", self.stirring, "is for air in space, not in a plane", "give --set plane=off")
         if self.floor == "isolated":
             raise SettingError(
                 "stirring",
@@ -227,10 +234,12 @@ class Column:
         self.bottom = 0.5 * self.diameter
         self.top = self.height - self.bottom
         self.works = settings.exchange == "parcels"
-        # the eddy conductivity n f/2 K, K = rate * lift^2 / 2, is so many times that of the molecules
+        # the eddy conductivity n f/2 K is so many times that of the molecules: each exchange makes a share
+        # PARCEL / (1 - PARCEL - lift) of those away from the ends rise, and as many sink; K is half their mean square
         thin = law.thin_gas_conductivity(1.0, 1.0, self.diameter, self.freedom)
-        lift = LIFT * self.per_area / density
-        self.rate = rounded(4.0 * settings.stirring * thin / (self.freedom * density * lift**2))
+        lift = np.linspace(*LIFTS, 101)
+        square = PARCEL * float(np.mean(lift**2 / (1.0 - PARCEL - lift))) * (self.per_area / density) ** 2
+        self.rate = rounded(2.0 * settings.stirring * thin / (self.freedom * density * square))
 
     @property
     def memory(self) -> float:
@@ -267,7 +276,7 @@ class Column:
         ends = self.bottom, self.top
         return law.stirred_column(
             self.per_area, *ends, kT, gravity, self.diameter,
-            freedom=self.freedom, parcel=PARCEL, lift=LIFT, rate=self.rate, works=self.works,
+            freedom=self.freedom, parcel=PARCEL, lifts=LIFTS, rate=self.rate, works=self.works,
         )  # fmt: skip
 
     def settling(self, settings: Settings) -> float:
@@ -348,9 +357,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         more |= {"rotation": 2.0, "rotational_energy": rotational_energies(1.0, np.full(n, 2.0), rng)}
     stirrer: tuple[Stirrer, ...] = ()
     if settings.stirring:
-        # so many exchanges that each molecule between the ends changes places at that rate
-        exchanges = column.rate * (1.0 - LIFT - PARCEL) / (2.0 * PARCEL)
-        more["stirring"] = Stirring(round(PARCEL * n), round(LIFT * n), exchanges, TURN, column.works)
+        least, most = (round(lift * n) for lift in LIFTS)
+        more["stirring"] = Stirring(round(PARCEL * n), least, most, column.rate, TURN, column.works)
         reached = column.stirred().height
         inner = round(INNER * len(reached))
         stirrer = (Stirrer(LAYERS, float(reached[inner]), float(reached[-1 - inner])),)
@@ -377,7 +385,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         settings.duration,
         FRAMES,
         (Air("floor"), Layers(LAYERS, column.memory), *stirrer),
-        samples=8,
+        samples=4 if settings.stirring else 8,
         settle=settled,
         time_unit="s",
         facts={
@@ -410,11 +418,11 @@ def _stirring_facts(settings: Settings, column: Column) -> dict[str, str]:
     """Return what the model card says of the stirring."""
     if not settings.stirring:
         return {}
-    lift = f"by {100.0 * LIFT:g} % of the mass of the air"
+    lift = f"by {100.0 * LIFTS[0]:g} to {100.0 * LIFTS[1]:g} % of the mass of the air"
     what = f"parcels of {100.0 * PARCEL:g} % of it rise and sink {lift}" if column.works else f"molecules swap {lift}"
     return {
-        "stirring": f"{what}, each molecule {column.rate:.3g} times while sound climbs a scale height; that carries "
-        f"{settings.stirring:g} times as much heat as molecules conduct",
+        "stirring": f"{what}, each molecule {2.0 * PARCEL * column.rate:.3g} times while sound climbs a scale height; "
+        f"that carries {settings.stirring:g} times as much heat as molecules conduct",
         "adiabat": f"g/c_p = {1000.0 * settings.lapse:.2f} K/km",
     }
 
@@ -487,13 +495,15 @@ def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headl
     measured = average_beside(late.lapse_rate.values, _energy(late), memory)
     # a part 1/(1 + S) of the gradient is what conduction takes from it
     unknown = min(FOURIER * settings.knudsen, 1.0) / (1.0 + settings.stirring)
+    # and as a parcel keeps the motion of its middle, three of its degrees of freedom do no work
+    unknown += 3.0 / (settings.freedom * PARCEL * settings.molecules)
     return Headline(
         "lapse_rate_of_the_air",
         float(measured.mean),
         float(measured.standard_error),
         expected,
         unknown * settings.lapse,
-        "air in which molecules fly so far conducts heat less than Fourier's law says",
+        "molecules that fly so far conduct less than Fourier's law says, and few of them make a parcel",
         "K m-1",
         "K/km",
         "lapse rate of the stirred air",

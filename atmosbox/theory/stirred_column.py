@@ -2,11 +2,11 @@ r"""A column that is stirred: how its temperature falls with height between stir
 
 Parcels change places at pressures p and p', and Poisson's law multiplies their temperatures by
 :math:`(p'/p)^{R/c_p}`. What is mixed is the potential temperature :math:`\theta = T\,(p_0/p)^{R/c_p}`. Let r be the
-share of the molecules that are below. Where elements of the air climb by a lift :math:`\ell` as often as :math:`u(r)`
-in a unit of time, the heat that stays there balances what molecules conduct,
+share of the molecules that are below. Where elements of the air climb by a lift :math:`\ell` with the frequency
+:math:`u_\ell(r)`, the heat that stays there balances what molecules conduct,
 
-.. math:: \tfrac{f}{2} N k\,\Pi(r)\,\bigl\{u(r)[\theta(r+\ell) - \theta(r)]
-          + u(r-\ell)[\theta(r-\ell) - \theta(r)]\bigr\} = \frac{dq}{dr}, \qquad q = -\kappa \frac{dT}{dz},
+.. math:: \tfrac{f}{2} N k\,\Pi(r) \sum_\ell \bigl\{u_\ell(r)[\theta(r+\ell) - \theta(r)]
+          + u_\ell(r-\ell)[\theta(r-\ell) - \theta(r)]\bigr\} = \frac{dq}{dr}, \qquad q = -\kappa \frac{dT}{dz},
 
 with :math:`\Pi = (p/p_0)^{R/c_p}` and hydrostatic pressure. For a short lift the left side is that of an eddy
 diffusivity; it is solved as it stands, for a lift of any length. Nothing passes the ceiling, and at the floor the
@@ -22,6 +22,7 @@ Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases
 Sone, Y. (2007), Molecular Gas Dynamics, 3.1.4 (the jump of the temperature at a wall).
 """
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -67,6 +68,7 @@ def thin_gas_conductivity(kT: float, mass: float, diameter: float, freedom: int 
     return spheres * (_ROTATING if freedom > 3 else 1.0)
 
 
+@functools.lru_cache(maxsize=16)
 def stirred_column(
     molecules_per_area: float,
     bottom: float,
@@ -77,7 +79,7 @@ def stirred_column(
     *,
     freedom: int,
     parcel: float,
-    lift: float,
+    lifts: tuple[float, float],
     rate: float,
     works: bool = True,
     mass: float = 1.0,
@@ -98,10 +100,12 @@ def stirred_column(
         Diameter of a molecule, for its collisions alone [length].
     freedom
         Degrees of freedom of a molecule, 3 or 5.
-    parcel, lift
-        Shares of all molecules that are in a parcel, and by which it climbs or sinks.
+    parcel
+        Share of all molecules that are in a parcel.
+    lifts
+        Shares of all molecules by which it climbs or sinks, at least and at most.
     rate
-        How often a molecule changes place, where parcels come from above and from below [1/time].
+        Number of exchanges in a unit of time [1/time].
     works
         Whether what changes places is parcels that do work, or single molecules.
     mass
@@ -122,7 +126,7 @@ def stirred_column(
     Stirred fast, a gas of spheres cools by 2/5 of a floor's temperature in each scale height:
 
     >>> fast = stirred_column(
-    ...     1000.0, 0.0, 1.0, 1.0, 1.0, 0.1, freedom=3, parcel=0.05, lift=0.25, rate=500.0
+    ...     1000.0, 0.0, 1.0, 1.0, 1.0, 0.1, freedom=3, parcel=0.05, lifts=(0.15, 0.35), rate=5000.0
     ... )
     >>> inner = slice(12, -12)
     >>> round(float(np.polyfit(fast.height[inner], fast.temperature[inner], 1)[0]), 2)
@@ -130,18 +134,21 @@ def stirred_column(
     """
     require_positive(molecules_per_area=molecules_per_area, kT=kT, mass=mass, diameter=diameter, parcel=parcel)
     require_not_negative(gravity=gravity, rate=rate, bottom=bottom)
-    if not top > bottom or not parcel <= lift <= 1.0 - parcel:
+    if not top > bottom or not parcel <= lifts[0] <= lifts[1] <= 1.0 - parcel:
         raise ValueError("the ceiling must be above the floor, and a parcel must rise by its own size at least.")
-    n, steps = _NODES, round(lift * _NODES)
-    lift = steps / n
+    n = _NODES
     share = (np.arange(n) + 0.5) / n
-    climb = np.clip(np.minimum(share, 1.0 - lift - parcel) - np.maximum(share - parcel, 0.0), 0.0, None)
-    climb = 0.5 * rate * climb[: n - steps] / parcel
+    climbs = np.zeros((n, n))  # how often an element climbs from one place to another
+    steps = range(round(lifts[0] * n), round(lifts[1] * n) + 1)
+    for step in steps:
+        room = 1.0 - step / n - parcel
+        covered = np.clip(np.minimum(share, room) - np.maximum(share - parcel, 0.0), 0.0, None)
+        climbs[np.arange(n - step), np.arange(step, n)] = rate / len(steps) * covered[: n - step] / room
+    climbs += climbs.T
     weight = mass * gravity * molecules_per_area
     power = 2.0 / (freedom + 2.0)
     each = molecules_per_area / n
     path = 1.0 / (math.sqrt(2.0) * math.pi * diameter**2)
-    low, high = np.arange(n - steps), np.arange(steps, n)
     here, above = np.arange(n - 1), np.arange(1, n)
     temperature = np.full(n, kT)
     topmost = molecules_per_area * kT / (top - bottom)
@@ -149,21 +156,17 @@ def stirred_column(
         topmost = _pressure_at_ceiling(topmost, weight * (1.0 - share), each * temperature, top - bottom)
         pressure = topmost + weight * (1.0 - share)
         exner = (pressure / (topmost + weight)) ** (power if works else 0.0)
-        balance = np.zeros((n, n))
-        gain = 0.5 * freedom * each * climb
-        balance[low, low] -= gain
-        balance[low, high] += gain * exner[low] / exner[high]
-        balance[high, high] -= gain
-        balance[high, low] += gain * exner[high] / exner[low]
-        stirred = balance.copy()
+        stirred = climbs * np.divide.outer(exner, exner) - np.diag(climbs.sum(axis=1))
+        stirred *= 0.5 * freedom * each
+        balance = stirred.copy()
         between = 0.5 * (temperature[1:] + temperature[:-1])
         thick = each * between * 2.0 / (pressure[1:] + pressure[:-1])
         conducts = np.array([thin_gas_conductivity(float(t), mass, diameter, freedom) for t in between]) / thick
         for one, other in ((here, above), (above, here)):
             balance[one, one] -= conducts
             balance[one, other] += conducts
-        room = temperature[0] / pressure[0]
-        floor = thin_gas_conductivity(kT, mass, diameter, freedom) / (0.5 * each * room + _JUMP * path * room)
+        lowest = temperature[0] / pressure[0]
+        floor = thin_gas_conductivity(kT, mass, diameter, freedom) / (0.5 * each * lowest + _JUMP * path * lowest)
         balance[0, 0] -= floor
         source = np.zeros(n)
         source[0] = floor * kT
@@ -178,6 +181,8 @@ def stirred_column(
     thickness = each * temperature / pressure
     height = bottom + np.cumsum(thickness) - 0.5 * thickness
     work = float((stirred @ temperature).sum()) / molecules_per_area
+    for values in (height, temperature, pressure):
+        values.flags.writeable = False
     return StirredColumn(height, temperature, pressure, work, float(-1.0 / slowest))
 
 

@@ -51,7 +51,7 @@ class StirredDsmcParcel(DsmcParcel):
     ...     length=(1, 1, 1),
     ...     diameter=0.0,
     ...     gravity=1.0,
-    ...     stirring=Stirring(parcel=100, lift=300, rate=20.0, interval=0.1),
+    ...     stirring=Stirring(parcel=100, least=200, most=400, rate=20.0, interval=0.1),
     ... )
     >>> column.advance(2.0)
     >>> column.exchanges, column.stirring_work > 0.0, column.ledger() < 1e-12
@@ -106,10 +106,11 @@ class StirredDsmcParcel(DsmcParcel):
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         parcel = whole(self._stirring.parcel, "parcel of the stirring", least=_FEWEST)
-        lift = whole(self._stirring.lift, "lift of the stirring", least=parcel)
-        if parcel + lift > len(position):
+        least = whole(self._stirring.least, "least lift of the stirring", least=parcel)
+        most = whole(self._stirring.most, "most lift of the stirring", least=least)
+        if parcel + most > len(position):
             raise RefusedError(
-                f"parcels of {parcel} molecules that rise by {lift} do not fit into a column of {len(position)}: make "
+                f"parcels of {parcel} molecules that rise by {most} do not fit into a column of {len(position)}: make "
                 "them smaller"
             )
         rate = number(self._stirring.rate, "rate of the stirring", least=0.0)
@@ -118,7 +119,7 @@ class StirredDsmcParcel(DsmcParcel):
             raise RefusedError(f"interval of the stirring = {interval:g} must be above 0")
         if self._walls.law[5] == PISTON or self._periodic[2]:
             raise RefusedError("a column that is stirred has a floor and a ceiling at rest: make both walls")
-        self._stirring = Stirring(parcel, lift, rate, interval, bool(self._stirring.works))
+        self._stirring = Stirring(parcel, least, most, rate, interval, bool(self._stirring.works))
         self._dice = new_state(self._seed, _USE)
         self._factor = np.ones(len(position))
         super()._begin(position, velocity, rotational_energy)

@@ -1,7 +1,7 @@
 r"""Stirring: two parcels of finite size change places, one up and one down, each with the work of its piston.
 
 The molecules stand in the order of their heights. Those of a parcel are next to each other in that order, over the
-whole width of the box; an exchange takes two parcels of as many molecules, one higher by a *lift* of so many places::
+whole width of the box; an exchange takes two parcels of as many molecules, one higher by a *lift* d, drawn at random::
 
     order of heights   0 . . . . a ooooooo a+n . . . . a+d xxxxxxx a+d+n . . . . N
     after it           0 . . . . a xxxxxxx a+n . . . . a+d ooooooo a+d+n . . . . N
@@ -41,20 +41,21 @@ from atmosbox.engine.core.random import uniform
 
 __all__ = ["Stirring", "stir"]
 
-_LEAST = 1e-3  # of the pressure at the floor: where there is hardly any, before the air has fallen, nothing is expanded
+_LEAST = 1e-3  # of the pressure at the floor: there may be less before the air has fallen, and nothing expands further
 
 
 class Stirring(NamedTuple):
     """How the air of a column is stirred.
 
-    ``parcel`` molecules in a parcel; ``lift`` places in the order of heights by which it rises or sinks, at least as
-    many; ``rate`` exchanges in a unit of time [1/time]; ``interval`` time from one set of exchanges to the next, as
-    nearly as whole steps allow [time]; ``works`` whether what changes places is parcels, which do work, or as many
-    molecules one by one, which do none.
+    ``parcel`` molecules in a parcel; ``least``, ``most`` places in the order of heights by which it rises or sinks, any
+    number between them, and no fewer than molecules; ``rate`` exchanges in a unit of time [1/time]; ``interval`` time
+    from one set of exchanges to the next, as nearly as whole steps allow [time]; ``works`` whether what changes places
+    is parcels, which do work, or as many molecules one by one, which do none.
     """
 
     parcel: int
-    lift: int
+    least: int
+    most: int
     rate: float
     interval: float
     works: bool = True
@@ -87,17 +88,16 @@ def _mean_velocity(first, number, order, columns):
 
 
 @kernel
-def _scale(first, number, below, rises, order, columns, mean, mass, rotates, factor):
+def _scale(first, number, lift, order, columns, mean, mass, rotates, factor):
     """Multiply the energies of a parcel as it comes to another pressure; return what they gain [energy].
 
-    ``below`` is the place of the lower of the two parcels, and ``factor`` by how much velocities fall from each place
-    to the one that is a lift above it.
+    It comes from a place ``first`` to one that is higher by a ``lift``; ``factor`` is what `stir` says.
     """
     ux, uy, uz = mean
     sx = sy = sz = gain = 0.0
     for i in range(number):
         p = order[first + i]
-        root = factor[below + i] if rises else 1.0 / factor[below + i]
+        root = factor[first + i + lift] / factor[first + i]
         vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
         gain -= 0.5 * mass * (vx * vx + vy * vy + vz * vz)
         vx, vy, vz = root * (vx - ux), root * (vy - uy), root * (vz - uz)
@@ -145,10 +145,9 @@ def stir(number, stirring, order, columns, gas, column, state, counted, factor):
     counted : (2,)
         Work done on the molecules [energy] and exchanges: added to.
     factor : (molecule,)
-        Scratch memory.
+        Scratch memory: velocities at each place, over those at the floor, of air that has come from there.
     """
-    n, lift = stirring.parcel, stirring.lift
-    places = order.size - n - lift + 1
+    n = stirring.parcel
     rotates = gas.rotation > 0.0
     z = columns.z
     if number and stirring.works:
@@ -156,18 +155,18 @@ def stir(number, stirring, order, columns, gas, column, state, counted, factor):
         pressure = _pressure_at_floor(order, columns, gas, column)
         fall = gas.mass * column[0] / column[1]
         power = 1.0 / (5.0 + gas.rotation)  # R / c_p for energies, half of it for velocities
-        for i in range(order.size - lift):
-            here = pressure - fall * (i + 0.5)
-            there = here - fall * lift
-            factor[i] = exp(power * log(there / here)) if there > _LEAST * pressure else 1.0
+        for i in range(order.size):
+            factor[i] = exp(power * log(max(1.0 - fall * (i + 0.5) / pressure, _LEAST)))
     for _ in range(number):
+        lift = stirring.least + np.int64(uniform(state) * (stirring.most - stirring.least + 1))
+        places = order.size - n - lift + 1
         first = np.int64(uniform(state) * places)
         if stirring.works:
             above = first + lift
             lower, upper = _mean_velocity(first, n, order, columns), _mean_velocity(above, n, order, columns)
-            counted[0] += _scale(first, n, first, True, order, columns, lower, gas.mass, rotates, factor)
-            counted[0] += _scale(above, n, first, False, order, columns, upper, gas.mass, rotates, factor)
-            for i in range(first, above - lift + n):
+            counted[0] += _scale(first, n, lift, order, columns, lower, gas.mass, rotates, factor)
+            counted[0] += _scale(above, n, -lift, order, columns, upper, gas.mass, rotates, factor)
+            for i in range(first, first + n):
                 _swap(i, i + lift, order, z)
         else:
             for i in range(n):
