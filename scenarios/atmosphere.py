@@ -13,7 +13,8 @@ this one. The figure shows both.
 
 With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on the air around
 it, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much faster than
-molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre.
+molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. What is not set then suits it:
+molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in equilibrium, duration 300.
 
 Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
 smooth, a smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Left out: water,
@@ -96,7 +97,7 @@ INNER = 0.1
 COLDEST = 0.3
 """The adiabat may fall so far below the ceiling, in temperatures of the floor: higher up there is hardly any air."""
 FOURIER = 3.0
-"""By this share, times the Knudsen number, stirred air was measured to conduct less than Fourier's law says."""
+"""Within this share, times the Knudsen number, stirred air was measured to conduct heat as Fourier's law says."""
 
 ladder = (
     Series("exact", "duration", (50, 100, 200, 400)),
@@ -136,8 +137,7 @@ class Settings(SceneSettings):
     stirring: float = setting(
         0.0,
         "1",
-        "how many times as much heat stirring carries as molecules conduct; 0 for air at rest. Above 0, what is not "
-        "set suits it: rotation on, height 11 km, knudsen 0.02, 4000 molecules, start equilibrium, duration 300",
+        "how many times as much heat stirring carries as molecules conduct; 0 for air at rest",
         low=0.0,
         high=1000.0,
     )

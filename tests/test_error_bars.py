@@ -170,6 +170,7 @@ CASES = [
     Case("elastic-collisions", {"duration": 10.0}, 24, ROUNDING),
     Case("atmosphere", {"molecules": 100, "duration": 100.0}, 24),
     Case("atmosphere", {"molecules": 100, "duration": 100.0, "plane": True}, 24),
+    Case("atmosphere", {"molecules": 400, "duration": 60.0, "stirring": 20.0}, 24),
     Case("attraction", {"molecules": 150, "density": 0.08, "temperature": 200.0, "duration": 2.0}, 12, COUNTS),
     Case("attraction", {"molecules": 300, "start": "slab", "density": 1.0, "temperature": 130.0, "duration": 2.0}, 12),
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
