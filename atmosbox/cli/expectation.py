@@ -25,12 +25,12 @@ def expectation_lines(
     headlines
         What the run found; none before it.
     engine
-        The engine with its options.
+        The engine with its options; empty for the one that the scene has without being asked.
     width
         How many columns the lines may take.
     """
     if expectation is None:
-        if engine == "exact":
+        if not engine:
             return []
         nothing = f"no error was measured for the engine {engine} at these settings: compare with --engine exact"
         return wrapped(nothing, width)
