@@ -327,7 +327,7 @@ def test_an_approximate_engine_without_a_measurement_says_so_and_the_exact_one_n
     prepared = runner.prepare("temperature", {"molecules": 3}, engine="classic")
     (line,) = expectation_lines(prepared.expectation, (), str(prepared.engine), 200)
     assert line.startswith("no error was measured for the engine classic at these settings")
-    assert expectation_lines(None, (), "exact", 80) == []
+    assert expectation_lines(None, (), "", 80) == []
 
 
 def test_the_expected_errors_are_shown_whole_at_every_width():
