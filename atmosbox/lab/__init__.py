@@ -1,9 +1,9 @@
 """A scene that runs in a web page: the engine's kernels as WebAssembly, and the page around them.
 
-Read in this order: `kernels` (how time passes between two calls of the engine, what is measured and seen); `bench`
+Read in this order: `kernels` (what is measured and seen; how time passes stands in the engine); `bench`
 (a box as the arrays that they work on) and `work` (what is called with what); `memory_image` (where it stands in the
 memory of a module) and `wasm_module` (the modules, which ``tools/wasm.py`` makes); `theory_table` and `lab_plan` (what
-the page is told), `lab_file`.
+the page is told), `lab_start` (other numbers of molecules), `lab_file`.
 """
 
 from atmosbox.lab.lab_file import save_lab

@@ -8,15 +8,18 @@ import os
 from pathlib import Path
 
 from atmosbox.file.output_path import check_writable, write_whole
-from atmosbox.lab.lab_plan import lab_plan
+from atmosbox.lab.lab_start import lab_starts
 from atmosbox.lab.wasm_module import module_bytes
 from atmosbox.page import lab_page
 from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["lab_text", "save_lab"]
 
+_MOST_BYTES = 185_000
+"""How much memory of boxes at their start a page carries, compressed: with it it stays below 1.5 MB."""
 
-def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto") -> str:
+
+def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto", others: bool = True) -> str:
     """Return the HTML of the page that `save_lab` writes.
 
     Raises
@@ -27,13 +30,14 @@ def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto")
     Examples
     --------
     >>> from atmosbox.simulation.preparation import prepare
-    >>> "WebAssembly" in lab_text(prepare("temperature", {"molecules": 20}))
+    >>> "WebAssembly" in lab_text(prepare("temperature", {"molecules": 20}), others=False)
     True
     """
-    plan, memory, box = lab_plan(prepared)
-    module = module_bytes(box.modes, prepared.scene)
-    stored = gzip.compress(b"".join(content for _, content in memory.pieces), 9, mtime=0)
+    starts, modes = lab_starts(prepared, _MOST_BYTES if others else 0)
+    module = module_bytes(modes, prepared.scene)
+    stored = gzip.compress(b"".join(each.stored() for each in starts), 9, mtime=0)
     packed = (base64.b64encode(each).decode("ascii") for each in (module, stored))
+    plan = starts[0].plan | {"others": [each.size() for each in starts[1:]]}
     return lab_page(plan, *packed, theme=theme, language=language)
 
 
@@ -43,6 +47,7 @@ def save_lab(
     *,
     theme: str = "auto",
     language: str = "auto",
+    others: bool = True,
     force: bool = False,
 ) -> Path:
     """Write the page in which a scene runs.
@@ -57,6 +62,8 @@ def save_lab(
         The colours of the page.
     language : {"auto", "en", "de", "es"}
         Its words.
+    others
+        Whether the page offers other numbers of molecules, too.
     force
         Whether a file of that name may be replaced.
 
@@ -71,5 +78,5 @@ def save_lab(
         If the scene cannot run in a page, or the file cannot be written.
     """
     target = check_writable(path, force, example="lab.html")
-    write_whole(target, lab_text(prepared, theme=theme, language=language).encode("utf-8"))
+    write_whole(target, lab_text(prepared, theme=theme, language=language, others=others).encode("utf-8"))
     return target

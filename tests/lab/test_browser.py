@@ -75,8 +75,8 @@ def lab(browser, tmp_path):
     """What opens the page of a scene."""
     opened = []
 
-    def show(scene, settings, **options):
-        path = save_lab(prepare(scene, SCENES[scene] | settings), tmp_path / "lab.html", force=True)
+    def show(scene, settings, *, others=False, **options):
+        path = save_lab(prepare(scene, SCENES[scene] | settings), tmp_path / "lab.html", others=others, force=True)
         assert path.stat().st_size <= 1_500_000
         opened.append(Lab(browser, path, **options))
         return opened[-1]
@@ -161,6 +161,27 @@ def test_the_temperature_of_the_walls_acts_and_the_saved_table_says_so(lab):
     assert before["air_temperature"][-20:].mean() == pytest.approx(298.15, abs=30.0)
     assert after["air_temperature"][-40:].mean() == pytest.approx(573.15, abs=60.0)
     assert after["air_temperature_theory"][-1] == pytest.approx(573.15)
+
+
+def test_another_number_of_molecules_begins_the_run_that_python_begins_with_it(lab):
+    shown = lab("temperature", {"molecules": 100, "seed": 3}, others=True)
+    first = shown.digest()
+    shown.page.click("details summary:has-text('settings')")
+    shown.page.locator("select", has=shown.page.locator("option[value='400']")).select_option("400")
+    shown.ask(type="frames", value=10)
+    setup = build(prepare("temperature", {"molecules": 400, "seed": 3}))
+    for frame in range(10):
+        for sample in range(1, setup.samples + 1):
+            setup.parcel.advance(setup.moment(frame, sample))
+    assert setup.parcel.contacts > 50
+    assert shown.digest() == state_of(setup.parcel)
+    about, table = shown.table()
+    assert len(table) == 10
+    assert any("molecules=400" in line for line in about)
+    shown.ask(type="set", name="molecules", value="123")
+    assert "25, 50, 100, 200, 400" in shown.note()
+    shown.ask(type="set", name="molecules", value="100")
+    assert shown.digest() == first
 
 
 def test_undo_takes_the_knob_back_and_reset_begins_the_same_run(lab):

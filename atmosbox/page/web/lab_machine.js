@@ -12,11 +12,10 @@ const inflated = async (bytes) =>
 
 // The kernels in their memory.
 class Machine {
-  static async of({ plan, module, image }) {
+  static async of(module, { plan, stored }) {
     const memory = new WebAssembly.Memory({ initial: Math.ceil(plan.size / 65536) });
-    const { instance } = await WebAssembly.instantiate(await inflated(bytesOf(module)), { env: { memory } });
-    return Object.assign(new Machine(), { memory, plan, kernels: instance.exports, view: new DataView(memory.buffer),
-      stored: await inflated(bytesOf(image)) });
+    const kernels = (await WebAssembly.instantiate(module, { env: { memory } })).exports;
+    return Object.assign(new Machine(), { memory, plan, kernels, view: new DataView(memory.buffer), stored });
   }
 
   // Write the box as it was at its start.
@@ -45,6 +44,26 @@ class Machine {
     const block = this.plan.blocks[kernel];
     if (this.kernels[kernel](block)) throw new Error(`${kernel} has failed`);
     return Number(this.view.getBigInt64(block, true));
+  }
+}
+
+// The starts of a page, by number of molecules: the plan of each, and what its memory holds.
+class Starts {
+  static async of({ plan, module, image }) {
+    const stored = await inflated(bytesOf(image)), found = new Map();
+    let at = plan.pieces.reduce((sum, [, length]) => sum + length, 0);
+    found.set(String(plan.molecules), () => ({ plan, stored }));
+    for (const [molecules, said, held] of plan.others) {
+      const from = at;
+      found.set(String(molecules), () => ({ plan: JSON.parse(new TextDecoder().decode(stored.subarray(from, from + said))),
+        stored: stored.subarray(from + said, from + said + held) }));
+      at += said + held;
+    }
+    return Object.assign(new Starts(), { found, module: await WebAssembly.compile(await inflated(bytesOf(module))) });
+  }
+
+  async machine(molecules) {
+    return Machine.of(this.module, this.found.get(String(molecules))());
   }
 }
 

@@ -19,8 +19,9 @@ const say = (message) => postMessage(message);
 const refuse = (text) => say({ type: "note", level: "error", text });
 
 class Box {
-  constructor(machine, told) {
-    Object.assign(this, { machine, plan: machine.plan, told, playing: false, pace: 1, watched: true, turned: [] });
+  constructor(starts, machine) {
+    Object.assign(this, { starts, playing: false, pace: 1, watched: true, turned: [] });
+    this.take(machine);
     this.begin();
     this.greet();
     const beat = () => {
@@ -32,6 +33,10 @@ class Box {
   }
 
   // ---------------------------------------------------------------- a box
+
+  take(machine) {
+    Object.assign(this, { machine, plan: machine.plan, told: machine.plan.told });
+  }
 
   begin() {
     const { machine } = this;
@@ -192,9 +197,10 @@ class Box {
 
   // ---------------------------------------------------------------- what the page asks for
 
-  obey(message) {
+  async obey(message) {
     const { type, value, name } = message;
-    if (type === "play") {
+    if (type === "set" && name === "molecules") await this.choose(value);
+    else if (type === "play") {
       if (this.failed) this.again();
       this.finished = false;
       this.playing = true;
@@ -216,6 +222,16 @@ class Box {
       this.tell();
     } else if (type === "digest") this.digest();
     say(this.state());
+  }
+
+  // Begin anew with another number of molecules, which is another box.
+  async choose(molecules) {
+    if (!this.starts.found.has(String(molecules))) {
+      refuse(`molecules = ${molecules} is none of ${[...this.starts.found.keys()].sort((a, b) => a - b).join(", ")}: give one of these.`);
+      return;
+    }
+    this.take(await this.starts.machine(molecules));
+    this.again();
   }
 
   again() {
@@ -276,12 +292,18 @@ class Box {
 
 let box = null;
 
-onmessage = async ({ data }) => {
+async function hear(data) {
   try {
-    if (data.type === "begin") box = new Box(await Machine.of(data), data.plan.told);
-    else box?.obey(data);
+    if (data.type === "begin") {
+      const starts = await Starts.of(data);
+      box = new Box(starts, await starts.machine(data.plan.molecules));
+    } else await box?.obey(data);
   } catch (error) {
     refuse(`The engine of this page has stopped: ${error.message}`);
     console.error(error);
   }
-};
+}
+
+// One after the other: another box is there before anything is asked of it.
+let heard = Promise.resolve();
+onmessage = ({ data }) => { heard = heard.then(() => hear(data)); };
