@@ -22,6 +22,8 @@ SHORT = ("duration", "ascent", "travel")
 FEW = 300
 LEAST = {"diffusion": 3000}
 """Molecules below which a box is too narrow."""
+THINNEST = 0.01
+"""Density of attracting molecules below which the air beside them, as dense as at the critical point, is a million."""
 SCENES = scenarios.names()
 ENERGIES = {"cape_theory", "cin_theory"}
 """Theory that may be below zero: energies of a parcel."""
@@ -37,6 +39,8 @@ def values(scene, parameter):
         return [parameter.low]
     if parameter.name == "molecules":
         return [max(LEAST.get(scene, 60), parameter.low)]
+    if (scene, parameter.name) == ("attraction", "density"):
+        return [THINNEST, parameter.default, parameter.high]
     if parameter.kind == "bool":
         return [False, True]
     if parameter.kind == "str":
