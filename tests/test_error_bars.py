@@ -149,12 +149,16 @@ def test_a_dense_column_has_the_pressure_n_k_t_z_and_its_errors_are_its_scatter(
 
 
 class Case(NamedTuple):
-    """A scene at some settings, how often it runs in the cheap tier, and which headlines are no matter of chance."""
+    """A scene at some settings, how often it runs, and which headlines are no matter of chance.
+
+    ``long`` leaves it to the validate tier: what takes minutes, and a second case of a scene.
+    """
 
     scene: str
     settings: dict[str, Any]
     number: int
     without: frozenset[str] = frozenset()
+    long: bool = False
 
 
 OVERSTATED = frozenset({"left_gas_share_early"})
@@ -164,27 +168,31 @@ COUNTS = frozenset({"last_largest_drop_molecule_count", "last_vapor_molecule_cou
 METPY = frozenset({"metpy_lcl", "metpy_cape", "metpy_el"})
 CASES = [
     Case("temperature", {"duration": 10.0}, 24),
-    Case("temperature", {"molecules": 50, "duration": 10.0}, 24),
+    Case("temperature", {"molecules": 50, "duration": 10.0}, 24, long=True),
     Case("temperature-large", {"duration": 5.0}, 12),
-    Case("elastic-collisions", {}, 24, ROUNDING),
+    Case("elastic-collisions", {}, 24, ROUNDING, long=True),
     Case("elastic-collisions", {"duration": 10.0}, 24, ROUNDING),
     Case("atmosphere", {"molecules": 100, "duration": 100.0}, 24),
-    Case("atmosphere", {"molecules": 100, "duration": 100.0, "plane": True}, 24),
-    Case("atmosphere", {"molecules": 400, "duration": 60.0, "stirring": 20.0}, 24),
+    Case("atmosphere", {"molecules": 100, "duration": 100.0, "plane": True}, 24, long=True),
+    Case("atmosphere", {"molecules": 400, "duration": 60.0, "stirring": 20.0}, 24, long=True),
     Case("attraction", {"molecules": 150, "density": 0.08, "temperature": 200.0, "duration": 2.0}, 12, COUNTS),
-    Case("attraction", {"molecules": 300, "start": "slab", "density": 1.0, "temperature": 130.0, "duration": 2.0}, 12),
+    Case(
+        "attraction",
+        {"molecules": 300, "start": "slab", "density": 1.0, "temperature": 130.0, "duration": 2.0},
+        12,
+        long=True,
+    ),
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
     Case("diffusion", {"molecules": 1500}, 24),
-    Case("diffusion", {"molecules": 1000, "mass_ratio": 10.0, "duration": 2.0}, 24),
+    Case("diffusion", {"molecules": 1000, "mass_ratio": 10.0, "duration": 2.0}, 24, long=True),
     Case("lifting-dry", {"molecules": 200, "ascent": 400.0}, 24),
-    Case("lifting-dry", {"molecules": 200, "ascent": 150.0}, 60),
-    Case("lifting-moist", {"molecules": 2000}, 60),
-    Case("lifting-sounding", {"molecules": 4000, "ascent": 400.0}, 60, METPY),
-    Case("mountains", {"molecules": 4000, "cloud_water": 3.0}, 60),
+    Case("lifting-dry", {"molecules": 200, "ascent": 150.0}, 60, long=True),
+    Case("lifting-moist", {"molecules": 2000}, 60, long=True),
+    Case("lifting-sounding", {"molecules": 4000, "ascent": 400.0}, 60, METPY, long=True),
+    Case("mountains", {"molecules": 4000, "cloud_water": 3.0}, 60, long=True),
 ]
 """Small boxes of every scene."""
-ASCENTS = ("lifting-moist", "lifting-sounding", "mountains")
 
 
 def named(case):
@@ -220,15 +228,7 @@ def test_every_scene_has_a_case():
 
 @pytest.mark.parametrize(
     "case",
-    [
-        # moist ascents take minutes, and a slab of liquid one
-        pytest.param(
-            case,
-            id=named(case),
-            marks=pytest.mark.validate if case.scene in ASCENTS or case.settings.get("start") == "slab" else (),
-        )
-        for case in CASES
-    ],
+    [pytest.param(case, id=named(case), marks=pytest.mark.validate if case.long else ()) for case in CASES],
 )
 def test_the_errors_of_a_small_box_are_its_scatter(case, seen):
     outcomes = runs(case.scene, case.number, **case.settings)

@@ -236,7 +236,14 @@ def test_energy_water_and_momentum_close_at_every_event(name, by_single_events):
 
 
 @many_events
-@by_name
+@pytest.mark.parametrize(
+    "name",
+    [
+        "smooth",
+        "under a piston",
+        *(pytest.param(n, marks=pytest.mark.validate) for n in ("between heat baths", "periodic")),
+    ],
+)
 def test_a_drop_that_was_hit_flies_off_and_turns_at_walls(name):
     # one molecule of vapour hits it along x (along z under the piston) and stays; one of air rests in a corner
     axis = 2 if name == "under a piston" else 0

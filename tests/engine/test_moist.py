@@ -248,6 +248,7 @@ def test_a_box_may_hold_hardly_any_water_and_air(kind, number, vapour, air, nucl
         is_lawful(parcel, number + vapour)
 
 
+@pytest.mark.validate
 @settings(max_examples=40)
 @given(
     kind=st.sampled_from(["mist", "pool"]),

@@ -159,7 +159,7 @@ def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
 
 
 @many_events
-@pytest.mark.parametrize("name", ["mist", "pool", "periodic"])
+@pytest.mark.parametrize("name", ["mist", "pool", pytest.param("periodic", marks=pytest.mark.validate)])
 def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
     monkeypatch.setattr(parcelset, "_CHUNK", 1)
     sides = np.array([4.0, 5.0, 6.0])

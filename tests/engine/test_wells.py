@@ -196,6 +196,7 @@ def test_strength_and_gravity_may_change_and_the_ledger_has_it():
     assert box.ledger() < 1e-12
 
 
+@pytest.mark.validate
 def test_gravity_may_be_switched_on_and_pulls_the_liquid_down():
     random = np.random.default_rng(4)
     position = random_positions((8, 8, 8), np.ones(100), random)

@@ -211,6 +211,7 @@ def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
     agrees(rows, np.array([vapour, 1.0]), 0.015 * np.array([vapour, 1.0]))
 
 
+@pytest.mark.validate
 def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
     # forty molecules of air, each of which has 0.8 % less room for every molecule that joins the drop
     molecules, air, rng = 30, 40, np.random.default_rng(5)

@@ -44,7 +44,7 @@ def test_an_isolated_box_visits_all_states_alike(wet, name, dt):
     wet.holds_the_balance(box, 3, 2, options["nuclei"], substance, step=step, samples=40_000)
 
 
-@pytest.mark.parametrize("kind", [Mist, Pool])
+@pytest.mark.parametrize("kind", [Mist, pytest.param(Pool, marks=pytest.mark.validate)])
 def test_unlike_molecules_that_collide_visit_all_states_alike(wet, kind):
     # in half the unit of time each of them collides
     diameter, options = 0.4, {"nuclei": 10.0} | ({"area": 8.0} if kind is Mist else {})
