@@ -251,6 +251,8 @@ def test_a_rim_brings_light_and_heavy_discs_to_the_energy_that_its_speed_means(t
     box.obey({"type": "set", "name": "speed", "value": 1.0})
     play_to(box, 1150)
     made = read(box.stop_recording())
+    whole(box)
+    assert box.state()["gauges"] == [], "of 10^20 degrees"
     assert (made.energy_change < 1e-12).all(), "beyond the heat of the rim none is made"
     before, after = made.kinetic_energy_light_theory.values[[0, -1]]
     assert after == pytest.approx(4.0 * before, rel=1e-9)
