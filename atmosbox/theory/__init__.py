@@ -31,6 +31,7 @@ humidity            how much it does hold, and how light that makes it
 moist_lifting       where a lifted parcel forms its cloud, and its temperature with cloud and rain
 rain                the same if the cloud rains at a finite rate
 cloud_base          where the cloud base of a measured ascent is
+koehler             the vapour over a drop, by its curvature and by the salt in it
 evaporation         where evaporation and condensation end
 liquid_rate         how fast, and with which energy, molecules leave a liquid, large or small
 vapor_number        how the number of molecules of vapour scatters
@@ -110,6 +111,16 @@ from atmosbox.theory.humidity import (
 from atmosbox.theory.hydrostatic import hydrostatic_layers, hydrostatic_mean_height
 from atmosbox.theory.iapws import saturation_vapor_pressure_iapws
 from atmosbox.theory.isobaric import IsobaricWater, isobaric_water
+from atmosbox.theory.koehler import (
+    SALT_VOLUME,
+    WATER_VOLUME,
+    CriticalDrop,
+    critical_drop,
+    drop_radius,
+    humidity_over_drop,
+    kelvin_radius,
+    water_surface_tension,
+)
 from atmosbox.theory.lifting import (
     adiabatic_index,
     dry_adiabat_temperature,
@@ -168,14 +179,17 @@ __all__ = [
     "FREEZING_PACKING_FRACTION_DISCS",
     "LEAVING_FREEDOM",
     "LIQUID_HEAT_CAPACITY",
+    "SALT_VOLUME",
     "SIMPLE_FLUIDS",
     "VAPOR_HEAT_CAPACITY",
     "WATER_MASS_RATIO",
+    "WATER_VOLUME",
     "WELL_CRITICAL_DENSITY",
     "WELL_CRITICAL_TEMPERATURE",
     "Ascent",
     "CloudBase",
     "Convection",
+    "CriticalDrop",
     "CriticalPoint",
     "EvaporationEquilibrium",
     "FreeMolecularSlab",
@@ -200,10 +214,12 @@ __all__ = [
     "contact_value",
     "contact_value_between",
     "contact_value_discs",
+    "critical_drop",
     "critical_point",
     "density_temperature",
     "dewpoint",
     "diffusivity_error",
+    "drop_radius",
     "dry_adiabat_temperature",
     "dry_lapse_rate",
     "emission_energy",
@@ -221,6 +237,7 @@ __all__ = [
     "hard_sphere_isentrope",
     "height_of_pressure",
     "hertz_knudsen_flux",
+    "humidity_over_drop",
     "hydrostatic_layers",
     "hydrostatic_mean_height",
     "inverse_compressibility",
@@ -230,6 +247,7 @@ __all__ = [
     "isobaric_water",
     "isolated_vapor_number",
     "isothermal_vapor_number",
+    "kelvin_radius",
     "lcl",
     "leaving_energy_density",
     "maxwell_speed_cumulative",
@@ -264,6 +282,7 @@ __all__ = [
     "thin_gas_conductivity",
     "vapor_pressure",
     "virtual_temperature",
+    "water_surface_tension",
     "well_vapor_pressure",
     "wet_bulb_temperature",
 ]

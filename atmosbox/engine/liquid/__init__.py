@@ -8,6 +8,7 @@
 `moist`             from event to event, with a mist or a pool
 `moist_parcelset`   the box of moist air, advanced exactly
 `drop_shape`        drops as bodies
+`curvature`         what the surface of a drop and salt in it change
 `drop`              from event to event, with drops
 `drop_parcelset`    the box with drops, advanced exactly
 """

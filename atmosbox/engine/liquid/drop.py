@@ -6,7 +6,8 @@ which the two have no momentum: what the pair's common motion carries is kept, a
 touch become one, and the energy of their approach warms the liquid.
 
 A molecule leaves some drop in proportion to the surface that it will leave behind, which makes a drop of n molecules
-lose one as often as one of n - 1 catches one: the balance is detailed again.
+lose one as often as one of n - 1 catches one: the balance is detailed again. Drops that have a surface energy, or salt
+in them, each lose molecules at a rate of their own: see `curvature`.
 """
 
 import functools
@@ -16,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.elementary import cbrt, circle
+from atmosbox.engine.core.elementary import circle
 from atmosbox.engine.core.jit import by_reference, kernel
 from atmosbox.engine.core.pair import nearest_image
 from atmosbox.engine.core.random import uniform
@@ -26,11 +27,12 @@ from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
 from atmosbox.engine.exact.passing import pass_time
 from atmosbox.engine.exact.prediction import call
+from atmosbox.engine.liquid.curvature import given_by_surface, leaving_rates, surface_energy
 from atmosbox.engine.liquid.drop_shape import DropRecords, about, placed, radius_of, resize, surface_left, within
 from atmosbox.engine.liquid.insertion import Place, has_room, move_to, place_at
 from atmosbox.engine.liquid.moist import ceiling_at, renew
 from atmosbox.engine.liquid.phase import enter, take_out, withdraw
-from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave
+from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, wait
 
 __all__ = ["DropRecords", "DropsInAir", "specialise"]
 
@@ -39,7 +41,10 @@ _LEAVES = 1
 
 @kernel
 def _renew(t, gas, drops, reservoir):
-    """Sum the surface anew, and draw when the next molecule leaves."""
+    """Sum the surface anew, or the rates of the drops, and draw when the next molecule leaves."""
+    if not drops.plain:
+        reservoir.clock[_LEAVES] = t + wait(leaving_rates(drops, reservoir), gas.tallies.random)
+        return
     surface = 0.0
     for k in range(drops.record.size):
         surface += surface_left(drops, k)
@@ -51,7 +56,7 @@ def _renew(t, gas, drops, reservoir):
 def _may_grow(i, j, k, t, at, gas, drops, modes):
     """Tell whether drop k, record j, has room for one molecule more: no wall and no molecule but i is in the way."""
     box = gas.box
-    radius = radius_of(drops, k, drops.held[k] + 1)
+    radius = radius_of(drops, drops.cube[k], drops.held[k] + 1)
     if box.inverse_x == 0.0 and not radius <= at.x <= box.length_x - radius:
         return False
     if box.inverse_y == 0.0 and not radius <= at.y <= box.length_y - radius:
@@ -79,7 +84,8 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     # the new drop stands at the centre of mass of both, as far as the walls allow
     rx, ry, rz = nearest_image(two.x - one.x, two.y - one.y, two.z - one.z, box, modes)
     x, y, z = one.x + share * rx, one.y + share * ry, one.z + share * rz
-    radius = cbrt(drops.cube[a] + drops.cube[b] + (drops.held[a] + drops.held[b]) * drops.molecule_cube)
+    cube, held = drops.cube[a] + drops.cube[b], drops.held[a] + drops.held[b]
+    radius = radius_of(drops, cube, held)
     x = within(x, radius, box.length_x, box.inverse_x)
     y = within(y, radius, box.length_y, box.inverse_y)
     z = within(z, radius, ceiling_at(t, gas, modes)[0], box.inverse_z)
@@ -87,8 +93,13 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     if not moved:
         return Status.ROW_FULL, i
     reservoir.energy[THERMAL] += 0.5 * mass * share * (ux * ux + uy * uy + uz * uz)
-    drops.held[a] += drops.held[b]
-    drops.cube[a] += drops.cube[b]
+    if not drops.plain:
+        # one drop has less surface than two
+        lost = surface_energy(drops, drops.cube[a], drops.held[a]) + surface_energy(drops, drops.cube[b], drops.held[b])
+        reservoir.energy[THERMAL] += lost - surface_energy(drops, cube, held)
+        drops.solute[a] += drops.solute[b]
+    drops.held[a] = held
+    drops.cube[a] = cube
     drops.core[a] += drops.core[b]
     drops.held[b] = 0
     drops.alive[b] = 0
@@ -122,6 +133,8 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
         condense(reservoir, energy)
         withdraw(i, gas, reservoir, modes)
         drops.held[k] += 1
+        if not drops.plain:
+            reservoir.energy[THERMAL] -= given_by_surface(drops, k, drops.held[k])
         resize(drops, k, kinds, modes)
     else:
         flight, spin = exchange(reservoir, energy, rotation, state)
@@ -146,16 +159,16 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
 def _emit(t, gas, drops, reservoir, modes):
     """Let a molecule leave one of the drops, unless it has no place; return a `Status` and the drop's number."""
     box, table, state = gas.box, gas.kinds.table, gas.tallies.random
-    # which drop: in proportion to the surface that the molecule leaves behind
+    # which drop: in proportion to the surface that the molecule leaves behind, or to the rate of each
     k = 0
-    left = uniform(state) * reservoir.surface[0]
+    left = uniform(state) * (reservoir.surface[0] if drops.plain else np.sum(drops.rate))
     for each in range(drops.record.size):
-        surface = surface_left(drops, each)
-        if surface > 0.0:
+        weight = surface_left(drops, each) if drops.plain else drops.rate[each]
+        if weight > 0.0:
             k = each
-            if left < surface:
+            if left < weight:
                 break
-            left -= surface
+            left -= weight
     i = reservoir.absent[reservoir.top[0] - 1]
     j = drops.record[k]
     drop = motion_at(j, t, gas, modes)
@@ -185,6 +198,8 @@ def _emit(t, gas, drops, reservoir, modes):
         return Status.DONE, j
     mass, heavy = drops.molecule_mass, table[modes.drops + k].mass
     light = mass / (mass + heavy)
+    if not drops.plain:
+        reservoir.energy[THERMAL] += given_by_surface(drops, k, drops.held[k] + 1)
     flight, spin = evaporate(reservoir, state)
     leave(reservoir, flight + spin)
     speed = math.sqrt(2.0 * flight / (heavy * light))

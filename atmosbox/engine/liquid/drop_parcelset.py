@@ -54,9 +54,10 @@ class DropParcelSet(MoistParcelSet):
         held[: more % number] += 1
         self._append_liquid()
         waters = more + int(np.sum(self._is_vapour()[: len(position)]))
-        cube, ball = (length * length * length for length in (liquid.nucleus, liquid.molecule_radius))
-        largest = float(cbrt(number * cube + waters * ball))
-        radius: Array = np.array([float(cbrt(cube + each * ball)) for each in held])
+        cubes = [length * length * length for length in liquid.nuclei_radii]
+        ball = liquid.molecule_radius * liquid.molecule_radius * liquid.molecule_radius
+        largest = float(cbrt(math.fsum(cubes) + waters * ball))
+        radius: Array = np.array([float(cbrt(cube + each * ball)) for cube, each in zip(cubes, held, strict=True)])
         where = self._checked(np.array(liquid.position, float), radius, largest)
         kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
         self._first_drop = len(kinds.table)
@@ -82,13 +83,17 @@ class DropParcelSet(MoistParcelSet):
         self._drops = DropRecords(
             record=np.arange(records - number, records),
             held=held,
-            cube=np.full(number, cube),
+            cube=np.array(cubes, float),
             core=np.full(number, float(liquid.nucleus_mass)),
             alive=np.ones(number, np.int64),
+            solute=np.array(liquid.particles, float),
+            rate=np.zeros(number),
             merged=np.zeros(1, np.int64),
             molecule_cube=float(ball),
             molecule_mass=float(substance.mass),
             molecule_radius=0.5 * float(substance.diameter),
+            tension=float(liquid.surface_tension),
+            plain=not (liquid.surface_tension > 0.0 or any(liquid.particles)),
         )
         alike = self._is_vapour()
         first = int(kind[np.argmax(alike)]) if alike.any() else -1
@@ -140,17 +145,28 @@ class DropParcelSet(MoistParcelSet):
         return centre, np.array(self._kinds.table["radius"][self._first_drop :][alive]), self._drops.held[alive]
 
     @property
+    def dissolved(self) -> Array:
+        """Number of particles dissolved in each of the drops there are now."""
+        return np.array(self._drops.solute[self._drops.alive == 1])
+
+    @property
+    def surface_energy(self) -> float:
+        """Energy of the surface of all drops [energy]."""
+        radius = self._kinds.table["radius"][self._first_drop :][self._drops.alive == 1]
+        return 4.0 * math.pi * self._drops.tension * float(np.sum(radius * radius))
+
+    @property
     def merged(self) -> int:
         """How often two drops have become one since the start."""
         return int(self._drops.merged[0])
 
     @property
     def condensed_energy(self) -> float:
-        """Energy of the liquid, of its vapour's binding and of the flight of the drops [energy]."""
+        """Energy of the liquid, of its vapour's binding, and of the surface and the flight of the drops [energy]."""
         m = self._fields[self._drops.record[self._drops.alive == 1]]
         mass = self._kinds.table["mass"][self._first_drop :][self._drops.alive == 1]
         flight = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
-        return super().condensed_energy + flight
+        return super().condensed_energy + self.surface_energy + flight
 
     def escaped(self) -> int:
         """Return how many molecules and drops are outside the box or nowhere: none, or the engine is wrong."""

@@ -23,8 +23,10 @@ class DropRecords(NamedTuple):
 
     ``record``, ``held : (drop,)`` their numbers among the molecules, and how many molecules each holds; ``cube``,
     ``core : (drop,)`` cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)`` whether it has
-    not been swallowed; ``merged : (1,)`` how often that happened; then cube of the radius, mass and radius in flight of
-    one molecule.
+    not been swallowed; ``solute : (drop,)`` how many particles are dissolved in each, ``rate : (drop,)`` how often a
+    molecule leaves it [1/time], see `curvature`; ``merged : (1,)`` how often one has swallowed another; then cube of the
+    radius, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether drops lose
+    molecules by their surface alone.
     """
 
     record: Any
@@ -32,23 +34,27 @@ class DropRecords(NamedTuple):
     cube: Any
     core: Any
     alive: Any
+    solute: Any
+    rate: Any
     merged: Any
     molecule_cube: float
     molecule_mass: float
     molecule_radius: float
+    tension: float
+    plain: bool
 
 
 @kernel
-def radius_of(drops, k, held):
-    """Return the radius of drop k if it held so many molecules [length]."""
-    return cbrt(drops.cube[k] + held * drops.molecule_cube)
+def radius_of(drops, cube, held):
+    """Return the radius of a drop of so many molecules [length], from the cube of the radius of its nucleus."""
+    return cbrt(cube + held * drops.molecule_cube)
 
 
 @kernel
 def resize(drops, k, kinds, modes):
     """Let drop k be as large and as heavy as what it holds."""
     kind = kinds.table[modes.drops + k]
-    kind.radius = radius_of(drops, k, drops.held[k])
+    kind.radius = radius_of(drops, drops.cube[k], drops.held[k])
     kind.mass = drops.core[k] + drops.held[k] * drops.molecule_mass
 
 
@@ -60,7 +66,7 @@ def surface_left(drops, k):
     """
     if drops.alive[k] == 0 or drops.held[k] < 1:
         return 0.0
-    reach = radius_of(drops, k, drops.held[k] - 1) + drops.molecule_radius
+    reach = radius_of(drops, drops.cube[k], drops.held[k] - 1) + drops.molecule_radius
     heavy = drops.core[k] + (drops.held[k] - 1) * drops.molecule_mass
     return 4.0 * math.pi * reach * reach * math.sqrt(1.0 + drops.molecule_mass / heavy)
 

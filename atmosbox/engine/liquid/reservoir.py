@@ -51,6 +51,7 @@ __all__ = [
     "condense",
     "direction",
     "evaporate",
+    "evaporation_flux",
     "evaporation_rate",
     "exchange",
     "heat_capacity",
@@ -169,12 +170,15 @@ def heat_capacity(reservoir):
 
 
 @kernel
-def evaporation_rate(reservoir):
-    """Return how many molecules leave the liquid per time [1/time]; see the head of this file."""
+def evaporation_flux(reservoir, given):
+    """Return how many molecules leave the liquid per time and surface; see the head of this file.
+
+    ``given`` is what the surface gives to the liquid when it shrinks by a molecule [energy], 0 where it is flat.
+    """
     if reservoir.count[LIQUID] < 1:
         return 0.0
     energy = reservoir.energy[THERMAL]
-    left = energy - reservoir.binding_energy
+    left = energy - reservoir.binding_energy + given
     if not left > 0.0:
         return 0.0
     shape = 2.0 + 0.5 * reservoir.rotation
@@ -182,7 +186,13 @@ def evaporation_rate(reservoir):
     rest = max(capacity - reservoir.molecule_capacity, 0.0)
     logarithm = reservoir.log_rate + (rest + shape - 1.0) * log(left) - lgamma(rest + shape)
     logarithm += lgamma(capacity) - (capacity - 1.0) * log(energy)
-    return reservoir.surface[0] * exp(min(logarithm, 600.0))
+    return exp(min(logarithm, 600.0))
+
+
+@kernel
+def evaporation_rate(reservoir):
+    """Return how many molecules leave a liquid whose surface is flat per time [1/time]."""
+    return reservoir.surface[0] * evaporation_flux(reservoir, 0.0)
 
 
 @kernel

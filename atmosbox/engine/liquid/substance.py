@@ -1,8 +1,9 @@
 """What condenses, and in which form its liquid is in the box: a mist, drops or a pool."""
 
+import math
 from dataclasses import dataclass
 
-from atmosbox.engine.core.elementary import exp, log
+from atmosbox.engine.core.elementary import cbrt, exp, log
 from atmosbox.engine.core.inputs import number, whole
 from atmosbox.engine.core.refusal import RefusedError
 
@@ -143,31 +144,68 @@ class Drops(Liquid):
     """Drops that can be seen: spheres that fly, that molecules hit, that grow, shrink and merge.
 
     Each sits on a nucleus, and carries its share of the molecules; they are all of one temperature. The molecules in
-    the liquid at the start are shared out evenly.
+    the liquid at the start are shared out evenly. Without a surface tension and without anything dissolved in them the
+    vapour over drops is that over a flat surface; see `curvature`.
 
     Parameters
     ----------
     position
         Centres of the nuclei at the start [length], where no molecule is; the drops start at rest.
     nucleus
-        Radius of a nucleus [length].
+        Radius of a nucleus, or of each one [length].
     nucleus_mass
         Its mass [mass].
     molecule_radius
         Radius of the ball by whose volume each molecule makes its drop larger [length].
+    surface_tension
+        Energy of a unit of surface [energy/length^2].
+    dissolved
+        How many particles each nucleus gives into solution, two for a pair of ions; none if empty.
     """
 
     position: tuple[tuple[float, float, float], ...] = ()
-    nucleus: float = 1.0
+    nucleus: float | tuple[float, ...] = 1.0
     nucleus_mass: float = 10.0
     molecule_radius: float = 0.5
+    surface_tension: float = 0.0
+    dissolved: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _above_zero(self.nucleus, "radius of the nuclei")
-        _above_zero(self.nucleus_mass, "mass of the nuclei")
-        number(self.molecule_radius, "radius of a molecule in a drop", least=0.0)
         if not self.position:
             raise RefusedError("drops need nuclei: give the position of one at least")
+        for radius in self.nuclei_radii:
+            _above_zero(radius, "radius of the nuclei")
+        for particles in self.dissolved:
+            number(particles, "number of particles dissolved in a drop", least=0.0)
+        for name, values in (("radii", self.nuclei_radii), ("numbers of dissolved particles", self.particles)):
+            if len(values) != len(self.position):
+                raise RefusedError(f"there are {len(values)} {name} for {len(self.position)} nuclei: give one for each")
+        _above_zero(self.nucleus_mass, "mass of the nuclei")
+        number(self.molecule_radius, "radius of a molecule in a drop", least=0.0)
+        number(self.surface_tension, "surface tension of the drops", least=0.0)
+        self._refuse_what_is_not_bound()
         if self.rain:
             raise RefusedError("drops do not rain: leave rain at 0, or take a mist")
+
+    def _refuse_what_is_not_bound(self) -> None:
+        """Refuse so large a surface energy that the first molecule on the smallest nucleus costs more than it binds."""
+        core, ball = (float(length) ** 3 for length in (min(self.nuclei_radii), self.molecule_radius))
+        grown = 4.0 * math.pi * (float(cbrt(core + ball)) ** 2 - float(cbrt(core)) ** 2)
+        bound = self.substance.binding_energy
+        if not self.surface_tension * grown < bound:
+            raise RefusedError(
+                f"surface_tension = {self.surface_tension:.4g} gives a nucleus of radius {min(self.nuclei_radii):.4g} "
+                f"more surface energy with its first molecule than the {bound:.4g} that binds it: "
+                f"give less than {bound / grown:.4g}, or larger nuclei"
+            )
+
+    @property
+    def nuclei_radii(self) -> tuple[float, ...]:
+        """Radius of each nucleus [length]."""
+        return self.nucleus if isinstance(self.nucleus, tuple) else (self.nucleus,) * len(self.position)
+
+    @property
+    def particles(self) -> tuple[float, ...]:
+        """How many particles are dissolved in each drop at the start."""
+        return self.dissolved or (0.0,) * len(self.position)

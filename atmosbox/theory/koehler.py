@@ -1,0 +1,224 @@
+r"""The vapour over a drop: Kelvin's law of its curvature, and Koehler's of what is dissolved in it.
+
+A drop of n molecules of volume v has the radius r and the surface energy :math:`4 \pi \gamma r^2`. A molecule that
+leaves takes some of that off, :math:`2 \gamma v / r`, and leaves the more easily. What is dissolved makes molecules of
+water rarer, and they leave less often. The first falls with the radius, the second with its cube: over a drop with salt
+in it the vapour pressure has a maximum. At a humidity above that the drop grows without end.
+
+References
+----------
+Thomson, W. (1871), On the equilibrium of vapour at a curved surface of liquid, Phil. Mag. 42, 448,
+doi:10.1080/14786447108640606. Koehler, H. (1936), The nucleus in and the growth of hygroscopic droplets,
+doi:10.1039/TF9363201152.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
+from atmosbox.theory._water import CRITICAL_TEMPERATURE, checked_temperature
+from atmosbox.theory.constants import AVOGADRO, WATER
+
+__all__ = [
+    "SALT_VOLUME",
+    "WATER_VOLUME",
+    "CriticalDrop",
+    "critical_drop",
+    "drop_radius",
+    "humidity_over_drop",
+    "kelvin_radius",
+    "water_surface_tension",
+]
+
+WATER_VOLUME: float = WATER.molar_mass / 998.2 / AVOGADRO
+"""Volume of a molecule in liquid water at 20 degC, 998.2 kg m-3 [m3]."""
+SALT_VOLUME: float = 58.44e-3 / 2165.0 / AVOGADRO / 2.0
+"""Volume of an ion in a crystal of sodium chloride, 58.44 g/mol and 2165 kg m-3 for a pair [m3]."""
+
+
+def water_surface_tension(temperature: ArrayLike) -> FloatArray:
+    r"""Return the surface tension of water beside its vapour.
+
+    .. math:: \gamma = 0.2358\,\mathrm{N/m}\; \tau^{1.256} (1 - 0.625 \tau), \qquad \tau = 1 - T / 647.096\,\mathrm{K}.
+
+    Parameters
+    ----------
+    temperature
+        Temperature [K]; below the triple point the water is supercooled, and the formula reaches beyond its data.
+
+    Returns
+    -------
+    ndarray
+        Surface tension [N/m]; 0 at the critical point.
+
+    Raises
+    ------
+    ValueError
+        If a temperature lies below 0 K or above the critical point of water.
+
+    References
+    ----------
+    IAPWS (2014), Revised release on surface tension of ordinary water substance, R1-76(2014).
+
+    Examples
+    --------
+    At 20 degC, in mN/m:
+
+    >>> round(1000.0 * float(water_surface_tension(293.15)), 2)
+    72.74
+    """
+    tau = 1.0 - checked_temperature(as_floats(temperature)) / CRITICAL_TEMPERATURE
+    tension: FloatArray = 0.2358 * tau**1.256 * (1.0 - 0.625 * tau)
+    return tension
+
+
+def drop_radius(number: ArrayLike, volume: float, core: float = 0.0) -> FloatArray:
+    """Return the radius of a drop of so many molecules.
+
+    Parameters
+    ----------
+    number
+        How many molecules there are in it.
+    volume
+        Of a molecule in the liquid [length^3].
+    core
+        Volume of what the drop sits on, or of the salt in it [length^3].
+
+    Examples
+    --------
+    A hundred molecules of water make a drop of less than a nanometre:
+
+    >>> round(1e9 * float(drop_radius(100, WATER_VOLUME)), 3)
+    0.894
+    """
+    require_positive(volume=volume)
+    require_not_negative(core=core)
+    radius: FloatArray = np.cbrt(3.0 / (4.0 * np.pi) * (core + volume * as_floats(number)))
+    return radius
+
+
+def kelvin_radius(tension: float, volume: float, kT: float) -> float:
+    r"""Return the radius below which curvature raises the vapour pressure e-fold, :math:`2 \gamma v / kT`.
+
+    Parameters
+    ----------
+    tension, volume, kT
+        Surface tension [energy/length^2], volume of a molecule [length^3], temperature [energy].
+
+    Examples
+    --------
+    For water at 20 degC it is a nanometre:
+
+    >>> from atmosbox.theory.constants import BOLTZMANN
+    >>> round(1e9 * kelvin_radius(0.07274, WATER_VOLUME, BOLTZMANN * 293.15), 3)
+    1.077
+    """
+    require_not_negative(tension=tension)
+    require_positive(volume=volume, kT=kT)
+    return 2.0 * tension * volume / kT
+
+
+def humidity_over_drop(
+    number: ArrayLike, tension: float, volume: float, kT: float, *, particles: float = 0.0, core: float = 0.0
+) -> FloatArray:
+    r"""Return the relative humidity at which a drop neither grows nor shrinks.
+
+    .. math:: \frac{e}{e_s} = \frac{n}{n + s}\, \exp\frac{2 \gamma v}{r\, kT}
+
+    for n molecules of water and s dissolved particles. The first factor is the activity of the water in an ideal
+    solution (Raoult), the second is Kelvin's; together they are Koehler's law.
+
+    Parameters
+    ----------
+    number
+        How many molecules of water there are in the drop, n.
+    tension, volume, kT
+        Surface tension [energy/length^2], volume of a molecule [length^3], temperature [energy].
+    particles
+        How many dissolved particles, s: two for each pair of ions.
+    core
+        Volume of what is dissolved, or of an insoluble nucleus [length^3].
+
+    Returns
+    -------
+    ndarray
+        Relative humidity [1].
+
+    Notes
+    -----
+    The surface gives back E(n) - E(n - 1) when a molecule leaves, and not its derivative at n: for few molecules the
+    exact ratio is that of n - 1/2.
+
+    Examples
+    --------
+    A thousand molecules of water, pure, and with twenty pairs of ions:
+
+    >>> from atmosbox.theory.constants import BOLTZMANN
+    >>> water = {"tension": 0.07274, "volume": WATER_VOLUME, "kT": BOLTZMANN * 293.15}
+    >>> [round(float(humidity_over_drop(1000, **water, particles=s)), 3) for s in (0, 40)]
+    [1.749, 1.682]
+    """
+    require_not_negative(particles=particles)
+    n = as_floats(number)
+    radius = drop_radius(n, volume, core)
+    humidity: FloatArray = n / (n + particles) * np.exp(kelvin_radius(tension, volume, kT) / radius)
+    return humidity
+
+
+class CriticalDrop(NamedTuple):
+    """The drop over which the humidity is highest.
+
+    ``number`` of its molecules of water, its ``radius`` [length], and the relative ``humidity`` over it [1].
+    """
+
+    number: float
+    radius: float
+    humidity: float
+
+
+def critical_drop(tension: float, volume: float, kT: float, *, particles: float, core: float = 0.0) -> CriticalDrop:
+    r"""Return Koehler's maximum: above its humidity a drop with salt in it grows without end.
+
+    Where :math:`s / n (n + s) = 2 \gamma v^2 / 4 \pi r^4 kT`. For thin solutions it is :math:`r_c = \sqrt{3 B / A}` and
+    :math:`\ln S_c = 2 A / 3 r_c` with :math:`A = 2 \gamma v / kT` and :math:`B = 3 s v / 4 \pi`.
+
+    Parameters
+    ----------
+    tension, volume, kT, particles, core
+        See `humidity_over_drop`.
+
+    Raises
+    ------
+    ValueError
+        If a number is not above 0: a drop without salt, or without surface tension, has no maximum.
+
+    Examples
+    --------
+    A grain of salt 0.1 micrometres wide needs a tenth of a per cent too much, one of fifty ions a hundred:
+
+    >>> from atmosbox.theory.constants import BOLTZMANN
+    >>> water = {"tension": 0.07274, "volume": WATER_VOLUME, "kT": BOLTZMANN * 293.15}
+    >>> grain = 4.0 / 3.0 * np.pi * 50e-9**3
+    >>> for core in (grain, 50 * SALT_VOLUME):
+    ...     found = critical_drop(**water, particles=core / SALT_VOLUME, core=core)
+    ...     print(f"{1e9 * found.radius:.3g} nm, {100.0 * found.humidity:.5g} %")
+    682 nm, 100.11 %
+    1.08 nm, 199.28 %
+    """
+    from scipy import optimize  # loads slowly
+
+    require_positive(tension=tension, volume=volume, kT=kT, particles=particles)
+    reach = kelvin_radius(tension, volume, kT)
+
+    def falls(log_number: float) -> float:
+        n = np.exp(log_number)
+        radius = float(drop_radius(n, volume, core))
+        return float(np.log(reach * volume / (4.0 * np.pi * radius**4)) + np.log(n) + np.log1p(n / particles))
+
+    highest = np.log(1e6 * particles * (1.0 + np.sqrt(particles)))
+    number = float(np.exp(optimize.brentq(falls, np.log(1e-6), highest, xtol=1e-13)))
+    facts = {"particles": particles, "core": core}
+    humidity = float(humidity_over_drop(number, tension, volume, kT, **facts))
+    return CriticalDrop(number, float(drop_radius(number, volume, core)), humidity)
