@@ -38,6 +38,7 @@ CASES = {
     "mountains": Case("mountains", FEW | {"travel": 40}, 0.1),
     "condensation": Case("condensation", {"molecules": 100}, 0.01),
     "condensation-drops": Case("condensation", {"molecules": 500, "drops": 4}, 0.002),
+    "nuclei": Case("nuclei", {"molecules": 500, "humidity": 300, "pure": 2}, 0.02),
     "evaporation": Case("evaporation", {"molecules": 200}, 0.01),
     "diffusion": Case("diffusion", {"molecules": 1000}, 0.002),
     "attraction": Case("attraction", {"molecules": 200}, 0.002),

@@ -185,6 +185,7 @@ CASES = [
     Case("condensation", {"molecules": 500, "duration": 20.0}, 16),
     Case("evaporation", {"molecules": 1000, "pool": 200}, 12),
     Case("diffusion", {"molecules": 1500}, 24),
+    Case("nuclei", {"molecules": 1500, "duration": 100.0}, 24, long=True),
     Case("diffusion", {"molecules": 1000, "mass_ratio": 10.0, "duration": 2.0}, 24, long=True),
     Case("lifting-dry", {"molecules": 200, "ascent": 400.0}, 24),
     Case("lifting-dry", {"molecules": 200, "ascent": 150.0}, 60, long=True),

@@ -41,6 +41,7 @@ SMALL = {
     "lifting-moist": {"molecules": 1000, "ascent": 400},
     "lifting-sounding": {"molecules": 2000, "ascent": 40},
     "mountains": {"molecules": 2000, "travel": 40},
+    "nuclei": {"molecules": 1000, "duration": "10 ns"},
     "temperature": {"molecules": 50, "duration": "2 ns"},
     "temperature-large": {"molecules": 100, "duration": "2 ns"},
 }

@@ -40,6 +40,7 @@ VARIABLES: dict[str, Variable] = {
     **_declared(("energy",), ("energy", "J", "energy of a molecule of water above that of one at rest in the liquid, "
                  "middle of the bin"), ledger=True),
     **_declared(("distance",), ("distance", "m", "distance from the left wall, middle of the bin"), ledger=True),
+    **_declared(("radius",), ("radius", "m", "radius of a drop"), ledger=True),
     **_declared(("wall",), ("wall", "", "wall of the box"), dtype="U"),
     **_declared(("axis",), ("axis", "", "direction in space, z upwards"), dtype="U"),
     **_declared(_MOLECULE, ("molecule", "1", "number of the molecule"), dtype="i8"),
@@ -161,6 +162,18 @@ VARIABLES: dict[str, Variable] = {
         cell_methods=_POINT, dtype="i8",
     ),
     **_declared(_TIME, ("largest_drop_radius", "m", "radius of the largest drop"), cell_methods=_POINT),
+    # Drops with and without salt
+    **_declared(_TIME, ("salted_drop_radius", "m", "mean radius of the drops with salt in them"),
+                ("pure_drop_radius", "m", "mean radius of the drops of pure water"), cell_methods=_POINT),
+    **_declared(_TIME, ("saturation_ratio", "1", "vapour pressure over that of saturation at the drops' temperature"),
+                cell_methods=_MEAN),
+    **_declared((*_TIME, "drop"), ("drop_molecule_count", "1", "number of molecules of water in the drop"),
+                cell_methods=_POINT, dtype="i8"),
+    **_declared(
+        ("radius",),
+        ("salted_drop_humidity", "1", "relative humidity over a drop with salt in it, by the law of Koehler"),
+        ("pure_drop_humidity", "1", "relative humidity over a drop of pure water, by the law of Kelvin"),
+    ),
     **_declared(
         _TIME,
         ("condensed_energy", "J", "energy of liquid and rain, and of what the vapour is above the liquid"),

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         Mixing,
         MoistLift,
         Molecules,
+        Nuclei,
         Readings,
         Slab,
         Speeds,
@@ -58,7 +59,7 @@ _HOMES = {
     "headline": "Headline",
     "instruments": (
         "LAWS Air Clusters Discs DropSizes Environment Instrument Layers Leaving "
-        "Lift Mixing MoistLift Molecules Readings Slab Speeds Stirrer Water wall_laws"
+        "Lift Mixing MoistLift Molecules Nuclei Readings Slab Speeds Stirrer Water wall_laws"
     ),
     "panels": "Line Panel",
     "settings": "SceneSettings setting",
@@ -85,6 +86,7 @@ __all__ = [
     "Mixing",
     "MoistLift",
     "Molecules",
+    "Nuclei",
     "Panel",
     "Readings",
     "Scale",

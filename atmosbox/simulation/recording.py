@@ -139,7 +139,8 @@ class Recording:
         rest = min(setup.settle if settle is None else settle, max(self.frames - 2, 0)) + unseen
         for instrument in self.instruments:
             readings.update(instrument.readings(setup.scale, rest))
-        names = ("height", "height_bnds", "speed", "speed_bnds", "energy", "energy_bnds", "distance", "distance_bnds")
+        binned = ("height", "speed", "energy", "distance")
+        names = ("radius", *binned, *(f"{name}_bnds" for name in binned))
         coords = {name: readings.pop(name) for name in names if name in readings}
         coords["elapsed_time"] = times[1:]
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)

@@ -192,7 +192,7 @@ def critical_drop(tension: float, volume: float, kT: float, *, particles: float,
     Raises
     ------
     ValueError
-        If a number is not above 0: a drop without salt, or without surface tension, has no maximum.
+        If a number is not above 0, or particles are too few: then the humidity falls with the radius everywhere.
 
     Examples
     --------
@@ -217,8 +217,13 @@ def critical_drop(tension: float, volume: float, kT: float, *, particles: float,
         radius = float(drop_radius(n, volume, core))
         return float(np.log(reach * volume / (4.0 * np.pi * radius**4)) + np.log(n) + np.log1p(n / particles))
 
-    highest = np.log(1e6 * particles * (1.0 + np.sqrt(particles)))
-    number = float(np.exp(optimize.brentq(falls, np.log(1e-6), highest, xtol=1e-13)))
+    # the humidity rises from where it is steepest, most often at n = s / 2, up to the maximum
+    low, high = (np.log(each * particles) for each in (0.5, 1e6 * (1.0 + np.sqrt(particles))))
+    if falls(low) >= 0.0:
+        low, high = np.log(1e-6), low
+        if falls(low) >= 0.0:
+            raise ValueError(f"particles = {particles} are too few for a maximum: give more of them.")
+    number = float(np.exp(optimize.brentq(falls, low, high, xtol=1e-13)))
     facts = {"particles": particles, "core": core}
     humidity = float(humidity_over_drop(number, tension, volume, kT, **facts))
     return CriticalDrop(number, float(drop_radius(number, volume, core)), humidity)

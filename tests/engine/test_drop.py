@@ -376,6 +376,27 @@ def test_in_the_end_there_is_one_drop_and_those_it_swallowed_never_come_back(nam
     is_lawful(parcel, 40, drops)
 
 
+@many_events
+def test_the_surface_that_two_drops_lose_warms_them_and_their_salts_add_up(by_single_events):
+    drops = nuclei(30, surface_tension=1.5, dissolved=(5.0, 0.0, 7.0))
+    parcel = box("periodic", drops)
+    before = []
+
+    def check(time):
+        assert parcel.ledger() < 1e-12
+        assert parcel.dissolved.sum() == 12.0
+        assert parcel.surface_energy == pytest.approx(6.0 * math.pi * np.sum(parcel.drops()[1] ** 2), rel=1e-12)
+        before.append((parcel.merged, parcel.surface_energy, parcel.liquid_energy))
+
+    while not parcel.merged:
+        parcel.advance(parcel.time + 5.0, watch=check)
+        assert parcel.time < 2000.0
+    numbers, surface, warm = np.array(before).T
+    (last,) = np.flatnonzero(np.diff(numbers) > 0)[:1]
+    assert surface[last] - surface[last + 1] > 1.0
+    assert warm[last + 1] - warm[last] >= surface[last] - surface[last + 1]
+
+
 # ------------------------------------------------------------------ hardly anything
 
 

@@ -62,6 +62,13 @@ BOXES = {
         *gas(60), length=(12.0,) * 3, mass=0.62, rotation=3.0,
         liquid=Drops(WATER, number=8, kT=1.0, nuclei=5.0, position=((4.7, 4.7, 4.7), (7.1, 7.1, 7.1))),
     ),
+    "salted drops": lambda: DropParcelSet(
+        *gas(60), length=(12.0,) * 3, mass=0.62, rotation=3.0,
+        liquid=Drops(
+            WATER, number=8, kT=1.0, nuclei=5.0, position=((4.7, 4.7, 4.7), (7.1, 7.1, 7.1)), nucleus=(1.0, 0.8),
+            surface_tension=0.5, dissolved=(0.0, 6.0),
+        ),
+    ),
     "stepped": lambda: SteppedParcel(*gas(), delta=0.01, **lifted()),
     "dsmc": lambda: DsmcParcel(*gas(), threads=2, **lifted()),
     "moist dsmc": lambda: MoistDsmcParcel(

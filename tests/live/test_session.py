@@ -24,6 +24,7 @@ SMALL = {
     "diffusion": {"molecules": 200, "duration": 1.0},
     "elastic-collisions": {"molecules": 20, "duration": "3 s"},
     "evaporation": {"molecules": 300, "pool": 60, "duration": "1 ns"},
+    "nuclei": {"molecules": 500, "duration": "2 ns"},
     "lifting-dry": {"molecules": 100, "ascent": 40},
     "lifting-moist": {"molecules": 300, "ascent": 40},
     "lifting-sounding": {"molecules": 300, "ascent": 40},

@@ -14,8 +14,7 @@ The tension is taken as independent of temperature: then the whole of it is ener
 
 References
 ----------
-Koehler, H. (1936), The nucleus in and the growth of hygroscopic droplets, doi:10.1039/TF9363201152. Pruppacher,
-H. R., Klett, J. D. (2010), Microphysics of Clouds and Precipitation, chapter 6, doi:10.1007/978-0-306-48100-0.
+Koehler, H. (1936), The nucleus in and the growth of hygroscopic droplets, doi:10.1039/TF9363201152.
 """
 
 import math

@@ -24,8 +24,8 @@ class DropRecords(NamedTuple):
     ``record``, ``held : (drop,)`` their numbers among the molecules, and how many molecules each holds; ``cube``,
     ``core : (drop,)`` cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)`` whether it has
     not been swallowed; ``solute : (drop,)`` how many particles are dissolved in each, ``rate : (drop,)`` how often a
-    molecule leaves it [1/time], see `curvature`; ``merged : (1,)`` how often one has swallowed another; then cube of the
-    radius, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether drops lose
+    molecule leaves it [1/time], see `curvature`; ``merged : (1,)`` how often one has swallowed another; then cube of
+    the radius, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether drops lose
     molecules by their surface alone.
     """
 

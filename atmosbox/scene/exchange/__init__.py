@@ -1,8 +1,17 @@
 """Vapour and liquid in exchange until both rates are equal: the theory that the scenes of it share."""
 
+from atmosbox.scene.exchange.drop_growth import DropGrowth, DropKind
 from atmosbox.scene.exchange.emission import energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.exchange.moist_box import MoistBox
 from atmosbox.scene.exchange.pool import AirOverPool
 from atmosbox.scene.exchange.rates import history
 
-__all__ = ["AirOverPool", "MoistBox", "energy_of_those_that_leave", "history", "temperature_of_those_that_left"]
+__all__ = [
+    "AirOverPool",
+    "DropGrowth",
+    "DropKind",
+    "MoistBox",
+    "energy_of_those_that_leave",
+    "history",
+    "temperature_of_those_that_left",
+]

@@ -16,6 +16,7 @@ from atmosbox.scene.instruments.lifted_air import Environment, Lift
 from atmosbox.scene.instruments.mixing import MOMENTS, Mixing
 from atmosbox.scene.instruments.moist_lift import MoistLift
 from atmosbox.scene.instruments.molecule import LAWS, Molecules, wall_laws
+from atmosbox.scene.instruments.nucleus import Nuclei
 from atmosbox.scene.instruments.slab import Slab
 from atmosbox.scene.instruments.speeds import Speeds
 from atmosbox.scene.instruments.stirrer import Stirrer
@@ -36,6 +37,7 @@ __all__ = [
     "Mixing",
     "MoistLift",
     "Molecules",
+    "Nuclei",
     "Readings",
     "Slab",
     "Speeds",

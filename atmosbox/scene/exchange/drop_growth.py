@@ -1,0 +1,173 @@
+"""Drops of two kinds in a closed box of moist air, by theory: they grow and shrink, and share the vapour."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from atmosbox import theory as law
+from atmosbox.scene.exchange.moist_box import MoistBox
+from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+
+__all__ = ["DropGrowth", "DropKind"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DropKind:
+    """Drops that are alike: how many, with how many dissolved particles, around a core of which volume [m^3]."""
+
+    count: int
+    particles: float
+    core: float
+
+
+@dataclass(frozen=True)
+class DropGrowth:
+    r"""Drops that share the vapour of a box, at one temperature, by the law of Hertz and Knudsen.
+
+    A drop whose radius is drawn w times too large catches vapour on its area a, and loses as much as is in balance with
+    the humidity :math:`S_n` over it,
+
+    .. math:: \dot n = J\, [a_n S - a_{n-1} S_n], \qquad S = (W - \textstyle\sum n) / W_s
+
+    with the flux J of saturated vapour, all the water W of the box and the vapour :math:`W_s` that saturates the room
+    that the drops leave.
+
+    Parameters
+    ----------
+    box
+        The moist air at the start, without the drops.
+    kinds
+        The kinds of drops.
+    water
+        How many molecules of water are in each drop at the start.
+    width
+        How many times wider the drops are than real ones, w.
+    tension
+        Surface tension [N/m].
+
+    Examples
+    --------
+    Without salt drops of sixty molecules vanish at 250 % of humidity:
+
+    >>> growth = DropGrowth(MoistBox(6000, 293.15, 1e4, 2.5), (DropKind(2, 0.0, 3e-29),), 60, 3.0, 0.0727)
+    >>> number, humidity = growth.path(np.array([0.0, 1e-7]))
+    >>> number.round(1).tolist()
+    [[60.0, 0.0]]
+    """
+
+    box: MoistBox
+    kinds: tuple[DropKind, ...]
+    water: int
+    width: float
+    tension: float
+
+    @property
+    def _kT(self) -> float:
+        return BOLTZMANN * self.box.temperature
+
+    def radius(self, number: ArrayLike, kind: DropKind) -> Array:
+        """Return the real radius of a drop of so many molecules [m]."""
+        return law.drop_radius(number, law.WATER_VOLUME, kind.core)
+
+    def area(self, number: ArrayLike, kind: DropKind) -> Array:
+        """Return the area on which the centres of molecules meet a drop [m^2]."""
+        area: Array = 4.0 * np.pi * (self.width * self.radius(number, kind) + 0.5 * DRY_AIR.diameter) ** 2
+        return area
+
+    def over(self, number: ArrayLike, kind: DropKind) -> Array:
+        """Return the humidity over a drop: that of n - 1/2 molecules, between which and one fewer it changes.
+
+        A drop so wide also pushes the gas away from the volume that it gains (Poynting).
+        """
+        n = np.asarray(number, np.float64)
+        half = np.maximum(n - 0.5, 0.0)
+        surface = law.kelvin_radius(self.tension, law.WATER_VOLUME, self._kT) / self.radius(half, kind)
+        volume = (
+            law.WATER_VOLUME * self.width**3 * (1.0 + 0.5 * DRY_AIR.diameter / self.width / self.radius(n, kind)) ** 2
+        )
+        room = (self.box.side * self.box.scale.length) ** 3
+        activity = n / (n + kind.particles) if kind.particles else np.minimum(n, 1.0)
+        humidity: Array = activity * np.exp(surface + self.box.molecules / room * volume)
+        return humidity
+
+    @functools.cached_property
+    def flux(self) -> float:
+        """How much saturated vapour meets an area [1/(m^2 s)]."""
+        return float(law.hertz_knudsen_flux(self.box.temperature))
+
+    @property
+    def _all(self) -> float:
+        """How many molecules of water there are in all."""
+        return self.box.vapour + self.water * sum(kind.count for kind in self.kinds)
+
+    def humidity(self, number: Array) -> Array:
+        """Return the relative humidity when the drops of each kind hold so many molecules: ``number : (kind, ...)``."""
+        volume = (self.box.side * self.box.scale.length) ** 3
+        vapour, room = np.full(number.shape[1:], float(self._all)), np.ones(number.shape[1:])
+        for n, kind in zip(number, self.kinds, strict=True):
+            reach = np.asarray(self.width * self.radius(n, kind) + 0.5 * DRY_AIR.diameter, np.float64)
+            room -= 4.0 / 3.0 * np.pi * kind.count / volume * (reach * reach * reach)
+            vapour -= kind.count * n
+        share: Array = vapour / (self.box.full * room)
+        return share
+
+    def rates(self, number: Array, humidity: ArrayLike) -> Array:
+        """Return how many molecules a drop of each kind gains per time [1/s], in air of a humidity."""
+        gained = [
+            self.area(n, kind) * np.asarray(humidity, np.float64)
+            - self.area(np.maximum(n - 1.0, 0.0), kind) * self.over(n, kind)
+            for n, kind in zip(number, self.kinds, strict=True)
+        ]
+        return self.flux * np.array(gained)
+
+    def path(self, time: Array) -> tuple[Array, Array]:
+        """Return the numbers of molecules in a drop of each kind, ``(kind, time)``, and the humidity, ``(time,)``."""
+        from scipy import integrate  # loads slowly
+
+        def slope(_: float, number: Array) -> Array:
+            held = np.maximum(number, 0.0)
+            return self.rates(held, self.humidity(held))
+
+        start = np.full(len(self.kinds), float(self.water))
+        found = integrate.solve_ivp(slope, (0.0, float(time[-1])), start, "LSODA", time, rtol=1e-8, atol=1e-8)
+        number = np.maximum(found.y, 0.0)
+        return number, self.humidity(number)
+
+    def scatter(self, time: Array, number: Array, humidity: Array) -> tuple[Array, Array, Array]:
+        r"""Return how far chance spreads the drops of the first kind: two variances and a time, each ``(time,)``.
+
+        A drop is hit and left at random, :math:`2 J a S` times per time. The mean of c drops comes back, within the
+        time :math:`\tau`, because the vapour that they lack is missing in the air; that each differs from their mean
+        only the law of Koehler holds back, or drives on:
+
+        .. math:: \frac1\tau = J a \left[\frac{c}{W_s} + \frac{dS_n}{dn}\right], \qquad
+                  \dot V_m = \frac{2 J a S}{c} - \frac{2 V_m}{\tau}, \qquad
+                  \dot V_d = 2 J a S \left(1 - \frac1c\right) - 2 J a \frac{dS_n}{dn} V_d .
+
+        Returns
+        -------
+        (ndarray, ndarray, ndarray)
+            Variance of the mean number of molecules, that of the differences from it, and the time to come back [s].
+        """
+        kind, n = self.kinds[0], number[0]
+        steep = 0.5 * (self.over(n + 1.0, kind) - self.over(np.maximum(n - 1.0, 0.0), kind))
+        flux = self.flux * self.area(n, kind)
+        back = flux * (kind.count / self.box.full + steep)
+        together, apart = np.zeros(len(time)), np.zeros(len(time))
+        for k in range(1, len(time)):
+            step, noise = time[k] - time[k - 1], 2.0 * flux[k] * humidity[k]
+            together[k] = _relaxed(together[k - 1], noise / kind.count, 2.0 * back[k], step)
+            apart[k] = _relaxed(apart[k - 1], noise * (1.0 - 1.0 / kind.count), 2.0 * flux[k] * steep[k], step)
+        return together, apart, 1.0 / np.abs(back)
+
+
+def _relaxed(value: float, gained: float, rate: float, step: float) -> float:
+    """Return what dV/dt = gained - rate V makes of a value in a step of time."""
+    decayed = -np.expm1(-rate * step)
+    return float(value * (1.0 - decayed) + (gained / rate * decayed if rate else gained * step))

@@ -1,0 +1,77 @@
+"""Drops with salt in them beside drops of pure water: how large they are, and the humidity that they feel."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from atmosbox import theory as law
+from atmosbox.engine import Snapshot
+from atmosbox.scene.instruments.instrument import Readings
+from atmosbox.scene.instruments.water import gas_kT, vapour_pressure
+from atmosbox.scene.units import Scale
+
+__all__ = ["Nuclei"]
+
+
+class Nuclei:
+    """The number of molecules in each drop, the mean radius of those with and of those without salt, and the humidity.
+
+    The sizes are those at the end of a frame. The humidity is the mean over its samples: the vapour pressure in
+    the room that the drops leave, over that of saturation at their own temperature. At that of the gas, by which
+    relative humidity is meant, it scatters far more.
+
+    Parameters
+    ----------
+    width
+        How many times wider the drops of the box are than real ones; radii are given of real ones.
+    radius
+        Radii at which theory is asked for the humidity over a drop [m].
+    """
+
+    def __init__(self, width: float, radius: ArrayLike) -> None:
+        self._width = width
+        self._radius = np.asarray(radius, np.float64)
+        self._looks: list[tuple[float, float]] = []
+        self._humid: list[tuple[float, float]] = []
+        self._held: list[np.ndarray] = []
+        self._mean: list[list[float]] = []
+
+    def sample(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Measure the vapour."""
+        reach = parcel.drops()[1] + 0.5 * float(parcel.diameter[0])
+        room = 1.0 - 4.0 / 3.0 * math.pi * float(np.sum(reach**3)) / parcel.volume
+        self._looks.append((vapour_pressure(parcel, gas_kT(parcel)) / room, parcel.liquid_kT))
+
+    def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
+        """Measure the drops."""
+        _, radius, held = parcel.drops()
+        salted = parcel.dissolved > 0.0
+        self._held.append(held)
+        self._mean.append([float(radius[of].mean()) if of.any() else math.nan for of in (salted, ~salted)])
+        pressure, kT = np.mean(self._looks, axis=0)
+        self._humid.append((float(pressure), float(kT)))
+        self._looks = []
+
+    def readings(self, scale: Scale, settle: int) -> Readings:
+        """Return the series; see `Instrument`."""
+        if not self._held:
+            return Readings()
+        held = np.zeros((len(self._held), len(self._held[0])), np.int64)
+        for frame, each in enumerate(self._held):
+            held[frame, : len(each)] = each
+        pressure, kT = np.array(self._humid).T
+        salted, pure = np.array(self._mean).T * scale.length / self._width
+        found = Readings(
+            radius=self._radius,
+            drop_molecule_count=held,
+            saturation_ratio=pressure * scale.pressure / law.saturation_vapor_pressure(kT * scale.temperature),
+        )
+        if np.isfinite(salted).any():
+            found["salted_drop_radius"] = salted
+        if np.isfinite(pure).any():
+            found["pure_drop_radius"] = pure
+        return found

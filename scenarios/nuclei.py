@@ -1,0 +1,370 @@
+"""Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
+
+A molecule leaves a small drop more easily than a flat surface: its surface shrinks, and gives back the energy that it
+cost. The air must hold the more vapour the smaller the drop is, or it evaporates, and a drop has to be small before it
+can be large. Salt helps: where part of the molecules are salt, fewer are water, and fewer leave. In one box of
+supersaturated air there are drops with a grain of salt in them and drops of pure water, of as many molecules. Those
+with salt grow. The others vanish, though the air around all of them is the same.
+
+Put in: the surface energy of a drop, from the measured tension of water and the volume of its molecules; the curve
+e_s(T) of a flat surface; and that in an ideal solution each way to arrange water and salt is as likely. What emerges
+is the vapour over each drop (the laws of Kelvin and of Koehler), and with it which drops live.
+
+Modelled: hard molecules of air and water at real density, drops that molecules hit and leave one by one. Left out:
+salt that does not dissolve at once, and attraction of its ions for water beyond the ideal; a tension that changes with
+the radius, though a drop of sixty molecules has no sharp surface; gravity. Drops rest, and have the temperature of the
+walls: their nuclei take up the latent heat, which in real air slows their growth. Exaggerated: drops are hit on the
+area of wider ones (drop_size), which changes how soon they grow, and not which of them do; the grains are far smaller
+than those in the atmosphere, and need far more vapour.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.engine import Drops, HeatBath, RandomNumbers
+from atmosbox.errors import SettingError
+from atmosbox.scene import (
+    Air,
+    EngineChoice,
+    Headline,
+    Line,
+    Nuclei,
+    Panel,
+    SceneSettings,
+    Series,
+    Setup,
+    Water,
+    setting,
+)
+from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
+from atmosbox.scene.headline import CHANCE_ALONE
+from atmosbox.scene.moisture import moist_air, water
+from atmosbox.scene.rounding import rounded
+from atmosbox.theory.constants import BOLTZMANN
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.engine.core.random import Source
+
+title = "Why clouds need dust"
+FRAMES = 240
+SETTLE = 120
+BLOCKS = 20
+HEAT = 1e8
+"""Heat capacity of the nuclei, in k: they take up the latent heat, and hardly warm."""
+HEAVY = 1e10
+"""Mass of a nucleus, in molecules of air: it rests."""
+IONS = 2.0
+"""Particles that a pair of ions becomes in solution."""
+RADII = np.linspace(0.3e-9, 2.5e-9, 221)
+"""Where the curves of theory are drawn [m]."""
+HIGHEST = 4.0
+"""Relative humidity up to which they are drawn."""
+
+ladder = (Series("exact", "molecules", (1500, 3000, 6000)),)
+"""What is worth comparing: the more molecules there are, the less the humidity scatters."""
+
+
+class Settings(SceneSettings):
+    """What a user may set."""
+
+    molecules: int = setting(3000, "1", "number of molecules of air and vapour", low=50, high=1_000_000)
+    temperature: float = setting(20.0, "degC", "temperature of the walls and of the drops", low=-30.0, high=95.0)
+    pressure: float = setting(100.0, "hPa", "pressure of air and vapour at the start", low=1.0, high=5000.0)
+    humidity: float = setting(250.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
+    salted: int = setting(1, "1", "number of drops with a grain of salt in them", low=0, high=20)
+    pure: int = setting(3, "1", "number of drops of pure water", low=0, high=20)
+    salt: int = setting(25, "1", "pairs of ions in each grain of salt", low=1, high=1000)
+    water: int = setting(60, "1", "molecules of water in each drop at the start", low=0, high=5000)
+    tension: float = setting(1.0, "1", "surface tension, in that of water", low=0.0, high=2.0)
+    drop_size: float = setting(4.0, "1", "how many times wider the drops are than real ones", low=1.0, high=10.0)
+    duration: float = setting(150.0, "ns", "how long to watch", low=0.1, high=1e5)
+
+    def check(self) -> None:
+        """Refuse a box without drops, so much vapour that no air is left, and drops that fill the box."""
+        if not self.salted + self.pure:
+            raise SettingError("salted", self.salted, "and pure = 0 leave no drop to watch", "give --set salted=1")
+        most = self.si.pressure / float(law.saturation_vapor_pressure(self.si.temperature))
+        if self.si.humidity > most:
+            raise SettingError(
+                "humidity",
+                f"{self.humidity:g} %",
+                f"is more vapour than there is gas at {self.pressure:g} hPa and {self.temperature:g} degC",
+                f"give --set humidity={math.floor(100.0 * most)}percent or less",
+            )
+        growth = _growth(self)
+        widest = max(float(growth.radius(growth.box.vapour + self.water, kind)) for kind in growth.kinds)
+        gap = growth.box.side * growth.box.scale.length / _side(self)
+        if 2.0 * self.drop_size * widest > gap:
+            raise SettingError(
+                "drop_size",
+                f"{self.drop_size:g}",
+                f"lets a drop of all the vapour touch the next one, {1e9 * gap:.3g} nm away",
+                f"give --set drop_size={math.floor(50.0 * gap / widest) / 100.0:g} or less, or fewer drops",
+            )
+
+
+def _start(settings: Settings, *, ideal: bool) -> MoistBox:
+    """Return the moist air, by theory."""
+    si = settings.si
+    return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
+
+
+def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
+    """Return the growth of the drops, by theory; those with salt first."""
+    particles = IONS * settings.salt
+    kinds = (
+        DropKind(settings.salted, particles, particles * law.SALT_VOLUME),
+        DropKind(settings.pure, 0.0, law.WATER_VOLUME),
+    )
+    tension = settings.tension * float(law.water_surface_tension(settings.si.temperature))
+    there = tuple(kind for kind in kinds if kind.count)
+    return DropGrowth(_start(settings, ideal=ideal), there, settings.water, settings.drop_size, tension)
+
+
+def _side(settings: Settings) -> int:
+    """Return how many drops stand along a side of the box."""
+    side = 1
+    while side**3 < settings.salted + settings.pure:
+        side += 1
+    return side
+
+
+def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]:
+    """Return where the drops stand in a box of a side [length]: on a lattice, as far apart as they can be."""
+    along = _side(settings)
+    across = [(k + 0.5) * side / along for k in range(along)]
+    lattice = [(x, y, z) for x in across for y in across for z in across]
+    number = settings.salted + settings.pure
+    return [lattice[k * len(lattice) // number] for k in range(number)]
+
+
+def _is_salted(settings: Settings) -> np.ndarray:
+    """Tell which drops have salt in them: they are spread among the others."""
+    number = settings.salted + settings.pure
+    so_far = np.arange(number + 1) * settings.salted // number
+    return np.asarray(np.diff(so_far) > 0)
+
+
+def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
+    """Return the supersaturated air, with drops in it."""
+    n = settings.molecules
+    rng = RandomNumbers(settings.seed)
+    growth = _growth(settings, ideal=engine.ideal)
+    box = growth.box
+    scale, side = box.scale, box.side + 1.0
+    gas = moist_air(n, box.vapour, rng)
+    salted = _is_salted(settings)
+    centre = _places(settings, side)
+    ball = settings.drop_size * (3.0 / (4.0 * math.pi) * law.WATER_VOLUME) ** (1.0 / 3.0) / scale.length
+    particles = np.where(salted, IONS * settings.salt, 0.0)
+    core = np.where(salted, particles * law.SALT_VOLUME / law.WATER_VOLUME, 1.0)
+    tension = growth.tension * scale.length**2 / (BOLTZMANN * scale.temperature * settings.drop_size**2)
+    liquid = Drops(
+        water(scale),
+        number=settings.water * len(salted),
+        kT=1.0,
+        nuclei=HEAT,
+        position=tuple(centre),
+        nucleus=tuple(rounded(ball * float(each) ** (1.0 / 3.0)) for each in core),
+        nucleus_mass=HEAVY,
+        molecule_radius=rounded(ball),
+        surface_tension=rounded(tension),
+        dissolved=tuple(float(each) for each in particles),
+    )
+    reach = ball * (core + settings.water) ** (1.0 / 3.0) + 0.6
+    parcel = engine.make(
+        _clear(engine.scatter((side,) * 3, np.ones(n), rng), np.array(centre), reach, side, rng),
+        gas.velocity,
+        length=(side,) * 3,
+        walls=(HeatBath(1.0),) * 6,
+        mass=gas.mass,
+        rotation=gas.rotation,
+        rotational_energy=gas.rotational_energy,
+        seed=settings.seed,
+        liquid=liquid,
+    )
+    return Setup(
+        parcel,
+        scale,
+        settings.si.duration / scale.time,
+        FRAMES,
+        (Air(), Water(), Nuclei(settings.drop_size, RADII)),
+        samples=4,
+        settle=SETTLE,
+        facts=_facts(settings, growth),
+    )
+
+
+def _clear(place: np.ndarray, centre: np.ndarray, reach: np.ndarray, side: float, rng: "Source") -> np.ndarray:
+    """Return places of molecules, those that a drop reaches drawn anew until they overlap nothing."""
+    taken = (np.linalg.norm(place[:, None] - centre[None], axis=2) < reach).any(axis=1)
+    for i in np.flatnonzero(taken):
+        while True:
+            at = 0.5 + (side - 1.0) * rng.random((1, 3))[0]
+            others = np.linalg.norm(np.delete(place, i, axis=0) - at, axis=1)
+            if (others > 1.0).all() and (np.linalg.norm(centre - at, axis=1) > reach).all():
+                break
+        place[i] = at
+    return place
+
+
+def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
+    """Return what is to be said of a box of these settings."""
+    box, si = growth.box, settings.si
+    found = {
+        "box": f"a cube of {1e9 * (box.side + 1.0) * box.scale.length:.1f} nm, real size",
+        "weight of a molecule": "1, each stands for one real molecule",
+        "exaggeration": f"none in the gas; drops are hit on the area of those {settings.drop_size:g} times as wide, "
+        "and the nuclei keep their temperature",
+        "vapour at the start": f"{box.vapour} molecules; {box.full:.0f} saturate the air",
+        "surface tension": f"{1e3 * growth.tension:.1f} mN/m",
+    }
+    facts = {"tension": growth.tension, "volume": law.WATER_VOLUME, "kT": BOLTZMANN * si.temperature}
+    if settings.tension and si.humidity > 1.0:
+        critical = law.kelvin_radius(**facts) / math.log(si.humidity)
+        found["a drop without salt grows at this humidity"] = f"from a radius of {1e9 * critical:.2f} nm on"
+    if settings.tension and settings.salted:
+        kind = growth.kinds[0]
+        top = law.critical_drop(**facts, particles=kind.particles, core=kind.core)
+        found["a drop with this salt needs"] = (
+            f"{100.0 * top.humidity:.0f} % to get past a radius of {1e9 * top.radius:.2f} nm"
+        )
+    return found
+
+
+def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
+    """Return how the drops grow and what vapour they leave, and the humidity over drops of any radius."""
+    growth = _growth(settings, ideal=used(dataset).ideal)
+    number, humidity = _path(dataset, growth)
+    found = {"saturation_ratio_theory": humidity}
+    facts = {"tension": growth.tension, "volume": law.WATER_VOLUME, "kT": BOLTZMANN * settings.si.temperature}
+    sphere = 4.0 / 3.0 * math.pi * dataset.radius.values**3
+    for kind, n in zip(growth.kinds, number, strict=True):
+        name = "salted" if kind.particles else "pure"
+        found[f"{name}_drop_radius_theory"] = growth.radius(n, kind)
+        core = kind.core if kind.particles else 0.0
+        held = (sphere - core) / law.WATER_VOLUME
+        over = law.humidity_over_drop(np.maximum(held, 1.0), **facts, particles=kind.particles, core=core)
+        found[f"{name}_drop_humidity"] = np.where((held >= 1.0) & (over < HIGHEST), over, math.nan)
+    return found
+
+
+def _path(dataset: "xr.Dataset", growth: DropGrowth) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of molecules in drops of each kind and the humidity, by theory, at the ends of frames."""
+    number, humidity = growth.path(np.append(0.0, dataset.elapsed_time.values * 1e-9))
+    return number[:, 1:], humidity[1:]
+
+
+def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
+    """Return the humidity that drops live in beside the one that they need, and how large they become."""
+    late = slice(SETTLE, None)
+    if dataset.sizes["elapsed_time"] - SETTLE < 2 * BLOCKS:
+        return ()
+    growth = _growth(settings, ideal=used(dataset).ideal)
+    of = _is_salted(settings) == bool(growth.kinds[0].particles)
+    found = []
+    if (dataset.drop_molecule_count.values[late][:, of] > 0).all():
+        found.append(_balance(dataset.isel(elapsed_time=late), growth, of))
+    if settings.salted:
+        found.append(_size(dataset, growth, late))
+    return tuple(found)
+
+
+def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline:
+    """Return the humidity beside the one by Koehler's law at which drops as large as these gain what they did."""
+    kind, held = growth.kinds[0], late.drop_molecule_count.values[:, of].astype(float)
+    hit = growth.area(held, kind).sum(axis=1)
+    needed = (growth.area(held - 1.0, kind) * growth.over(held, kind)).sum(axis=1) / hit.mean()
+    time = late.elapsed_time.values * 1e-9
+    gained = (held[-1].sum() - held[0].sum()) / ((time[-1] - time[0]) * growth.flux * hit.mean())
+    felt = late.saturation_ratio.values * hit / hit.mean()
+    # each molecule that came or left did so at random
+    events = growth.flux * hit.mean() * (time[-1] - time[0]) * (felt.mean() + needed.mean())
+    error = math.sqrt(events) / (growth.flux * hit.mean() * (time[-1] - time[0]))
+    return Headline(
+        "humidity_over_drops",
+        float(felt.mean()),
+        error,
+        float(needed.mean() + gained),
+        0.0,
+        CHANCE_ALONE,
+        "1",
+        "percent",
+        "humidity over the drops with salt" if kind.particles else "humidity over the drops of pure water",
+    )
+
+
+def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
+    """Return the radius of the drops with salt beside that of theory, which knows of no chance."""
+    time = np.append(0.0, dataset.elapsed_time.values * 1e-9)
+    number, humidity = growth.path(time)
+    together, apart, back = growth.scatter(time, number, humidity)
+    kind, n = growth.kinds[0], number[0]
+    radius = growth.radius(n, kind)
+    steep = law.WATER_VOLUME / (4.0 * math.pi * radius**2)
+    bent = np.abs(growth.over(n + 1.0, kind) - 2.0 * growth.over(n, kind) + growth.over(n - 1.0, kind))
+    # unlike drops have another mean radius than those alike, and by the curvature of Koehler's law need other vapour
+    spread = together + apart
+    off = spread * (steep**2 / radius + 0.5 * steep * bent * growth.flux * growth.area(n, kind) * back)
+    span, wait = time[-1] - time[1:][late][0], float(back[1:][late].mean())
+    error = float((steep * np.sqrt(together))[1:][late].mean()) * math.sqrt(min(2.0 * wait / span, 1.0))
+    return Headline(
+        "salted_drop_radius_at_the_end",
+        float(dataset.salted_drop_radius[late].mean()),
+        error,
+        float(radius[1:][late].mean()),
+        float(off[1:][late].mean()),
+        "chance makes drops unlike, and theory is that of drops alike",
+        "m",
+        "nm",
+        "radius of the drops with salt",
+    )
+
+
+def panels(settings: Settings) -> tuple[Panel, ...]:
+    """Return the radii and the humidity against time, and the humidity over drops of any radius."""
+    there = [name for name, count in (("salted", settings.salted), ("pure", settings.pure)) if count]
+    called = {"salted": "with salt", "pure": "pure water"}
+    grow = [Line("elapsed_time", f"{name}_drop_radius", called[name]) for name in there]
+    grow += [Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there]
+    law_of = {"salted": "with salt: Koehler", "pure": "pure water: Kelvin"}
+    over = [Line("radius", f"{name}_drop_humidity", law_of[name], "theory") for name in there]
+    over += [Line(f"{name}_drop_radius", "saturation_ratio", called[name]) for name in there]
+    return (
+        Panel(
+            "line",
+            "Drops with salt grow, others vanish" if len(there) > 1 else "Drops grow or vanish",
+            tuple(grow),
+            x_label="time",
+            y_label="radius",
+            y_unit="nm",
+            headlines=("salted_drop_radius_at_the_end",) if settings.salted else (),
+        ),
+        Panel(
+            "line",
+            "The humidity is the same for all",
+            (
+                Line("elapsed_time", "saturation_ratio", "air"),
+                Line("elapsed_time", "saturation_ratio_theory", "theory", "theory"),
+            ),
+            x_label="time",
+            y_label="relative humidity",
+            y_unit="percent",
+            headlines=("humidity_over_drops",),
+        ),
+        Panel(
+            "line",
+            "A drop grows where the air is above its curve",
+            tuple(over),
+            x_label="radius",
+            y_label="relative humidity",
+            x_unit="nm",
+            y_unit="percent",
+        ),
+    )
