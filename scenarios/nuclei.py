@@ -37,6 +37,7 @@ from atmosbox.scene import (
     Series,
     Setup,
     Water,
+    block_average,
     setting,
 )
 from atmosbox.scene.engines import EXACT, used
@@ -273,6 +274,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         found.append(_balance(dataset.isel(elapsed_time=late), growth, of))
     if settings.salted:
         found.append(_size(dataset, growth, late))
+    if not found:
+        found.append(_left(dataset, growth, late))
     return tuple(found)
 
 
@@ -297,6 +300,22 @@ def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline
         "1",
         "percent",
         "humidity over the drops with salt" if kind.particles else "humidity over the drops of pure water",
+    )
+
+
+def _left(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
+    """Return the humidity that is left when all drops have vanished."""
+    found = block_average(dataset.saturation_ratio.values[late], BLOCKS)
+    return Headline(
+        "humidity_at_the_end",
+        float(found.mean),
+        float(found.standard_error),
+        float(_path(dataset, growth)[1][late].mean()),
+        0.0,
+        CHANCE_ALONE,
+        "1",
+        "percent",
+        "humidity at the end",
     )
 
 
@@ -333,7 +352,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     called = {"salted": "with salt", "pure": "pure water"}
     grow = [Line("elapsed_time", f"{name}_drop_radius", called[name]) for name in there]
     grow += [Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there]
-    law_of = {"salted": "with salt: Koehler", "pure": "pure water: Kelvin"}
+    law_of = {"salted": "with salt: Köhler", "pure": "pure water: Kelvin"}
     over = [Line("radius", f"{name}_drop_humidity", law_of[name], "theory") for name in there]
     over += [Line(f"{name}_drop_radius", "saturation_ratio", called[name]) for name in there]
     return (
@@ -360,7 +379,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         ),
         Panel(
             "line",
-            "A drop grows where the air is above its curve",
+            "Above its curve a drop grows",
             tuple(over),
             x_label="radius",
             y_label="relative humidity",

@@ -31,7 +31,6 @@ def over(number: float, pairs: int) -> float:
 @job("koehler")
 def koehler(found: Findings) -> None:
     """Watch one drop in a closed box where it is stable, of six sizes."""
-    rows = []
     for pairs, number in NUMBERS:
         expected = over(number, pairs)
         vapour = number if pairs == 0 else min(number, 300)
@@ -49,17 +48,8 @@ def koehler(found: Findings) -> None:
         name = "salted" if pairs else "pure"
         radius = 1e9 * float(late[f"{name}_drop_radius"].mean())
         what = f"{2 * pairs} ions" if pairs else "pure water"
-        law = float(stated.theory or 0.0)
-        found.agree(f"humidity over {number} molecules, {what}", stated.value, stated.standard_error, law)
-        rows.append(
-            [
-                what,
-                f"{radius:.2f} nm",
-                f"{100.0 * stated.value:.1f} ± {100.0 * stated.standard_error:.1f} %",
-                f"{100.0 * law:.1f} %",
-            ]
-        )
-    found.table(["drop", "radius", "humidity over it, measured", "Kelvin, Koehler"], rows)
+        where = f"humidity over a drop of {radius:.2f} nm, {what}"
+        found.agree(where, stated.value, stated.standard_error, float(stated.theory or 0.0))
     found.number("kelvin", f"{1e9 * theory.kelvin_radius(**WATER) / math.log(2.5):.2f} nm")
 
 

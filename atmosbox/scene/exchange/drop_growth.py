@@ -119,11 +119,10 @@ class DropGrowth:
 
     def rates(self, number: Array, humidity: ArrayLike) -> Array:
         """Return how many molecules a drop of each kind gains per time [1/s], in air of a humidity."""
-        gained = [
-            self.area(n, kind) * np.asarray(humidity, np.float64)
-            - self.area(np.maximum(n - 1.0, 0.0), kind) * self.over(n, kind)
-            for n, kind in zip(number, self.kinds, strict=True)
-        ]
+        air, gained = np.asarray(humidity, np.float64), []
+        for n, kind in zip(number, self.kinds, strict=True):
+            lost = self.area(np.maximum(n - 1.0, 0.0), kind) * self.over(n, kind)
+            gained.append(self.area(n, kind) * air - lost)
         return self.flux * np.array(gained)
 
     def path(self, time: Array) -> tuple[Array, Array]:
