@@ -361,6 +361,45 @@ def run(
 
 @overload
 def run(
+    scene: Literal["nuclei"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool = False,
+    molecules: int | str = 3000,
+    temperature: float | str = 20.0,
+    pressure: float | str = 100.0,
+    humidity: float | str = 250.0,
+    salted: int | str = 1,
+    pure: int | str = 3,
+    salt: int | str = 25,
+    water: int | str = 60,
+    tension: float | str = 1.0,
+    drop_size: float | str = 4.0,
+    duration: float | str = 150.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
+
+    molecules: number of molecules of air and vapour; 50 to 1000000
+    temperature [degC]: temperature of the walls and of the drops; -30 degC to 95 degC
+    pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 5000 hPa
+    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
+    salted: number of drops with a grain of salt in them; 0 to 20
+    pure: number of drops of pure water; 0 to 20
+    salt: pairs of ions in each grain of salt; 1 to 1000
+    water: molecules of water in each drop at the start; 0 to 5000
+    tension: surface tension, in that of water; 0 to 2
+    drop_size: how many times wider the drops are than real ones; 1 to 10
+    duration [ns]: how long to watch; 0.1 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
     scene: Literal["temperature"],
     *,
     out: str | os.PathLike[str] | None = None,
