@@ -119,7 +119,7 @@ def test_the_vapour_over_a_drop_with_salt_follows_koehler(number, vapour):
 def test_the_measured_maximum_is_that_of_koehler():
     # a cubic in ln n through the humidity over drops of eight sizes, on both sides of the maximum
     salt, noise = 20.0, np.random.default_rng(8)
-    rows = np.array([over_drop(number, 30, salt, 60_000) for number in (16, 22, 32, 46, 66, 94, 134, 190)])
+    rows = np.array([over_drop(number, 30, salt, 70_000) for number in (16, 22, 32, 46, 66, 94, 134, 190)])
     x, y, error = np.log(rows[:, 2]), np.log(rows[:, 0]), rows[:, 1] / rows[:, 0]
 
     def top(y):
