@@ -119,7 +119,7 @@ def test_the_vapour_over_a_drop_with_salt_follows_koehler(number, vapour):
 def test_the_measured_maximum_is_that_of_koehler():
     # a cubic in ln n through the humidity over drops of eight sizes, on both sides of the maximum
     salt, noise = 20.0, np.random.default_rng(8)
-    rows = np.array([over_drop(number, 30, salt, 70_000) for number in (16, 22, 32, 46, 66, 94, 134, 190)])
+    rows = np.array([over_drop(number, 30, salt, 30_000) for number in (16, 22, 32, 46, 66, 94, 134, 190)])
     x, y, error = np.log(rows[:, 2]), np.log(rows[:, 0]), rows[:, 1] / rows[:, 0]
 
     def top(y):
@@ -133,8 +133,8 @@ def test_the_measured_maximum_is_that_of_koehler():
     ball = 4.0 / 3.0 * math.pi * BALL**3
     drop = law.critical_drop(TENSION, ball, 1.0, particles=salt, core=ball)
     expected = np.log([drop.number, drop.humidity])
-    assert spread[0] < 0.15
-    assert spread[1] < 0.003
+    assert spread[0] < 0.25
+    assert spread[1] < 0.006
     assert (np.abs(found - expected) <= 4.0 * spread).all(), (found, expected, spread)
 
 
