@@ -33,6 +33,9 @@ def run(
     knudsen: float | str = 0.3,
     floor: Literal["heat-bath", "isolated"] = "heat-bath",
     start: Literal["uniform", "equilibrium", "bottom"] = "uniform",
+    rotation: bool = False,
+    stirring: float | str = 0.0,
+    exchange: Literal["parcels", "molecules"] = "parcels",
     plane: bool = False,
     duration: float | str = 400.0,
     seed: int | str = 1,
@@ -47,6 +50,9 @@ def run(
     knudsen: mean free path at the floor in scale heights; 0.02 to 10
     floor: what the floor is: warm, or smooth so that no heat passes; heat-bath or isolated
     start: where the molecules start: spread evenly, in the profile of equilibrium, or near the floor; uniform or equilibrium or bottom
+    rotation: whether molecules rotate, as those of air do; on or off
+    stirring: how many times as much heat stirring carries as molecules conduct; 0 for air at rest; 0 to 1000
+    exchange: what changes places when stirred: parcels that do work as they expand, or molecules one by one, which do none; parcels or molecules
     plane: whether the air is a plane of discs; on or off
     duration: how long to watch, in times that sound takes to climb a scale height; 1 to 100000
     seed: seed of the random numbers; 0 to 9223372036854775807
