@@ -31,11 +31,13 @@ FEW = {
     "atmosphere": {"molecules": 400, "duration": 60},
     "lifting-dry": {"molecules": 400},
     "condensation": {"molecules": 500},
-    "evaporation": {},
+    "evaporation": {"molecules": 2000, "pool": 400},
     "lifting-moist": {"molecules": 2500},
     "lifting-sounding": {"molecules": 2500},
     "mountains": {"molecules": 2500},
     "elastic-collisions": {},
+    "attraction": {"molecules": 300},
+    "diffusion": {"molecules": 3000},
 }
 """So few molecules that a page is small and quick to make."""
 
