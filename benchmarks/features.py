@@ -96,8 +96,7 @@ def engine(root: Path) -> Any:
         # all of it now: later, the names of its files would lead to another tree
         for name in module.__all__:
             getattr(module, name)
-        module.loop = importlib.import_module("atmosbox.engine.exact.passing")
-        module.parts = module.loop, module.loop, importlib.import_module("atmosbox.engine.exact.laying_out")
+        module.loop = importlib.import_module("atmosbox.engine.exact.exact")
         module.types = importlib.import_module("atmosbox.engine.core.state")
     finally:
         sys.path.pop(0)
@@ -177,9 +176,9 @@ class Bench:
 
     def __init__(self, box: Any, span: float) -> None:
         self._modes = box._modes
-        self._work = box._gas(), box._more(), box._book(), box._layout
-        self._until = box.time + span
-        self._arrays = [part for part in leaves(self._work) if isinstance(part, np.ndarray)]
+        self._gas = box._gas()
+        self._until = box._now + span
+        self._arrays = [part for part in leaves(self._gas) if isinstance(part, np.ndarray)]
         self._before = [np.array(each) for each in self._arrays]
 
     def kernel(self, module: Any) -> Callable[[], float]:
@@ -187,17 +186,18 @@ class Bench:
         # numba finds machine code on disk only if the classes of its arguments are those that a name leads to
         sys.modules.update(module.modules)
         state = module.types
-        gas = of_another(self._work[0], state)
-        more, book, layout = (of_another(part, types) for part, types in zip(self._work[1:], module.parts, strict=True))
-        pass_time = module.loop.passing(state.Modes(*self._modes))
+        gas = of_another(self._gas, state)
+        _, advance, _, _, refill = module.loop.specialise(state.Modes(*self._modes))
+        over = module.loop.Status.EPOCH_OVER
 
         def work() -> float:
             for array, before in zip(self._arrays, self._before, strict=True):
                 np.copyto(array, before)
             start = time.process_time()
-            status, _ = pass_time(gas, more, book, layout, self._until, 1 << 60)
+            while (status := advance(gas, self._until, 1 << 60)[0]) == over:
+                refill(gas, gas.calendar.time[1])
             lasted = time.process_time() - start
-            if status != module.loop.Passed.DONE:
+            if status != module.loop.Status.DONE:
                 raise RuntimeError("a row of the cells is full: choose another seed")
             return lasted
 

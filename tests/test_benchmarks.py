@@ -16,7 +16,7 @@ from atmosbox.engine.core.state import Modes
 
 ROOT = Path(__file__).resolve().parents[1]
 # what liquid does is in kernels of its own, which a gas never loads; how rows are kept is no feature of a gas
-LIQUID = {"attracts", "phases", "pool", "drops", "rows"}
+LIQUID = {"phases", "pool", "drops", "rows"}
 
 
 def run(script, *arguments):

@@ -10,12 +10,12 @@ import numpy as np
 from atmosbox.engine import ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
-from atmosbox.engine.exact.cells import new_rows
-from atmosbox.engine.exact.laying_out import Layout
-from atmosbox.engine.exact.passing import PLACE, Book
+from atmosbox.engine.exact.rows import MOST, row_stride
 from atmosbox.errors import SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
 from atmosbox.lab.kernels.gauging import Gauges, Reading
+from atmosbox.lab.kernels.laying_out import Layout
+from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
 from atmosbox.scene.instruments import Air, Discs, Layers, Speeds
 from atmosbox.simulation.preparation import Prepared, build
@@ -31,6 +31,7 @@ __all__ = ["Bench", "bench", "refuse"]
 
 _CORNERS = 4
 _SPARE = 1.5
+_PLACES = 32
 
 
 class Bench(NamedTuple):
@@ -114,7 +115,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         setup,
         _gas(parcel),
         _ascent(parcel),
-        parcel._book()._replace(due=np.array([PLACE])),
+        Book(np.array([parcel._now]), parcel._epoch_length),
         _layout(parcel),
         _gauges(setup),
         *_averages(setup),
@@ -124,9 +125,20 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
 
 def _layout(parcel: Any) -> Layout:
     """Return how the cells are laid out now, with memory for other cells."""
-    layout: Layout = parcel._layout
-    axes, edges = layout.edge.shape
-    return layout._replace(edge=_larger(layout.edge, (axes, int(_SPARE * edges) + 2), 0.0))
+    c = parcel._cells
+    shape = [c.stride, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
+    most = int(_SPARE * max(shape[1:4])) + 2
+    places = (_PLACES, MOST)
+    shortest, longest = (row_stride(number, mixed=parcel._modes.mixed) for number in places)
+    return Layout(
+        np.array(shape),
+        np.array([float(parcel._filled)]),
+        np.zeros(3),
+        np.zeros((3, most + 1)),
+        float(parcel._size_radius[0]),
+        shortest,
+        longest,
+    )
 
 
 def _gas(parcel: Any) -> Gas:
@@ -136,14 +148,14 @@ def _gas(parcel: Any) -> Gas:
     if parcel._modes.piston:
         many = int(_SPARE * many)
         most = int(_SPARE * max(cells.number_x, cells.number_y, cells.number_z)) + 2
-        cells = cells._replace(boundary=_larger(cells.boundary, (len(cells.boundary), 3, 2 * most + 2), math.inf))
+        cells = cells._replace(boundary=_larger(cells.boundary, (1, 3, 2 * most), math.inf))
         copies = copies._replace(
             centre=_larger(copies.centre, (3, most), 0.0),
             horizon=_larger(copies.horizon, (most,), math.inf),
             slack=_larger(copies.slack, (most, 3), math.inf),
             room=_larger(copies.room, (most,), 1.0),
         )
-    row = new_rows(many * parcel._layout.longest)
+    row = aligned_records(many * row_stride(MOST, mixed=parcel._modes.mixed), np.dtype("u4")).view(np.ndarray)
     events = aligned_records(number, EVENT)
     slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
     place = events.view(np.ndarray).view(np.uint8)
@@ -164,7 +176,7 @@ def _ascent(parcel: Any) -> Any:
     """Return what turns the piston, with memory for a course that is changed by hand; 0 for a box without."""
     if not parcel._ascends:
         return 0
-    ascent = parcel._ascent()
+    (ascent,) = parcel._ascent()
     lift = ascent.lift
     time, moment = np.full(_CORNERS, math.inf), np.full(_CORNERS, lift.course_moment[-1])
     time[: lift.course_time.size], moment[: lift.course_time.size] = lift.course_time, lift.course_moment

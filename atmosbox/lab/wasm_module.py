@@ -11,7 +11,7 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import code_of
 from atmosbox.errors import EngineError
 
-__all__ = ["FOLDER", "SCENES", "SOURCES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
+__all__ = ["FOLDER", "SCENES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
 
 FOLDER = Path(__file__).parent / "modules"
 SCENES: dict[str, dict[str, Any]] = {
@@ -21,8 +21,6 @@ SCENES: dict[str, dict[str, Any]] = {
     "lifting-dry": {},
 }
 """The shipped scenes that a page can run, with the settings that they need for it."""
-SOURCES = "engine/core", "engine/exact", "lab/kernels"
-"""The rooms that hold all code of the modules."""
 
 
 def module_name(modes: Any) -> str:
@@ -38,7 +36,7 @@ def module_name(modes: Any) -> str:
 
 
 def source_stamp() -> str:
-    """Return what a module that is made now must carry: a digest of the code of `SOURCES`.
+    """Return what a module that is made now must carry: a digest of the code of the engine and of `kernels`.
 
     Comments and docstrings do not count. The minor version of Python stands before it, because the syntax trees of two
     versions differ.
@@ -49,7 +47,7 @@ def source_stamp() -> str:
     16
     """
     package = Path(__file__).parents[1]
-    files = sorted(file for room in SOURCES for file in (package / room).glob("*.py"))
+    files = sorted([*(package / "engine").rglob("*.py"), *(package / "lab" / "kernels").glob("*.py")])
     said = "\n".join(f"{file.relative_to(package).as_posix()} {code_of(file.read_text('utf-8'))}" for file in files)
     return f"{sys.version_info.major}.{sys.version_info.minor} {hashlib.sha256(said.encode()).hexdigest()[:16]}"
 

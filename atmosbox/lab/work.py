@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from atmosbox.engine.exact.passing import Beside
 from atmosbox.lab.bench import Bench
 
 __all__ = ["arguments"]
@@ -27,7 +24,8 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
     gas, ascent, book, layout, gauges = box.gas, box.ascent, box.book, box.layout, box.gauges
     found: dict[str, tuple[Any, ...]] = {"lead": (gas, ascent, book, 0.0)} if box.modes.ascends else {}
     return found | {
-        "pass_time": (gas, Beside(np.zeros(0), ascent), book, layout, 0.0, 0),
+        "place": (gas, book, layout),
+        "pass_time": (gas, ascent, book, layout, 0.0, 0),
         "begin": (gas, ascent, book, gauges),
         "sample": (gas, book, gauges),
         "end_frame": (gas, ascent, book, gauges),

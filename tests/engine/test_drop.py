@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from atmosbox.engine import Drops, HeatBath, Mist, Periodic, Piston, RefusedError, Specular, StalledError, Substance
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.engine.exact import parcelset
 from atmosbox.engine.exact.membership import listed, places
+from atmosbox.engine.liquid import drop_parcelset
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 
@@ -197,7 +197,7 @@ def state(parcel):
 @pytest.fixture
 def by_single_events(monkeypatch):
     """Let a box hand back control after every event."""
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(drop_parcelset, "_CHUNK", 1)
 
 
 @many_events
@@ -470,7 +470,7 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name, monkeypatch)
     assert whole._walls.epoch[0] == epoch
     assert whole.condensed > 10
     for times, chunk in zip(cuts, (200_000, 50, 17, 1024), strict=True):
-        monkeypatch.setattr(parcelset, "_CHUNK", chunk)
+        monkeypatch.setattr(drop_parcelset, "_CHUNK", chunk)
         parcel = box(name, **few)
         for time in times:
             parcel.advance(time)

@@ -28,7 +28,7 @@ from atmosbox.engine import (
     random_positions,
 )
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.engine.exact import parcelset
+from atmosbox.engine.liquid import moist_parcelset
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.reservoir import AIR_MET
 from atmosbox.scene.statistics import block_average
@@ -145,7 +145,7 @@ def happened(parcel):
 @pytest.fixture
 def by_single_events(monkeypatch):
     """Let a box hand back control after every event."""
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
 
 
 @many_events
@@ -335,7 +335,7 @@ def test_chunks_of_events_change_nothing(monkeypatch):
     whole = box("mist")
     whole.advance(10.0)
     for chunk in (1, 3, 17):
-        monkeypatch.setattr(parcelset, "_CHUNK", chunk)
+        monkeypatch.setattr(moist_parcelset, "_CHUNK", chunk)
         parcel = box("mist")
         parcel.advance(10.0)
         assert state(parcel) == state(whole)

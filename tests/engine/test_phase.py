@@ -10,9 +10,9 @@ import pytest
 
 from atmosbox.engine import HeatBath, Mist, Periodic, Piston, Pool, Specular, Substance, random_positions
 from atmosbox.engine.core.jit import COMPILED
-from atmosbox.engine.exact import parcelset
 from atmosbox.engine.exact.cells import overlapped
 from atmosbox.engine.exact.membership import listed, places
+from atmosbox.engine.liquid import moist_parcelset
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 
 many_events = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -110,7 +110,7 @@ def tables_agree(parcel):
 @many_events
 @by_name
 def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypatch):
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
     parcel = box(name)
     seen = [(0, 0)]
     tables_agree(parcel)
@@ -129,7 +129,7 @@ def test_all_tables_agree_after_every_molecule_that_comes_or_goes(name, monkeypa
 @many_events
 @by_name
 def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
     parcel = box(name, air=40, vapour=10)
     seen = [0]
 
@@ -161,7 +161,7 @@ def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
 @many_events
 @pytest.mark.parametrize("name", ["mist", "pool", pytest.param("periodic", marks=pytest.mark.validate)])
 def test_who_comes_back_may_stand_anywhere(name, monkeypatch):
-    monkeypatch.setattr(parcelset, "_CHUNK", 1)
+    monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
     sides = np.array([4.0, 5.0, 6.0])
     volatile = Substance(MASS, DIAMETER, 2.0, 9.0, 2.0 * math.exp(2.0))
     wide = {} if name == "pool" else {"area": 200.0}

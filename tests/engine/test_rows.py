@@ -177,7 +177,7 @@ def gas(number, sides, *, seed=3, diameter=1.0, **options):
 def test_the_next_contact_is_that_of_all_pairs_in_cells_a_hundred_diameters_wide():
     parcel = ParcelSet(**gas(300, (400.0,) * 3))
     assert parcel._modes.rows
-    assert np.diff(parcel._cells.copies.centre[0, : parcel._cells.number_x]).max() > 100.0
+    assert np.diff(parcel._grid.edges[0]).max() > 100.0
     assert misses_none(parcel, 600, 8.0) > 20
 
 

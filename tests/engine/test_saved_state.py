@@ -123,12 +123,12 @@ def test_a_copy_does_what_the_original_does(name, how):
 def test_a_copy_compiles_nothing():
     box = BOXES["column"]()
     box.advance(1.0)
-    known = [len(each.signatures) for each in (box._pass_time, box._overlap, box._replan)]
+    known = [len(each.signatures) for each in (box._advance, box._place, box._replan)]
     twin = copy.deepcopy(box)
     twin.advance(2.0)
     twin.set_gravity(0.2)
-    assert twin._pass_time is box._pass_time
-    assert [len(each.signatures) for each in (box._pass_time, box._overlap, box._replan)] == known
+    assert twin._advance is box._advance
+    assert [len(each.signatures) for each in (box._advance, box._place, box._replan)] == known
 
 
 def test_a_copy_can_be_changed_by_hand_as_the_original():

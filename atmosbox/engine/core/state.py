@@ -81,7 +81,7 @@ class Modes(NamedTuple):
     cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid; the
     first kind that is a drop, 0 if none is; a periodic axis so short that a molecule meets several images of another;
     a piston that follows a pressure, whose turns compiled code makes; whether the rows of cells hold copies of
-    trajectories (`rows`); molecules that attract each other, whose neighbours are not found by cells.
+    trajectories (`rows`).
     """
 
     contacts: bool
@@ -97,7 +97,6 @@ class Modes(NamedTuple):
     images: bool = False
     ascends: bool = False
     rows: bool = False
-    attracts: bool = False
 
 
 class Box(NamedTuple):

@@ -1,6 +1,5 @@
 """The exact engine: from event to event. Read from top to bottom.
 
-`laying_out`   how many cells there are, and how large
 `cells`        which molecules can meet
 `calendar`     what happens next
 `encounter`    what a contact or a wall hit does
@@ -13,7 +12,6 @@
 `crossing`     from cell to cell, where rows are lists of names
 `turning`      the piston of a lift turns between events
 `exact`        the loop over events
-`passing`      what is done between two stretches of events, in one call
 `stall`        when time can go no further
 `parcelset`    the box, advanced exactly
 `reference`    the same model, slow and simple: the tests compare with it

@@ -23,28 +23,17 @@ long: first how many molecules there are, then which::
                  cell 0                 cell 1
 """
 
+import itertools
 import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.box import new_box
-from atmosbox.engine.core.elementary import cbrt, expm1
+from atmosbox.engine.core.elementary import cbrt, expm1, log, root
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import Cells, Copies, aligned_records
-from atmosbox.engine.exact.laying_out import (
-    LAST,
-    MARGIN,
-    NUMBER,
-    choose_numbers,
-    for_rows,
-    new_layout,
-    size_of,
-    wanted_widths,
-    write_boundaries,
-)
 
 __all__ = [
     "ROW",
@@ -59,6 +48,7 @@ __all__ = [
     "slot_at",
 ]
 
+_MARGIN = 1.0 + 1e-7
 _FEW = 4
 ROW = 32
 
@@ -148,25 +138,23 @@ def choose_grid(
     RefusedError
         If a periodic axis is so short that two molecules could touch each other on both sides at once.
     """
-    biggest = float(radii.max()) * MARGIN
+    biggest = float(radii.max()) * _MARGIN
     # the most cells along an axis that are wider than a molecule
     most = [length[axis] / (2.002 * biggest) if biggest > 0.0 else math.inf for axis in range(3)]
     room = length[0] * (1.0 if planar else length[1]) * filled
     typical = float(radii.min())
-    share = molecules * size_of(typical, planar) / room
+    size = math.pi * typical * typical * (1.0 if planar else 4.0 / 3.0 * typical)
+    share = molecules * size / room
     # measured (benchmarks): the pace is flat about this many molecules to a cell
     occupancy = min(max(2.2 * float(cbrt(0.1 / share)), 1.5), 8.0) if share > 0.0 else 8.0
-    box = new_box(length, periodic, moving=False, gravity=0.0, planar=planar, exchange=0.0, stall=0.0)
-    layout = new_layout(np.array([length[0], length[1], filled]), length)
-    width = layout.width
+    room_of = np.array([length[0], length[1], filled])
     chosen = None
     if rows and biggest > 0.0:
-        occupancy = for_rows(share)
-        wanted_widths(molecules / occupancy, layout.room, planar, width)
-        if choose_numbers(molecules, biggest, box, layout):
-            chosen = layout.shape[NUMBER:LAST].tolist()
-    else:
-        wanted_widths(molecules / occupancy, layout.room, planar, width)
+        occupancy = 9.0 if share < 0.05 else 8.0
+        width = _widths(room_of, molecules / occupancy, planar)
+        chosen = _choose_for_rows(length, room_of, width, most, periodic, molecules, planar=planar)
+    if chosen is None:
+        width = _widths(room_of, molecules / occupancy, planar)
     number = list(chosen or [])
     spanning = not exact_radius and not chosen
     images = False
@@ -203,32 +191,10 @@ def choose_grid(
         thinnest = 0.25 * width[2] if spanning else max(2.002 * biggest, 0.05 * width[2])
         edges[2] = _layers(float(length[2]), number[2], scale_height, thinnest)
         number[2] = len(edges[2]) - 1
-    if chosen:
-        boundary = np.full((len(radii), 3, 2 * max(number) + 2), np.inf)
-        last = [0, 0, 0]
-        for axis in range(3):
-            inverse, open_end = (box.inverse_x, box.inverse_y, box.inverse_z)[axis], open_top and axis == 2
-            for size, r in enumerate(radii):
-                last[axis] = write_boundaries(
-                    edges[axis], number[axis], float(r), inverse, open_end, not exact_radius, boundary[size, axis]
-                )
-        first = span = np.zeros((len(radii), 3, 1), np.int32)  # no molecule is in more than two cells along an axis
-    else:
-        boundary, first, span, last = _tables(edges, radii, periodic, spanning, open_top)
-    return Grid(
-        (number[0], number[1], number[2]), tuple(edges), chosen is not None, boundary, first, span,
-        (last[0], last[1], last[2]), spanning, images,
-    )  # fmt: skip
-
-
-def _tables(
-    edges: list[NDArray[np.float64]], radii: NDArray[np.float64], periodic: tuple[bool, bool, bool], spanning: bool,
-    open_top: bool,
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32], list[int]]:  # fmt: skip
-    """Return the tables of `state.Cells` for all classes of sizes, and the last slots; rows are lists of names then."""
+    inner = spanning or (chosen is not None and not exact_radius)
     tables = [
         [
-            _slots(edges[axis], float(r), periodic[axis], spanning, inner=spanning, open_top=open_top and axis == 2)
+            _slots(edges[axis], float(r), periodic[axis], spanning, inner=inner, open_top=open_top and axis == 2)
             for axis in range(3)
         ]
         for r in radii
@@ -240,9 +206,68 @@ def _tables(
     for size, row in enumerate(tables):
         for axis, (b, f, s) in enumerate(row):
             boundary[size, axis, : len(b)] = b
+            if chosen and periodic[axis]:  # the boundary after the last but one, a turn further
+                boundary[size, axis, len(b)] = b[1] + b[-1] - b[0]
+            if chosen and open_top and axis == 2:  # who gets there is above all cells
+                boundary[size, axis, len(b) - 1] = length[2]
             first[size, axis, : len(f)] = f
             span[size, axis, : len(s)] = s
-    return boundary, first, span, [len(tables[0][axis][1]) - 1 for axis in range(3)]
+    last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
+    return Grid(
+        (number[0], number[1], number[2]), tuple(edges), chosen is not None, boundary, first, span,
+        (last[0], last[1], last[2]), spanning, images,
+    )  # fmt: skip
+
+
+def _choose_for_rows(
+    length: NDArray[np.float64], room: NDArray[np.float64], width: NDArray[np.float64], most: list[float],
+    periodic: tuple[bool, bool, bool], molecules: int, *, planar: bool,
+) -> list[int] | None:  # fmt: skip
+    """Return how many cells along each axis come nearest to a width, if rows may hold copies then, else None.
+
+    Of ``room`` [length] the cells of that width are wanted; ``length`` is what the cells cover.
+    """
+    if room.min() < 1e-6 or length.max() > 1e6:
+        return None  # single precision would need other units
+    wanted = 1.0
+    near = []
+    for axis in range(3):
+        step = 2 if periodic[axis] else 1
+        least = 4 if periodic[axis] else 1
+        ideal = length[axis] / width[axis]
+        if planar and axis == 1:
+            near.append([1])
+            continue
+        wanted *= ideal
+        lower = step * math.floor(ideal / step)
+        top = min(step * math.floor(most[axis] / step), 20_000)
+        if top < least:
+            return None
+        near.append(sorted({min(max(n, least), top) for n in (lower, lower + step)}))
+    best: tuple[int, ...] = min(
+        itertools.product(*near),
+        key=lambda n: (
+            abs(float(log(math.prod(n) / max(wanted, 1.0))))
+            + 0.5 * float(np.std([float(log(n[a] * width[a] / length[a])) for a in range(3)]))
+        ),
+    )
+    crowd = molecules / math.prod(best)
+    return list(best) if crowd <= 30.0 else None
+
+
+def _widths(length: NDArray[np.float64], number: float, planar: bool) -> NDArray[np.float64]:
+    """Return the width of a cell along each axis; an axis shorter than a cell has one."""
+    width = length.astype(np.float64).copy()
+    free = [axis for axis in range(3) if not (planar and axis == 1)]
+    cells = max(1.0, number)
+    while free:
+        size = float(root(math.prod(float(length[axis]) for axis in free) / cells, len(free)))
+        short = [axis for axis in free if length[axis] < size]
+        if not short:
+            width[free] = size
+            break
+        free = [axis for axis in free if axis not in short]
+    return width
 
 
 def _layers(height: float, number: int, scale_height: float, thinnest: float) -> NDArray[np.float64]:
@@ -270,7 +295,7 @@ def _slots(
 
     With ``inner`` the table holds no walls, which are then each molecule's own business: not all of a class are alike.
     """
-    reach = radius * MARGIN
+    reach = radius * _MARGIN
     n = len(edges) - 1
     length = float(edges[-1])
     # where a cell is entered exactly as another is left, the slot between would have no width: reach further
@@ -279,7 +304,7 @@ def _slots(
         ends = np.sort(np.mod(np.concatenate([inside - reach, inside + reach]), length))
         if np.diff(ends, append=ends[0] + length).min() > 1e-12 * length:
             break
-        reach *= MARGIN
+        reach *= _MARGIN
     if periodic:
         shifted = np.concatenate([edges[:-1] + reach, edges[1:] - reach])
         first = np.sort(np.mod(shifted, length)) if spanning else np.sort(shifted)
@@ -311,9 +336,9 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
     return cell
 
 
-def new_rows(words: int) -> NDArray[np.uint32]:
-    """Return the memory of all rows, so many words, all empty."""
-    rows: NDArray[np.uint32] = aligned_records(words, np.dtype("u4")).view(np.ndarray)
+def new_rows(grid: Grid, stride: int) -> NDArray[np.uint32]:
+    """Return the memory of all rows of a grid, each so many words long, all empty."""
+    rows: NDArray[np.uint32] = aligned_records(math.prod(grid.number) * stride, np.dtype("u4")).view(np.ndarray)
     return rows
 
 

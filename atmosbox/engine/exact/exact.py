@@ -6,8 +6,8 @@ changed plan anew. A contact whose partner has meanwhile met someone else is sta
 anew when it comes due. Nothing is approximated; the order of events is that of the real numbers, to
 rounding.
 
-A scene pays only for what it requires: kernels are compiled for one set of `Modes`, and the code of everything else
-does not exist in them.
+A scene pays only for what it requires: `specialise` makes the kernels for one set of `Modes`, in which
+the code of everything else does not exist.
 """
 
 import functools
@@ -27,13 +27,11 @@ from atmosbox.engine.exact.crossing import Crossed, cross, is_wall
 from atmosbox.engine.exact.encounter import hit, meet, motion_at, size_and_radius
 from atmosbox.engine.exact.membership import Change, change, listed, places
 from atmosbox.engine.exact.prediction import CEILING, call, plan, side
-from atmosbox.engine.exact.rows import STOP
+from atmosbox.engine.exact.rows import STOP, fill
 from atmosbox.engine.exact.search import CONTACT
 from atmosbox.engine.exact.turning import Next, ahead, gauges, replan_under, turn
 
-__all__ = [
-    "CHECK_EVERY", "Status", "advance", "enter_all", "piled_up", "proceed", "specialise",
-]  # fmt: skip
+__all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
 
 
 class Status(IntEnum):
@@ -195,70 +193,79 @@ def _into_box(i, axis, u, size, gas):
     return u
 
 
-@kernel
-def enter_all(now, gas, modes):
-    """Enter all molecules into their slots at time ``now``, where they plan their events; tell if a row is full.
-
-    Rows that hold copies are empty after it.
-    """
-    cells = gas.cells
-    row = cells.row
-    row[:] = 0
-    for i in range(gas.molecules.size):
-        if modes.phases and math.isinf(gas.molecules[i].clock):
-            continue
-        at = motion_at(i, now, gas, modes)
-        size, _ = size_and_radius(i, gas, modes)
-        slots = (
-            slot_at(_into_box(i, 0, at.x, size, gas), size, 0, cells.last_slot_x, cells, modes),
-            slot_at(_into_box(i, 1, at.y, size, gas), size, 1, cells.last_slot_y, cells, modes),
-            slot_at(_into_box(i, 2, at.z, size, gas), size, 2, cells.last_slot_z, cells, modes),
-        )
-        cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = slots
-        call(i, now, gas)
-        if modes.contacts and not modes.rows:
-            if change(Change.TEST, i, size, slots, cells, modes):
-                return True
-            change(Change.ADD, i, size, slots, cells, modes)
-    return False
-
-
-@kernel
-def advance(gas, more, until, most, modes):
-    """Resolve events of dry air up to time ``until``, at most ``most``, and turn the piston on the way if it is due.
-
-    Returns a `Status` and how many. The status is a plain number: to make an enum of it is Python's work, in which a
-    signal that has arrived meanwhile would raise its exception at a place where none can be.
-    """
-    done = 0
-    while True:
-        stop, then = until, Next.END
-        if modes.ascends:
-            stop, then = ahead(until, gas, more.ascent)
-        status, some = proceed(gas, stop, most - done, modes)
-        done += some
-        if status != Status.DONE or then == Next.END:
-            return status.value, done
-        if then == Next.CRUSHED:
-            return Status.CRUSHED.value, done
-        if modes.ascends:
-            at = gauges(stop, gas.molecules.size, more.ascent.freedom, 0.0, gas, more.ascent)
-            if not turn(stop, at, gas, more.ascent, modes):
-                return Status.TURNED.value, done
-
-
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return kernels of one set of modes that Python calls beside `passing`: ``replan_ceiling`` and ``overlap``.
+    """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
 
     They are closures over plain flags, compiled once per set and kept on disk.
     """
+
+    @kernel(entry=True)
+    def place(gas, now):
+        """Enter all molecules into their cells at time ``now``, where they plan their events, unless a row is full."""
+        gas = by_reference(gas)
+        cells = gas.cells
+        row = cells.row
+        row[:] = 0
+        for i in range(gas.molecules.size):
+            if modes.phases and math.isinf(gas.molecules[i].clock):
+                continue
+            at = motion_at(i, now, gas, modes)
+            size, _ = size_and_radius(i, gas, modes)
+            slots = (
+                slot_at(_into_box(i, 0, at.x, size, gas), size, 0, cells.last_slot_x, cells, modes),
+                slot_at(_into_box(i, 1, at.y, size, gas), size, 1, cells.last_slot_y, cells, modes),
+                slot_at(_into_box(i, 2, at.z, size, gas), size, 2, cells.last_slot_z, cells, modes),
+            )
+            cells.slot[i, 0], cells.slot[i, 1], cells.slot[i, 2] = slots
+            call(i, now, gas)
+            if modes.contacts and not modes.rows:
+                if change(Change.TEST, i, size, slots, cells, modes):
+                    return Status.ROW_FULL.value
+                change(Change.ADD, i, size, slots, cells, modes)
+        if modes.rows and fill(now, gas, modes):
+            return Status.ROW_FULL.value
+        return Status.DONE.value
+
+    @kernel(entry=True)
+    def refill(gas, now):
+        """Write the copies in all rows anew at time ``now``; tell whether a row is too short."""
+        gas = by_reference(gas)
+        return fill(now, gas, modes)
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
         """Plan anew, at time ``now``, the moves of all that may meet a ceiling that comes down to ``lowest``."""
         gas = by_reference(gas)
         replan_under(lowest, now, gas, modes)
+
+    @kernel(entry=True)
+    def advance(gas, until, most):
+        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many.
+
+        The status leaves compiled code as a plain number: to make an enum of it is Python's work, in which a signal
+        that has arrived meanwhile would raise its exception at a place where none can be.
+        """
+        gas = by_reference(gas)
+        status, done = proceed(gas, until, most, modes)
+        return status.value, done
+
+    @kernel(entry=True)
+    def ascend(gas, ascent, until, most):
+        """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        gas, ascent = by_reference(gas), by_reference(ascent)
+        done = 0
+        while True:
+            stop, then = ahead(until, gas, ascent)
+            status, some = proceed(gas, stop, most - done, modes)
+            done += some
+            if status != Status.DONE or then == Next.END:
+                return status.value, done
+            if then == Next.CRUSHED:
+                return Status.CRUSHED.value, done
+            at = gauges(stop, gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
+            if not turn(stop, at, gas, ascent, modes):
+                return Status.TURNED.value, done
 
     @kernel(entry=True)
     def overlap(gas):
@@ -288,4 +295,4 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                         second = max(i, j)
         return deepest, first, second
 
-    return replan_ceiling, overlap
+    return place, ascend if modes.ascends else advance, replan_ceiling, overlap, refill

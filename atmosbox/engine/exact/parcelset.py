@@ -6,7 +6,7 @@ epoch of time, and turns the kernels' status codes into sentences.
 
 import math
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,22 +21,15 @@ from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas,
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, Grid, choose_grid, new_cells, new_rows
-from atmosbox.engine.exact.exact import specialise
-from atmosbox.engine.exact.laying_out import LAST, STRIDE, TALLER, Layout, fits
-from atmosbox.engine.exact.passing import NOW, PLACE, Beside, Book, Passed, passing
+from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.rows import MOST, copies_of, row_stride
-from atmosbox.engine.exact.stall import crushing_height, why_crowded, why_crushed, why_stalled
+from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
 __all__ = ["ParcelSet"]
 
 _CHUNK = 200_000
 _OVERLAP = 1e-9
-_PLACES, _LONGER = 32, 16
-"""How many places a row has at first, and how many it gets more when it was full."""
-_NO_CLOCK = np.zeros(0)
-_SHAPE = "stride", "number_x", "number_y", "number_z", "last_slot_x", "last_slot_y", "last_slot_z"
-"""What a layout says of cells."""
 
 
 class ParcelSet(Parcel):
@@ -57,10 +50,6 @@ class ParcelSet(Parcel):
     engine: ClassVar[str] = "exact"
 
     _frugal = True
-    _layout: Any
-    """The `Layout` of the cells."""
-    _moments: NDArray[np.float64]
-    """The local time now, and at which the rows of cells are to be filled: see `passing.Book`."""
     _crowded: bool
     """Whether so many molecules have come together in one cell that rows cannot hold copies of trajectories."""
     _present: slice | NDArray[np.bool_] = slice(None)
@@ -82,8 +71,8 @@ class ParcelSet(Parcel):
         )
         self._epoch_length = math.ldexp(1024.0, math.frexp(self._spread)[1] - 1)
         self._cells: Cells
-        self._due = np.zeros(1, np.int64)
-        self._start_energy = 0.0  # until all molecules are placed nobody asks for it
+        self._grid: Grid
+        self._places: int
         self._lay_out()
         depth, i, j = self._overlap(self._gas())
         if depth > _OVERLAP:
@@ -133,11 +122,12 @@ class ParcelSet(Parcel):
         if until < self.time:
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         while True:
-            turn = math.inf if self._ascends else self._next_turn()
-            stop = min(until, turn)
-            self._asked = None
-            self._pass(stop, watch)
-            if stop < turn:
+            stop = min(until, self._next_turn() if not self._ascends else math.inf)
+            local = stop - float(self._walls.epoch[0])
+            if local > self._epoch_length and self._shift(local, watch):
+                continue
+            self._resolve(local, watch)
+            if self._ascends or stop < self._next_turn():
                 break
             self._turns[0] += 1
             self._drive()
@@ -151,8 +141,7 @@ class ParcelSet(Parcel):
 
     def _piston_turned(self) -> None:
         velocity = self.piston_velocity
-        filled = float(self._layout.filled[0])
-        if self._ascends or not LOWEST * filled <= self.ceiling <= HIGHEST * filled:
+        if self._ascends or not LOWEST * self._filled <= self.ceiling <= HIGHEST * self._filled:
             self._lay_out()
             return
         lowest = self.ceiling
@@ -170,71 +159,68 @@ class ParcelSet(Parcel):
         self._gravity, self._box = gravity, self._box._replace(gravity=gravity)
         self._lay_out()
 
-    def _pass(self, until: float, watch: Callable[[float], None] | None) -> None:
-        """Let time pass until ``until`` [time since the start], while nothing is asked of Python."""
-        while (status := self._proceed(until, _CHUNK)) != Passed.DONE:
-            if status != Passed.BUSY:
-                self._answer(status)
-            elif watch is not None:
-                watch(float(self._walls.epoch[0]) + self._next_time())
-
-    def _proceed(self, until: float, most: int) -> Passed:
-        """Let time pass, or so many events; tell how far it has passed."""
+    def _resolve(self, local: float, watch: Callable[[float], None] | None) -> None:
+        """Resolve all events up to a local time."""
+        self._asked = None
+        crushed = math.inf
+        if self.piston_velocity < 0.0 and not self._ascends:
+            crushed = self._now + (self.ceiling - self._lowest_ceiling) / -self.piston_velocity
+            if crushed <= self._now:
+                raise StalledError(why_crushed(self))
+        stop = min(local, crushed)
+        unwatched = 0
         with np.errstate(over="ignore"):
-            status, _ = self._pass_time(self._gas(), self._more(), self._book(), self._layout, until, most)
-        self._cells = self._cells_now()
-        return Passed(status)
-
-    @property
-    def _now(self) -> float:
-        """The local time now, which compiled code writes [time]."""
-        return float(self._moments[NOW])
-
-    @_now.setter
-    def _now(self, time: float) -> None:
-        vars(self).setdefault("_moments", np.zeros(2))[NOW] = time
-
-    def _cells_now(self) -> Cells:
-        """Return the cells with as many, and as long rows, as compiled code has chosen."""
-        shape = self._layout.shape.tolist()
-        if shape == [getattr(self._cells, name) for name in _SHAPE]:
-            return self._cells
-        return self._cells._replace(**dict(zip(_SHAPE, shape, strict=True)))
-
-    def _book(self) -> Book:
-        """Return what the kernels must know of what is due."""
-        interval = math.inf if self._driver is None else float(self._driver.interval)
-        known = self._epoch_length, float(self._lowest_ceiling), float(self._start_energy)
-        return Book(self._moments, self._due, self._turns, interval, *known)
-
-    def _answer(self, status: Passed) -> None:
-        """Do what compiled code cannot do, or raise the error that it cannot."""
-        if status == Passed.FULL:
-            self._give_memory()
-        elif status in (Passed.OUTGROWN, Passed.CRAMPED):
-            self._crowded |= status == Passed.CRAMPED
-            self._lay_out()
-        elif status == Passed.CRUSHED:
+            while True:
+                status, done = self._proceed(stop)
+                unwatched += done
+                self._now = max(self._now, min(stop, self._next_time()))
+                if status == Status.ROW_FULL:
+                    self._grow_rows()
+                elif status == Status.EPOCH_OVER:
+                    self._refill_rows(float(self._calendar.time[1]))
+                elif status == Status.OUTGROWN:
+                    self._lay_out()
+                elif status in (Status.STALLED, Status.CROWDED):
+                    self._now = min(self._next_time(), stop)
+                    raise StalledError(why_stalled(self) if status == Status.STALLED else why_crowded(self))
+                elif status == Status.CRUSHED:
+                    position, speed, since = self._walls.piston
+                    self._now = float(since + (position - self._lowest_ceiling) / -speed)
+                    raise StalledError(why_crushed(self))
+                elif status == Status.TURNED:
+                    self._now = float(self._walls.piston[2])
+                    self._piston_turned()
+                elif self.piston_velocity < 0.0 and is_jammed(self, self._fields, self._mass, self._start_energy):
+                    self._now = min(self._next_time(), stop)
+                    raise StalledError(why_crushed(self))
+                elif status == Status.DONE:
+                    break
+                if watch is not None and (status == Status.BUSY or unwatched >= _CHUNK):
+                    watch(float(self._walls.epoch[0]) + self._next_time())
+                    unwatched = 0
+        self._now = stop
+        if crushed < local:
             raise StalledError(why_crushed(self))
-        else:
-            raise StalledError(why_stalled(self) if status == Passed.STALLED else why_crowded(self))
 
-    def _more(self) -> Any:
-        """Return what there is beside the molecules: see `passing.pass_time`."""
-        return Beside(_NO_CLOCK, self._ascent() if self._ascends else 0)
+    def _proceed(self, until: float) -> tuple[Status, int]:
+        """Resolve a number of events up to a local time; tell why it stopped, and how many there were."""
+        status, done = self._advance(self._gas(), *self._ascent(), until, _CHUNK)
+        return Status(status), int(done)
 
     @property
     def _ascends(self) -> bool:
         """Whether compiled code turns the piston: it knows one driver, and molecules of one size."""
         return type(self._driver) is FollowPressure and self._same_size and not self._first_drop
 
-    def _ascent(self) -> Ascent:
-        """Return what the kernels must know that turn the piston."""
+    def _ascent(self) -> tuple[Ascent] | tuple[()]:
+        """Return what the kernels must know that turn the piston, or nothing for the others."""
+        if not self._ascends:
+            return ()
         assert isinstance(self._driver, FollowPressure)
         diameter = float(self._diameter[0])
         energy = self._start_energy, self._gravity_work
-        heights = self._layout.filled, float(self._lowest_ceiling)
-        return Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter)
+        heights = float(self._filled), float(self._lowest_ceiling)
+        return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
 
     def _next_turn(self) -> float:
         """Return when the driver is asked next [time]."""
@@ -243,57 +229,109 @@ class ParcelSet(Parcel):
     def _gas(self) -> Gas:
         """Return all that the kernels work on."""
         return Gas(
-            self._molecules, self._events, self._kinds, self._cells_now(),
+            self._molecules, self._events, self._kinds, self._cells,
             self._calendar, self._box, self._walls, self._tallies,
         )  # fmt: skip
+
+    def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
+        """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
+
+        By how much depends on events alone, never on where a run is cut.
+        """
+        if self._now < self._epoch_length:
+            self._resolve(self._epoch_length, watch)
+        ahead = self._next_time()
+        ahead = min(ahead, self._next_turn() - float(self._walls.epoch[0]))
+        if math.isinf(ahead):
+            return False
+        self._rebase(max(1.0, math.floor(ahead / self._epoch_length)) * self._epoch_length)
+        return True
 
     def _next_time(self) -> float:
         """Return the local time of the next event."""
         return float(self._calendar.time[1])
 
-    def _give_memory(self) -> None:
-        """Give the cells memory for what is wanted of them now; it is empty, unless rows are lists of names."""
-        cells, layout = self._cells, self._layout
-        stride, *numbers = layout.shape[:LAST].tolist()
-        many, most = math.prod(numbers), max(numbers)
-        if not self._modes.rows:
-            row = new_rows(2 * many * stride)
-            row.reshape(many, 2 * stride)[:, :stride] = cells.row.reshape(many, stride)
-            layout.shape[STRIDE] = 2 * stride
-            self._cells = cells._replace(row=row, stride=2 * stride)
+    def _rebase(self, step: float) -> None:
+        """Let all clocks read small numbers again, so that time keeps its digits for ever."""
+        self._fields["clock"] -= step
+        self._events["contact_time"] -= step
+        times = self._calendar.time
+        times -= step
+        self._cells.copies.epoch[:2] -= step
+        self._walls.piston[2] -= step
+        self._tallies.progress[0] -= step
+        self._walls.epoch[0] += step
+        self._now -= step
+
+    def _grow_rows(self) -> None:
+        """Make the rows of all cells longer."""
+        if self._modes.rows:
+            if not self._enlarge_rows():
+                self._crowded = True
+                self._lay_out()
+            else:
+                self._refill_rows(self._now)
             return
-        row = new_rows(many * stride)
-        copies = cells.copies._replace(value=row.view(np.float32), occupied=row.view(np.int64))
-        if not fits(cells._replace(row=row), layout):  # the tables are written when cells have been chosen
-            self._layout = layout._replace(edge=np.zeros((3, most + 1)))
-            copies = copies._replace(
-                centre=np.zeros((3, most + 1)), horizon=np.zeros(most), slack=np.zeros((most, 3)), room=np.zeros(most)
-            )
-            cells = cells._replace(boundary=np.zeros((len(layout.radii), 3, 2 * most + 2)))
-        self._cells = cells._replace(row=row, copies=copies)
+        old = self._cells
+        stride = 2 * old.stride
+        cells = old.number_x * old.number_y * old.number_z
+        row = new_rows(self._grid, stride)
+        row.reshape(cells, stride)[:, : old.stride] = old.row.reshape(cells, old.stride)
+        self._cells = old._replace(row=row, stride=stride)
+
+    def _refill_rows(self, now: float) -> None:
+        """Write the copies in all rows anew at a local time, in longer rows if there is no other way."""
+        while self._refill(self._gas(), now):
+            if not self._enlarge_rows():
+                self._crowded = True
+                self._lay_out()
+                return
+
+    def _enlarge_rows(self) -> bool:
+        """Give the rows sixteen places more, empty; return whether that is possible."""
+        self._places += 16
+        if self._places > MOST:
+            return False
+        self._new_cells(row_stride(self._places, mixed=self._modes.mixed))
+        return True
+
+    def _new_cells(self, stride: int) -> None:
+        """Make empty rows of so many words for the cells that are chosen."""
+        grid, n = self._grid, len(self._fields)
+        slot = np.zeros((0, 3), np.uint16)
+        if n:
+            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
+        row = new_rows(grid, stride)
+        radius = 0.5 * self.diameter.mean() if self.diameter.size else 0.0
+        copies = copies_of(
+            row, self._events.view(np.ndarray), grid.edges, self._periodic, float(radius), self._epoch_length,
+            planar=self._planar,
+        )  # fmt: skip
+        self._cells = new_cells(grid, slot, row, stride, copies)
 
     def _lay_out(self) -> None:
         """Choose cells for the box as it is now and plan every molecule's event anew."""
         n = len(self._fields)
         moving = self._walls.law[5] == PISTON
-        filled = self.ceiling
+        self._filled = self.ceiling
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
-        length = np.array([self._sides[0], self._sides[1], TALLER * filled if moving else filled])
+        self._cells_top = 1.75 * self._filled if moving else self._filled
         kT = self._mean_kT()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
         contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
         grid = choose_grid(
-            length,
+            np.array([self._sides[0], self._sides[1], self._cells_top]),
             self._periodic,
             self._size_radius,
             n if contacts else 1,
             exact_radius=len(self._kinds.table) == 1,
             planar=self._planar,
-            filled=filled,
+            filled=self._filled,
             open_top=bool(moving),
             scale_height=kT / weight if weight > 0.0 and kT > 0.0 else math.inf,
             rows=contacts and not self._crowded,
         )
+        self._grid = grid
         self._modes = Modes(
             contacts=contacts,
             gravity=self.gravity > 0.0,
@@ -311,42 +349,20 @@ class ParcelSet(Parcel):
         )
         self._find_kernels()
         self._events = aligned_records(n, EVENT)
-        self._calendar = new_calendar(n)
-        self._layout = self._layout_of(grid, filled, length)
-        stride = int(self._layout.shape[STRIDE])
-        slot = np.zeros((0, 3), np.uint16)
-        if n:
-            slot = np.ndarray((n, 3), np.uint16, self._events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
-        row = new_rows(math.prod(grid.number) * stride)
-        copies = copies_of(row, self._events.view(np.ndarray), self._box, self._layout, self._epoch_length)
-        self._cells = new_cells(grid, slot, row, stride, copies)
-        self._due[0] = PLACE
-        while (status := self._proceed(0.0, 0)) != Passed.BUSY:
-            self._answer(status)
-
-    def _layout_of(self, grid: Grid, filled: float, length: Array) -> Layout:
-        """Return how cells are laid out that cover so much when the ceiling is at the height ``filled`` [length]."""
-        edge = np.zeros((3, max(grid.number) + 1))
-        for axis in range(3):
-            edge[axis, : grid.number[axis] + 1] = grid.edges[axis]
-        few, many, none, longer = (row_stride(each, mixed=self._modes.mixed) for each in (_PLACES, MOST, 0, _LONGER))
-        return Layout(
-            shape=np.array([few if grid.rows else ROW, *grid.number, *grid.last_slot]),
-            filled=np.array([filled]),
-            length=length,
-            room=np.zeros(3),
-            width=np.zeros(3),
-            edge=edge,
-            radii=self._size_radius,
-            usual=float(0.5 * self.diameter.mean()) if self.diameter.size else 0.0,
-            shortest=few,
-            longest=many,
-            longer=longer - none,
-        )
+        self._places = 32
+        self._new_cells(row_stride(self._places, mixed=self._modes.mixed) if grid.rows else ROW)
+        while True:
+            self._calendar = new_calendar(n)
+            if self._place(self._gas(), self._now) != Status.ROW_FULL:
+                return
+            if not grid.rows:
+                self._new_cells(2 * self._cells.stride)
+            elif not self._enlarge_rows():
+                self._crowded = True
+                return self._lay_out()
 
     def _find_kernels(self) -> None:
-        self._replan, self._overlap = specialise(self._modes)
-        self._pass_time = passing(self._modes)
+        self._place, self._advance, self._replan, self._overlap, self._refill = specialise(self._modes)
 
     def _mean_kT(self) -> float:
         if not self.number:

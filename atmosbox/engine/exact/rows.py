@@ -32,10 +32,9 @@ from numpy.typing import NDArray
 
 from atmosbox.engine.core.jit import POSITIVE, kernel, lowest_bit
 from atmosbox.engine.core.pair import extent
-from atmosbox.engine.core.state import PLACE_OFFSET, Box, Copies, Motion
+from atmosbox.engine.core.state import PLACE_OFFSET, Copies, Motion
 from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
-from atmosbox.engine.exact.glance import DISTANCE, LANES, PATH, SLACK, SPEEDS
-from atmosbox.engine.exact.laying_out import LAST, NUMBER, Layout, write_layers
+from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, PATH, SLACK, SPEEDS, SQUARE
 
 __all__ = [
     "MOST", "START", "STOP", "TOP_SPEED", "copies_of", "enter", "fill", "first_of_block", "has_place", "leave",
@@ -63,32 +62,65 @@ def row_stride(places: int, *, mixed: bool) -> int:
     return _HEAD + (8 if mixed else 7) * places
 
 
-def copies_of(row: NDArray[np.uint32], events: NDArray[np.void], box: Box, layout: Layout, longest: float) -> Copies:
+def copies_of(
+    row: NDArray[np.uint32], events: NDArray[np.void], edges: tuple[NDArray[np.float64], ...],
+    periodic: tuple[bool, bool, bool], radius: float, longest: float, *, planar: bool,
+) -> Copies:  # fmt: skip
     """Return what the kernels know of the copies in rows.
 
     Parameters
     ----------
     row, events
         The memory of both.
-    box, layout
-        The box and its cells.
+    edges
+        Of the cells along each axis [length].
+    periodic
+        Which axes are.
+    radius
+        The usual radius of a molecule [length].
     longest
         How long an epoch may be [time].
+    planar
+        Whether all centres lie in one plane y = constant.
     """
-    layers = int(layout.shape[NUMBER + 2])
-    copies = Copies(
+    cells = max(len(edge) for edge in edges)
+    centre = np.zeros((3, cells))
+    width = [0.0, 0.0]
+    for axis, edge in enumerate(edges):
+        n = len(edge) - 1
+        centre[axis, :n] = 0.5 * (edge[1:] + edge[:-1])
+        if periodic[axis]:  # beyond the last cell stands the first again
+            centre[axis, n] = centre[axis, 0] + edge[-1]
+        if axis < 2 and not (planar and axis == 1):
+            width[axis] = _farthest(edge, wraps=periodic[axis]).max()
+    layer = np.maximum(_farthest(edges[2], wraps=periodic[2]), max(width))
+    slack = np.zeros((len(layer), 3))
+    slack[:, DISTANCE] = SLACK * layer
+    slack[:, SQUARE] = SLACK * layer * layer
+    slack[:, CLOSING] = 4.0 * SLACK * layer  # times V
+    area = float(edges[0][-1]) * (1.0 if planar else float(edges[1][-1]))
+    return Copies(
         value=row.view(np.float32),
         occupied=row.view(np.int64),
         place=events.view(np.uint8),
-        centre=np.zeros((3, int(layout.shape[NUMBER:LAST].max()) + 1)),
-        horizon=np.full(layers, math.inf),
-        slack=np.zeros((layers, 3)),
+        centre=centre,
+        horizon=np.full(len(layer), math.inf),
+        slack=slack,
         epoch=np.array([0.0, math.inf, 0.0, longest]),
-        room=np.zeros(layers),
-        radius=layout.usual,
+        room=area * np.diff(edges[2]),
+        radius=radius,
     )
-    write_layers(box, layout, copies)
-    return copies
+
+
+def _farthest(edge: NDArray[np.float64], *, wraps: bool) -> NDArray[np.float64]:
+    """Return how far a member of each cell along an axis can be from its centre: W of `glance` [length].
+
+    It may stand in a neighbour of the cell too, anywhere.
+    """
+    width = np.diff(edge)
+    around = np.concatenate([width[-1:], width, width[:1]]) if wraps else np.concatenate([[0.0], width, [0.0]])
+    farthest: NDArray[np.float64] = 0.5 * width + np.maximum(around[:-2], around[2:])
+    return farthest
 
 
 @kernel

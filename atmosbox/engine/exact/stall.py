@@ -11,7 +11,7 @@ from atmosbox.engine.core.walls import WALL_NAMES
 
 _JAMMED, _JAMMED_PLANE = 0.63, 0.82  # random close packing, of spheres and of discs
 
-__all__ = ["crushing_height", "why_crowded", "why_crushed", "why_stalled"]
+__all__ = ["crushing_height", "is_jammed", "why_crowded", "why_crushed", "why_stalled"]
 
 
 def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *, planar: bool) -> float:
@@ -27,6 +27,18 @@ def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *
         filled = packing_fraction([float(sides[0]), float(sides[1]), 1.0], diameter, planar=planar)
         lowest = max(lowest, filled / 0.6, 1.02 * float(diameter.max()))
     return lowest
+
+
+def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.float64], start_energy: float) -> bool:
+    """Tell whether the piston has heated the molecules a million times, as only one that crushes them can.
+
+    Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
+    """
+    m = molecules[: len(mass)]  # behind them there may be drops
+    kinetic = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
+    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
+    usual = start_energy + 2.0 * float(mass.sum()) * parcel.piston_velocity**2
+    return kinetic > 1e6 * (usual + 2.0 * parcel.number * max(baths, default=0.0))
 
 
 def why_crowded(parcel: Parcel) -> str:

@@ -26,15 +26,14 @@ LOWEST, HIGHEST = 0.6, 1.5
 class Ascent(NamedTuple):
     """What the kernels know of a box whose piston follows a pressure.
 
-    ``lift`` the law; ``turns : (1,)`` how often the piston has turned; ``filled : (1,)`` the height for which the
-    cells were laid out, ``lowest`` how low the ceiling may come [length]; the energy that there was at the start, and
-    what changes of gravity gave [energy]; degrees of freedom of a molecule of dry air, and the diameter of all
-    [length].
+    ``lift`` the law; ``turns : (1,)`` how often the piston has turned; ``filled`` the height for which the cells were
+    laid out, ``lowest`` how low the ceiling may come [length]; the energy that there was at the start, and what changes
+    of gravity gave [energy]; degrees of freedom of a molecule of dry air, and the diameter of all [length].
     """
 
     lift: Lift
     turns: Any
-    filled: Any
+    filled: float
     lowest: float
     start_energy: float
     gravity_work: float
@@ -128,7 +127,7 @@ def turn(t, at, gas, ascent, modes):
     piston[1] = velocity
     piston[2] = t
     ascent.turns[0] += 1
-    if ceiling > HIGHEST * ascent.filled[0] or ceiling < LOWEST * ascent.filled[0]:
+    if ceiling > HIGHEST * ascent.filled or ceiling < LOWEST * ascent.filled:
         return False
     lowest = ceiling + (velocity * ascent.lift.interval if velocity < 0.0 else 0.0)
     replan_under(lowest, t, gas, modes)

@@ -13,7 +13,7 @@ in them, each lose molecules at a rate of their own: see `curvature`.
 import functools
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
-from atmosbox.engine.exact.passing import pass_time
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.liquid.curvature import given_by_surface, leaving_rates, surface_energy
 from atmosbox.engine.liquid.drop_shape import DropRecords, about, placed, radius_of, resize, surface_left, within
@@ -34,7 +33,7 @@ from atmosbox.engine.liquid.moist import ceiling_at, renew
 from atmosbox.engine.liquid.phase import enter, take_out, withdraw
 from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, wait
 
-__all__ = ["DropRecords", "DropsInAir", "specialise"]
+__all__ = ["DropRecords", "specialise"]
 
 _LEAVES = 1
 
@@ -212,59 +211,9 @@ def _emit(t, gas, drops, reservoir, modes):
     return Status.DONE, j
 
 
-class DropsInAir(NamedTuple):
-    """What a box with drops has more than dry air: see `passing.pass_time`; ``clock`` that of the reservoir."""
-
-    clock: Any
-    drops: Any
-    reservoir: Any
-
-
-@kernel
-def _advance(gas, more, until, most, modes):
-    """Resolve events of molecules and drops up to time ``until``; return a `Status`, as a number, and how many."""
-    drops, reservoir = more.drops, more.reservoir
-    done = 0
-    checked = 0
-    while done < most:
-        # the molecules and drops go on until a drop loses one, or is met
-        due = reservoir.clock[_LEAVES]
-        status, some = proceed(gas, min(until, due), most - done, modes)
-        done += some + 1
-        if done - checked >= CHECK_EVERY:
-            _, t = next_event(gas.calendar)
-            if piled_up(min(t, due), done - checked, gas):
-                return Status.STALLED.value, done
-            checked = done
-        j = -1
-        t = due
-        if status == Status.MEETS_LIQUID:
-            i, t = next_event(gas.calendar)
-            j = np.int64(gas.events[i].partner)
-            if min(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops:
-                status, j = _merge(i, j, t, gas, drops, reservoir, modes)
-                if status != Status.DONE:
-                    return status.value, done
-                _renew(t, gas, drops, reservoir)
-            else:
-                if np.int64(gas.molecules[i].kind) >= modes.drops:
-                    i, j = j, i
-                _hit(i, j, t, gas, drops, reservoir, modes)
-        elif status == Status.BUSY:
-            continue
-        elif status != Status.DONE or due > until:
-            return status.value, done
-        else:
-            status, j = _emit(due, gas, drops, reservoir, modes)
-            if status != Status.DONE:
-                return status.value, done
-        call(j, t, gas)
-    return Status.BUSY.value, done
-
-
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return the kernels of one set of modes: ``begin``, which draws the first time, and ``pass_drops``."""
+    """Return the kernels of one set of modes: ``begin``, which draws the first time, and ``advance``."""
 
     @kernel(entry=True)
     def begin(gas, drops, reservoir, now):
@@ -275,8 +224,44 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         _renew(now, gas, drops, reservoir)
 
     @kernel(entry=True)
-    def pass_drops(gas, more, book, layout, until, most):
-        """Let time pass: see `passing.pass_time`."""
-        return pass_time(gas, more, book, layout, until, most, modes, _advance)
+    def advance(gas, drops, reservoir, until, most):
+        """Resolve events of molecules and drops up to time ``until``; return a `Status` and how many."""
+        gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
+        done = 0
+        checked = 0
+        while done < most:
+            # the molecules and drops go on until a drop loses one, or is met
+            due = reservoir.clock[_LEAVES]
+            status, some = proceed(gas, min(until, due), most - done, modes)
+            done += some + 1
+            if done - checked >= CHECK_EVERY:
+                _, t = next_event(gas.calendar)
+                if piled_up(min(t, due), done - checked, gas):
+                    return Status.STALLED.value, done
+                checked = done
+            j = -1
+            t = due
+            if status == Status.MEETS_LIQUID:
+                i, t = next_event(gas.calendar)
+                j = np.int64(gas.events[i].partner)
+                if min(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops:
+                    status, j = _merge(i, j, t, gas, drops, reservoir, modes)
+                    if status != Status.DONE:
+                        return status.value, done
+                    _renew(t, gas, drops, reservoir)
+                else:
+                    if np.int64(gas.molecules[i].kind) >= modes.drops:
+                        i, j = j, i
+                    _hit(i, j, t, gas, drops, reservoir, modes)
+            elif status == Status.BUSY:
+                continue
+            elif status != Status.DONE or due > until:
+                return status.value, done
+            else:
+                status, j = _emit(due, gas, drops, reservoir, modes)
+                if status != Status.DONE:
+                    return status.value, done
+            call(j, t, gas)
+        return Status.BUSY.value, done
 
-    return begin, pass_drops
+    return begin, advance

@@ -11,12 +11,15 @@ from atmosbox.engine.core.parcel import Array
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import KIND, MOLECULE, Kinds, aligned_records
 from atmosbox.engine.exact.cells import size_classes
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.liquid import drop
-from atmosbox.engine.liquid.drop import DropRecords, DropsInAir
+from atmosbox.engine.liquid.drop import DropRecords
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.engine.liquid.substance import Drops, Liquid
 
 __all__ = ["DropParcelSet"]
+
+_CHUNK = 200_000
 
 
 class DropParcelSet(MoistParcelSet):
@@ -126,12 +129,13 @@ class DropParcelSet(MoistParcelSet):
     def _present(self) -> NDArray[np.bool_]:  # type: ignore[override]
         return np.append(self.present, np.zeros(len(self._drops.record), np.bool_))
 
-    def _more(self) -> DropsInAir:  # type: ignore[override]
-        return DropsInAir(self._reservoir.clock, self._drops, self._reservoir)
+    def _proceed(self, until: float) -> tuple[Status, int]:
+        status, done = self._drop_advance(self._gas(), self._drops, self._reservoir, until, _CHUNK)
+        return Status(status), int(done)
 
     def _find_kernels(self) -> None:
         super()._find_kernels()
-        self._drop_begin, self._pass_time = drop.specialise(self._modes)
+        self._drop_begin, self._drop_advance = drop.specialise(self._modes)
 
     def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Return centres [length], radii [length] and numbers of molecules of the drops there are now."""

@@ -20,7 +20,6 @@ from atmosbox.engine.core.state import Modes, Motion
 from atmosbox.engine.exact.calendar import next_event
 from atmosbox.engine.exact.encounter import kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up, proceed
-from atmosbox.engine.exact.passing import pass_time
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.turning import Ascent, Next, ahead, gauges, turn
 from atmosbox.engine.liquid.insertion import Place, find_place
@@ -40,7 +39,7 @@ from atmosbox.engine.liquid.reservoir import (
     wait,
 )
 
-__all__ = ["MoistAscent", "Moisture", "ceiling_at", "renew", "specialise"]
+__all__ = ["MoistAscent", "ceiling_at", "renew", "specialise"]
 
 _MAY_MEET, _LEAVES, _RAINS = range(3)
 
@@ -255,45 +254,9 @@ def _wake(t, gas, reservoir, modes):
         renew(t, gas.tallies.random, reservoir)
 
 
-class Moisture(NamedTuple):
-    """What a box has more than dry air: see `passing.pass_time`.
-
-    ``clock`` when the liquid does something [time], the liquid itself, and a `MoistAscent` under a piston that follows
-    a pressure, else any number.
-    """
-
-    clock: Any
-    reservoir: Any
-    ascent: Any
-
-
-@kernel
-def _advance(gas, more, until, most, modes):
-    """Resolve events of molecules and of the liquid up to time ``until``, and turn the piston if it is due.
-
-    Returns a `Status`, as a number, and how many events there were.
-    """
-    done = 0
-    while True:
-        stop, then = until, Next.END
-        if modes.ascends:
-            stop, then = ahead(until, gas, more.ascent.dry)
-        status, some = _proceed(gas, more.reservoir, stop, most - done, modes)
-        done += some
-        if status != Status.DONE or then == Next.END:
-            return status.value, done
-        if then == Next.CRUSHED:
-            return Status.CRUSHED.value, done
-        if modes.ascends:
-            fits = turn(stop, _gauges(stop, gas, more.reservoir, more.ascent), gas, more.ascent.dry, modes)
-            _wake(stop, gas, more.reservoir, modes)
-            if not fits:
-                return Status.TURNED.value, done
-
-
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return the kernels of one set of modes: ``begin``, which draws the first times, and ``pass_moist``."""
+    """Return the kernels of one set of modes: ``begin``, which draws the first times, and ``advance``."""
 
     @kernel(entry=True)
     def begin(gas, reservoir, now, speed):
@@ -304,8 +267,27 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
         renew(now, gas.tallies.random, reservoir)
 
     @kernel(entry=True)
-    def pass_moist(gas, more, book, layout, until, most):
-        """Let time pass: see `passing.pass_time`."""
-        return pass_time(gas, more, book, layout, until, most, modes, _advance)
+    def advance(gas, reservoir, until, most):
+        """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
+        gas, reservoir = by_reference(gas), by_reference(reservoir)
+        status, done = _proceed(gas, reservoir, until, most, modes)
+        return status.value, done
 
-    return begin, pass_moist
+    @kernel(entry=True)
+    def ascend(gas, reservoir, ascent, until, most):
+        """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        gas, reservoir, ascent = by_reference(gas), by_reference(reservoir), by_reference(ascent)
+        done = 0
+        while True:
+            stop, then = ahead(until, gas, ascent.dry)
+            status, some = _proceed(gas, reservoir, stop, most - done, modes)
+            done += some
+            if status != Status.DONE or then == Next.END:
+                return status.value, done
+            if then == Next.CRUSHED:
+                return Status.CRUSHED.value, done
+            if not turn(stop, _gauges(stop, gas, reservoir, ascent), gas, ascent.dry, modes):
+                return Status.TURNED.value, done
+            _wake(stop, gas, reservoir, modes)
+
+    return begin, ascend if modes.ascends else advance

@@ -7,13 +7,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.parcel import Arrangement, Array
+from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.parcelset import ParcelSet
 from atmosbox.engine.liquid import moist
-from atmosbox.engine.liquid.moist import MoistAscent, Moisture
+from atmosbox.engine.liquid.moist import MoistAscent
 from atmosbox.engine.liquid.moist_account import MoistAccount
 from atmosbox.engine.liquid.substance import Liquid
 
 __all__ = ["MoistParcelSet"]
+
+_CHUNK = 200_000
 
 
 class MoistParcelSet(MoistAccount, ParcelSet):
@@ -97,14 +100,18 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         """Return the bytes that molecules, events, cells, calendar and reservoir take."""
         return super().memory() + self._reservoir_memory()
 
-    def _more(self) -> Moisture:
-        reservoir = self._reservoir
-        ascent = MoistAscent(self._ascent(), self._vapours, self._rotations) if self._ascends else 0
-        return Moisture(reservoir.clock, reservoir, ascent)
+    def _proceed(self, until: float) -> tuple[Status, int]:
+        ascent = [MoistAscent(dry, self._vapours, self._rotations) for dry in self._ascent()]
+        status, done = self._moist_advance(self._gas(), self._reservoir, *ascent, until, _CHUNK)
+        return Status(status), int(done)
 
     def _find_kernels(self) -> None:
         super()._find_kernels()
-        self._moist_begin, self._pass_time = moist.specialise(self._modes)
+        self._moist_begin, self._moist_advance = moist.specialise(self._modes)
 
     def _next_time(self) -> float:
         return min(super()._next_time(), float(self._reservoir.clock.min()))
+
+    def _rebase(self, step: float) -> None:
+        super()._rebase(step)
+        self._reservoir.clock[:] -= step

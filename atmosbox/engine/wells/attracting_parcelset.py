@@ -14,7 +14,6 @@ from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.exact.parcelset import ParcelSet
-from atmosbox.engine.exact.passing import Beside
 from atmosbox.engine.wells.attraction import RandomBath, SquareWell, Wells, new_bath, new_wells
 from atmosbox.engine.wells.vicinity import Vicinity, new_vicinity
 from atmosbox.engine.wells.well_events import WellGas, specialise
@@ -129,6 +128,7 @@ class AttractingParcelSet(ParcelSet):
     def _lay_out(self) -> None:
         """Make the lists of all molecules, and plan every event anew."""
         n = len(self._fields)
+        self._filled = self.ceiling
         reach = float(self._wells.distance.max(initial=0.0))
         for axis in range(3):
             if self._periodic[axis] and self._sides[axis] < 2.0 * _TIGHT * reach:
@@ -136,8 +136,6 @@ class AttractingParcelSet(ParcelSet):
                     f"length = {self._sides[axis]:.6g} along {'xyz'[axis]} is too short for molecules that feel each "
                     f"other over {reach:.6g} on a periodic axis: make it {2.0 * _TIGHT * reach:.6g} or more"
                 )
-        self._layout = 0
-        self._lowest_ceiling = 0.0  # there are no pistons
         self._modes = Modes(
             contacts=True,
             gravity=self.gravity > 0.0,
@@ -146,7 +144,6 @@ class AttractingParcelSet(ParcelSet):
             spanning=False,
             periodic=any(self._periodic),
             piston=False,
-            attracts=True,
         )
         self._find_kernels()
         self._events = aligned_records(n, EVENT)
@@ -161,7 +158,7 @@ class AttractingParcelSet(ParcelSet):
             stride *= 2
 
     def _find_kernels(self) -> None:
-        self._place, self._pass_time, self._replan, self._overlap_at = specialise(self._modes)
+        self._place, self._advance, self._replan, self._overlap_at = specialise(self._modes)
 
     def _overlap(self, gas: WellGas) -> tuple[float, int, int]:
         depth, i, j = self._overlap_at(gas, self._now)
@@ -173,13 +170,7 @@ class AttractingParcelSet(ParcelSet):
             self._walls, self._tallies, self._wells, self._vicinity, self._bath,
         )  # fmt: skip
 
-    def _more(self) -> Beside:
-        return Beside(self._bath.clock, 0)
-
-    def _cells_now(self) -> None:  # type: ignore[override]
-        """Return no cells: each molecule has its list."""
-
-    def _give_memory(self) -> None:
+    def _grow_rows(self) -> None:
         """Make the lists of all molecules longer."""
         old, n = self._vicinity, len(self._fields)
         entry = np.zeros((n, 2 * old.stride), np.uint32)
@@ -188,6 +179,17 @@ class AttractingParcelSet(ParcelSet):
 
     def _next_time(self) -> float:
         return min(super()._next_time(), float(self._bath.clock[0]))
+
+    def _rebase(self, step: float) -> None:
+        self._fields["clock"] -= step
+        self._events["contact_time"] -= step
+        times = self._calendar.time
+        times -= step
+        self._bath.clock[0] -= step
+        self._walls.piston[2] -= step
+        self._tallies.progress[0] -= step
+        self._walls.epoch[0] += step
+        self._now -= step
 
     def memory(self) -> int:
         """Return the bytes that molecules, events, lists and calendar take."""

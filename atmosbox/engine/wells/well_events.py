@@ -22,7 +22,6 @@ from atmosbox.engine.core.walls import wall_kT
 from atmosbox.engine.exact.calendar import next_event, schedule
 from atmosbox.engine.exact.encounter import hit, kind_of, motion_at, write
 from atmosbox.engine.exact.exact import CHECK_EVERY, Status, piled_up
-from atmosbox.engine.exact.passing import pass_time
 from atmosbox.engine.exact.prediction import call
 from atmosbox.engine.exact.search import CONTACT
 from atmosbox.engine.wells.attraction import Bath, Wells
@@ -243,16 +242,9 @@ def proceed(gas, until, most, modes):
     return status, done
 
 
-@kernel
-def _advance(gas, more, until, most, modes):
-    """Resolve events up to time ``until``; return a `Status`, as a number, and how many there were."""
-    status, done = proceed(gas, until, most, modes)
-    return status.value, done
-
-
 @functools.cache
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels of one set of modes: ``place``, ``pass_attracting``, ``replan`` and ``overlap``."""
+    """Return the kernels of one set of modes: ``place``, ``advance``, ``replan`` and ``overlap``."""
 
     @kernel(entry=True)
     def place(gas, now):
@@ -285,9 +277,10 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return Status.DONE.value
 
     @kernel(entry=True)
-    def pass_attracting(gas, more, book, layout, until, most):
-        """Let time pass: see `passing.pass_time`."""
-        return pass_time(gas, more, book, layout, until, most, modes, _advance)
+    def advance(gas, until, most):
+        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
+        status, done = proceed(gas, until, most, modes)
+        return status.value, done
 
     @kernel(entry=True)
     def replan(gas, now):
@@ -314,4 +307,4 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
                     deepest, first, second = depth, min(i, j), max(i, j)
         return deepest, first, second
 
-    return place, pass_attracting, replan, overlap
+    return place, advance, replan, overlap

@@ -1,5 +1,5 @@
-"""What a page does beside letting time pass, which is `atmosbox.engine.exact.passing`: it measures, averages and looks.
+"""What a page calls of the engine, and what Python does between two such calls: all of it compiled.
 
-Nothing here is called from Python; ``tools/wasm.py`` makes WebAssembly of it. Read `gauging` first, then `averaging`,
-`height_profile` and `sight`; `kernel_table` names what a page calls.
+Nothing here is called from Python; ``tools/wasm.py`` makes WebAssembly of it. Read `passing` first, then `gauging`,
+`averaging`, `height_profile` and `sight`; `kernel_table` names what a page calls.
 """

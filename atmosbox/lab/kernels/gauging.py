@@ -14,7 +14,6 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.encounter import kind_of, motion_at
-from atmosbox.engine.exact.passing import NOW
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
 
 __all__ = ["Gauges", "Reading", "gauging"]
@@ -126,7 +125,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def sample(gas, book, gauges):
         """Read what a frame takes its mean of."""
-        now = book.time[NOW]
+        now = book.now[0]
         twice = 0.0
         bins = gauges.counts.size
         for i in range(gas.molecules.size):
@@ -180,7 +179,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         light = heavy = mass_sum = 0.0
         lighter = heavier = 0
         for i in range(gas.molecules.size):
-            at = motion_at(i, book.time[NOW], gas, modes)
+            at = motion_at(i, book.now[0], gas, modes)
             mass, _, _ = kind_of(i, gas, modes)
             mass_sum += mass
             energy = 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
@@ -213,7 +212,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         def end_lift(gas, ascent, book, gauges):
             """Read the state of a parcel that rises, by the ledger of its energy: see `instruments.Lift`."""
             lift = ascent.lift
-            at = ledger_gauges(book.time[NOW], gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
+            at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
             kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
             gauges.reading[Reading.PARCEL_KT] = kT
             gauges.reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)
@@ -236,7 +235,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def begin(gas, ascent, book, gauges):
         """Begin to measure now."""
-        now = book.time[NOW]
+        now = book.now[0]
         kinetic, rotational, potential, _, _, _ = energies(gas, now)
         for wall in range(6):
             gauges.before[wall] = gas.tallies.impulse[wall]
@@ -253,7 +252,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def end_frame(gas, ascent, book, gauges):
         """Read what stands at the end of a frame, and finish its means."""
-        reading, now = gauges.reading, book.time[NOW]
+        reading, now = gauges.reading, book.now[0]
         time = gas.walls.epoch[0] + now
         lasted = time - gauges.before[_TIME]
         kinetic, rotational, potential, px, py, pz = energies(gas, now)

@@ -10,10 +10,10 @@ from atmosbox.engine.core.course import interpolate
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH
-from atmosbox.engine.exact.passing import NOW, passing
 from atmosbox.lab.kernels.averaging import average, forget
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.height_profile import end_profile
+from atmosbox.lab.kernels.passing import passing
 from atmosbox.lab.kernels.sight import sight
 
 __all__ = ["kernels"]
@@ -32,7 +32,7 @@ def warm_walls(walls, kT):
 @kernel
 def lead(gas, ascent, book, towards):
     """Let the parcel make for another moment of its plan, at its pace, and rest there: see `Course.lead`."""
-    time, lift = gas.walls.epoch[0] + book.time[NOW], ascent.lift
+    time, lift = gas.walls.epoch[0] + book.now[0], ascent.lift
     here = interpolate(time, lift.course_time, lift.course_moment)
     times, moments = lift.course_time, lift.course_moment
     times[0], moments[0] = 0.0, here
@@ -60,10 +60,12 @@ def note_frame(gas, gauges, speeds, layers):
 
 def kernels(modes: Modes) -> dict[str, Callable[..., Any]]:
     """Return the kernels for one set of modes by name."""
+    pass_time, place = passing(modes)
     begin, sample, end_frame = gauging(modes)
     found = {"lead": lead} if modes.ascends else {}
     return found | {
-        "pass_time": passing(modes),
+        "place": place,
+        "pass_time": pass_time,
         "begin": begin,
         "sample": sample,
         "end_frame": end_frame,

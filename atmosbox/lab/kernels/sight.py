@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
-from atmosbox.engine.exact.passing import NOW
 
 __all__ = ["Sight", "sight"]
 
@@ -45,7 +44,7 @@ def sight(modes: Modes) -> Callable[..., Any]:
     @kernel
     def look(gas, book, sight):
         """Write where all molecules are, and how fast."""
-        now, box = book.time[NOW], gas.box
+        now, box = book.now[0], gas.box
         piston = gas.walls.piston
         sight.length[0] = box.length_x
         sight.length[1] = box.length_y

@@ -12,8 +12,8 @@ const DRAG = 1500; // ms within which a slider that moves is one change
 const STEP = 0.04; // s of a class that one step shows
 const SLOWEST = 0.25, FASTEST = 16;
 const [DONE, BUSY] = [0, 1];
-const CRAMPED = "more molecules have come together than its cells have room for";
-const WHY = { 2: CRAMPED, 3: CRAMPED, 4: CRAMPED, 5: "events pile up without end", 7: "the piston would crush the molecules" };
+const WHY = { 2: "events pile up without end", 3: "more molecules have come together than its cells have room for",
+  4: "the piston would crush the molecules" };
 
 const say = (message) => postMessage(message);
 const refuse = (text) => say({ type: "note", level: "error", text });
@@ -41,6 +41,7 @@ class Box {
   begin() {
     const { machine } = this;
     machine.restore();
+    if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
     machine.call("begin");
     machine.call("begin_averages_anew");
     Object.assign(this, { now: 0, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],

@@ -1,0 +1,230 @@
+"""How time passes in a page: what `ParcelSet.advance` does between two calls of the engine, as one kernel.
+
+In Python the box answers when the engine stops on the way: an epoch of its clocks is over, the copies in the rows of
+cells are too old, a row is full. In a page nothing answers but what has been compiled, so those answers stand here, in
+the same order and with the same numbers; a test compares the bytes.
+"""
+
+import functools
+import math
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Cells, Gas, Modes
+from atmosbox.engine.exact.exact import Status, specialise
+from atmosbox.engine.exact.rows import START, STOP, TOP_SPEED
+from atmosbox.engine.exact.turning import Ascent
+from atmosbox.lab.kernels.laying_out import LAST, NUMBER, STRIDE, choose_cells, write_cells
+
+__all__ = ["Book", "Passed", "passing"]
+
+# The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
+_DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
+_ROW_FULL, _EPOCH_OVER = Status.ROW_FULL.value, Status.EPOCH_OVER.value
+_CRUSHED, _TURNED = Status.CRUSHED.value, Status.TURNED.value
+
+
+class Book(NamedTuple):
+    """What a box knows beside its gas.
+
+    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length`` after what time they begin anew [time].
+    """
+
+    now: Any
+    epoch_length: float
+
+
+class Passed(IntEnum):
+    """How far time has passed.
+
+    ``DONE`` the time asked for is reached; ``BUSY`` there is more to do; ``STALLED`` events pile up without progress;
+    ``FULL`` more molecules have come together in a cell than it has memory for; ``CRUSHED`` the piston is too low.
+    """
+
+    DONE = 0
+    BUSY = 1
+    STALLED = 2
+    FULL = 3
+    CRUSHED = 4
+
+
+@kernel
+def _as_laid_out(gas, layout):
+    """Return the gas with its cells as they are now."""
+    c, shape = gas.cells, layout.shape
+    cells = Cells(
+        c.row, shape[STRIDE], c.boundary, c.first, c.span, c.slot, shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2],
+        shape[LAST], shape[LAST + 1], shape[LAST + 2], c.copies,
+    )  # fmt: skip
+    return Gas(gas.molecules, gas.events, gas.kinds, cells, gas.calendar, gas.box, gas.walls, gas.tallies)
+
+
+@kernel
+def _rebase(step, gas, book):
+    """Let all clocks read small numbers again: see `ParcelSet._rebase`."""
+    for i in range(gas.molecules.size):
+        gas.molecules[i].clock -= step
+        gas.events[i].contact_time -= step
+    times = gas.calendar.time
+    for k in range(times.size):
+        times[k] -= step
+    gas.cells.copies.epoch[START] -= step
+    gas.cells.copies.epoch[STOP] -= step
+    gas.walls.piston[2] -= step
+    gas.tallies.progress[0] -= step
+    gas.walls.epoch[0] += step
+    book.now[0] -= step
+
+
+@kernel
+def _fits(gas, layout):
+    """Tell whether there is memory for the rows of all cells."""
+    shape = layout.shape
+    cells = shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2]
+    return shape[STRIDE] <= layout.longest and cells * shape[STRIDE] <= gas.cells.row.size
+
+
+@kernel
+def _longer_rows(gas, layout, modes):
+    """Give the rows sixteen places more, empty; tell whether there is memory for them."""
+    layout.shape[STRIDE] += 16 * (8 if modes.mixed else 7)
+    if not _fits(gas, layout):
+        return False
+    copies = gas.cells.copies
+    gas.cells.row[:] = 0
+    copies.horizon[:] = math.inf
+    copies.epoch[START] = 0.0
+    copies.epoch[STOP] = math.inf
+    copies.epoch[TOP_SPEED] = 0.0
+    return True
+
+
+@functools.cache
+def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``pass_time`` and ``place`` of one set of modes."""
+    place_all, advance, _, _, refill = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
+
+    if modes.ascends:
+
+        @kernel
+        def proceed(gas, ascent, layout, until, most):
+            """Resolve events, and turn the piston as it is due."""
+            a = ascent
+            here = Ascent(
+                a.lift, a.turns, layout.filled[0], a.lowest, a.start_energy, a.gravity_work, a.freedom, a.diameter
+            )
+            return advance(_as_laid_out(gas, layout), here, until, most)
+
+        @kernel
+        def next_turn(gas, ascent):
+            """Return the local time at which the piston turns next [time]."""
+            return (ascent.turns[0] + 1) * ascent.lift.interval - gas.walls.epoch[0]
+
+    else:
+
+        @kernel
+        def proceed(gas, ascent, layout, until, most):
+            """Resolve events."""
+            return advance(_as_laid_out(gas, layout), until, most)
+
+        @kernel
+        def next_turn(gas, ascent):
+            """Return that no piston turns."""
+            return math.inf
+
+    @kernel
+    def refilled(gas, now, layout):
+        """Write the copies in all rows anew, in longer rows if need be; tell whether there was memory for them."""
+        while refill(_as_laid_out(gas, layout), now):
+            if not _longer_rows(gas, layout, modes):
+                return False
+        return True
+
+    @kernel
+    def placed(gas, now, layout):
+        """Enter all molecules into their cells, where they plan their events; tell whether there was memory."""
+        while True:
+            gas.calendar.time[:] = math.inf
+            gas.calendar.winner[:] = 0
+            if place_all(_as_laid_out(gas, layout), now) != _ROW_FULL:
+                return True
+            if not _longer_rows(gas, layout, modes):
+                return False
+
+    if modes.piston and modes.rows and not modes.mixed and not modes.periodic and not modes.gravity:
+
+        @kernel
+        def laid_out(gas, now, layout):
+            """Choose cells for the box as it is now; tell whether that was possible."""
+            piston = gas.walls.piston
+            if not choose_cells(piston[0] + piston[1] * (now - piston[2]), gas.molecules.size, gas.box, layout):
+                return False
+            write_cells(gas, layout)
+            return _fits(gas, layout) and placed(gas, now, layout)
+
+    else:
+
+        @kernel
+        def laid_out(gas, now, layout):
+            """Tell that a box without a piston keeps its cells."""
+            return False
+
+    @kernel
+    def resolve(gas, ascent, book, layout, stop, most):
+        """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
+        done = 0
+        while True:
+            status, some = proceed(gas, ascent, layout, stop, most - done)
+            done += some
+            soon = gas.calendar.time[1]
+            book.now[0] = max(book.now[0], min(stop, soon))
+            if status == _DONE:
+                book.now[0] = stop
+                return Passed.DONE, done
+            if status == _BUSY:
+                return Passed.BUSY, done
+            if status == _EPOCH_OVER:
+                if not refilled(gas, soon, layout):
+                    return Passed.FULL, done
+            elif status == _ROW_FULL:
+                if not (_longer_rows(gas, layout, modes) and refilled(gas, book.now[0], layout)):
+                    return Passed.FULL, done
+            elif status == _STALLED:
+                return Passed.STALLED, done
+            elif status == _CRUSHED:
+                return Passed.CRUSHED, done
+            else:
+                if status == _TURNED:
+                    book.now[0] = gas.walls.piston[2]
+                if not laid_out(gas, book.now[0], layout):
+                    return Passed.FULL, done
+
+    @kernel
+    def pass_time(gas, ascent, book, layout, until, most):
+        """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
+        done = 0
+        while True:
+            local = until - gas.walls.epoch[0]
+            goal = local
+            shifts = local > book.epoch_length
+            if shifts and book.now[0] >= book.epoch_length:
+                ahead = min(gas.calendar.time[1], next_turn(gas, ascent))
+                shifts = not math.isinf(ahead)  # or nothing is left to happen at all
+                if shifts:
+                    _rebase(max(1.0, math.floor(ahead / book.epoch_length)) * book.epoch_length, gas, book)
+                    continue
+            if shifts:
+                goal = book.epoch_length
+            status, some = resolve(gas, ascent, book, layout, goal, most - done)
+            done += some
+            if status != Passed.DONE or not shifts:
+                return status.value, done
+
+    @kernel
+    def place(gas, book, layout):
+        """Place all molecules at the start; tell how that went."""
+        return Passed.DONE.value if placed(gas, book.now[0], layout) else Passed.FULL.value
+
+    return pass_time, place
