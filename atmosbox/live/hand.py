@@ -43,7 +43,7 @@ class Hand:
     >>> from atmosbox.simulation.preparation import prepare
     >>> prepared = prepare("elastic-collisions", {"molecules": 10})
     >>> Hand(prepared.module.build(prepared.settings)).names
-    ()
+    ('speed',)
     """
 
     def __init__(self, setup: Setup) -> None:

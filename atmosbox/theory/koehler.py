@@ -207,8 +207,6 @@ def critical_drop(tension: float, volume: float, kT: float, *, particles: float,
     682 nm, 100.11 %
     1.08 nm, 199.28 %
     """
-    from scipy import optimize  # loads slowly
-
     require_positive(tension=tension, volume=volume, kT=kT, particles=particles)
     reach = kelvin_radius(tension, volume, kT)
 
@@ -223,7 +221,9 @@ def critical_drop(tension: float, volume: float, kT: float, *, particles: float,
         low, high = np.log(1e-6), low
         if falls(low) >= 0.0:
             raise ValueError(f"particles = {particles} are too few for a maximum: give more of them.")
-    number = float(np.exp(optimize.brentq(falls, low, high, xtol=1e-13)))
+    while low < (middle := 0.5 * (low + high)) < high:  # halved until no number lies between
+        low, high = (middle, high) if falls(middle) < 0.0 else (low, middle)
+    number = float(np.exp(high))
     facts = {"particles": particles, "core": core}
     humidity = float(humidity_over_drop(number, tension, volume, kT, **facts))
     return CriticalDrop(number, float(drop_radius(number, volume, core)), humidity)
