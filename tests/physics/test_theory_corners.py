@@ -24,6 +24,8 @@ LEAST = {"diffusion": 3000}
 """Molecules below which a box is too narrow."""
 THINNEST = 0.01
 """Density of attracting molecules below which the air beside them, as dense as at the critical point, is a million."""
+BUSY = {("diffusion", "length"), ("diffusion", "pressure"), ("diffusion", "diameter")}
+"""Settings whose highest values mean hundreds of collisions of each molecule before anything has mixed: minutes."""
 SCENES = scenarios.names()
 ENERGIES = {"cape_theory", "cin_theory"}
 """Theory that may be below zero: energies of a parcel."""
@@ -41,6 +43,8 @@ def values(scene, parameter):
         return [max(LEAST.get(scene, 60), parameter.low)]
     if (scene, parameter.name) == ("attraction", "density"):
         return [THINNEST, parameter.default, parameter.high]
+    if (scene, parameter.name) in BUSY:
+        return sorted({parameter.low, parameter.default})
     if parameter.kind == "bool":
         return [False, True]
     if parameter.kind == "str":
