@@ -11,8 +11,8 @@ molecule that rises loses speed, but only fast ones get high, and both effects c
 from below and stirred, and therefore cools with height; left alone for long enough it would become isothermal like
 this one. The figure shows both.
 
-With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on the air around
-it, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much faster than
+With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on its
+environment, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much faster than
 molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. What is not set then suits it:
 molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in equilibrium, duration 300.
 

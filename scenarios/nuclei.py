@@ -4,7 +4,7 @@ A molecule leaves a small drop more easily than a flat surface: its surface shri
 cost. The air must hold the more vapour the smaller the drop is, or it evaporates, and a drop has to be small before it
 can be large. Salt helps: where part of the molecules are salt, fewer are water, and fewer leave. In one box of
 supersaturated air there are drops with a grain of salt in them and drops of pure water, of as many molecules. Those
-with salt grow. The others vanish, though the air around all of them is the same.
+with salt grow. The others vanish, though the humidity is the same for all.
 
 Put in: the surface energy of a drop, from the measured tension of water and the volume of its molecules; the curve
 e_s(T) of a flat surface; and that in an ideal solution each way to arrange water and salt is as likely. What emerges
