@@ -12,9 +12,10 @@ from below and stirred, and therefore cools with height; left alone for long eno
 this one. The figure shows both.
 
 With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on its
-environment, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much faster than
-molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. What is not set then suits it:
-molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in equilibrium, duration 300.
+environment, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much
+faster than molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. What is not set then
+suits it: molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in equilibrium,
+duration 300.
 
 Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
 smooth, a smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Left out: water,

@@ -185,7 +185,7 @@ def test_the_curve_of_the_lapse_rate_is_that_of_theory(stirring, rotation):
 
 @pytest.mark.validate
 def test_no_flow_is_left_behind():
-    """The mean square of the momentum is that of molecules that know nothing of each other, whatever the stirrer does."""
+    """The mean square of the momentum is that of molecules that know nothing of each other."""
     prepared = runner.prepare("atmosphere", {"stirring": 50, "molecules": 1500, "duration": 400})
     setup = runner.build(prepared)
     box = setup.parcel
