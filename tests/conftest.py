@@ -17,6 +17,7 @@ unmarked
 Timings are never tests; they live in ``benchmarks/``. Every warning is an error.
 """
 
+import gc
 import json
 import os
 import shutil
@@ -58,6 +59,12 @@ def pytest_collection_modifyitems(config, items):
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in left_out]
+
+
+def pytest_collection_finish(session):
+    """What is loaded by now stays: let nobody look through it for garbage, which happens hundreds of times."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_sessionfinish(session):

@@ -38,6 +38,7 @@ FEW = {
     "elastic-collisions": {},
     "attraction": {"molecules": 300},
     "diffusion": {"molecules": 3000},
+    "nuclei": {"duration": 40},
 }
 """So few molecules that a page is small and quick to make."""
 

@@ -279,3 +279,21 @@ def test_a_feature_that_is_off_is_not_compiled_and_a_reference_reads_and_writes_
     assert list(values) == [0.0, 15.0, 0.0]
     with pytest.raises(Exception, match="no_such_field"):
         asked_with(NO_MODES._replace(gravity=True))(1.0, outer)
+
+
+@needs_numba
+def test_boxes_that_differ_in_what_a_kernel_does_not_read_share_it():
+    outer = Outer(Inner(2.0, np.zeros(3)), 5.0)
+    for modes in (NO_MODES, NO_MODES._replace(mixed=True), NO_MODES._replace(pool=True, periodic=True)):
+        asked_with(modes)(1.0, outer)
+    read = [kinds[-1].modes for kinds in fallen.signatures]
+    assert read.count(NO_MODES.without(*set(Modes._fields) - {"gravity", "drops", "rotation"})) == 1
+    assert all(modes.mixed is None and modes.pool is None for modes in read)
+
+
+@needs_numba
+def test_a_kernel_that_reads_a_flag_it_was_said_to_do_without_is_refused():
+    outer = Outer(Inner(2.0, np.zeros(3)), 5.0)
+    assert asked_with(NO_MODES.without("mixed"))(1.0, outer) == 3.0
+    with pytest.raises(AttributeError, match="rotation is one of the modes"):
+        asked_with(NO_MODES.without("rotation"))(1.0, outer)

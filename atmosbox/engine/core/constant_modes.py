@@ -1,20 +1,28 @@
 """The flags of a set of modes as constants, known to numba before it compiles anything.
 
 `Modes` is a type of its own for each set of flags, so that a kernel which is given one is compiled for just that set.
+What other kernels call is compiled for the flags alone that it reads: boxes that differ in other ones share it.
 """
 
+import dis
+import functools
+import inspect
+from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 from numba.core import ir_utils, types
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import FunctionPass, register_pass
 from numba.core.ir import Arg, Assign, Const, Expr, FreeVar, Global
+from numba.core.typeconv import Conversion
 from numba.core.untyped_passes import RewriteSemanticConstants
-from numba.extending import NativeValue, models, register_model, typeof_impl, unbox
+from numba.extending import NativeValue, lower_cast, models, register_model, typeof_impl, unbox
 
+from atmosbox.engine.core.jit import Kernel
 from atmosbox.engine.core.state import Modes
 
-__all__ = ["KernelCompiler"]
+__all__ = ["KernelCompiler", "for_flags_read"]
 
 
 class _SetOfModes(types.Dummy):
@@ -23,6 +31,10 @@ class _SetOfModes(types.Dummy):
     def __init__(self, modes: Modes) -> None:
         self.modes = modes
         super().__init__(name=repr(modes))
+
+    def can_convert_to(self, _: Any, other: Any) -> Any:
+        """Tell numba that a kernel may be given more flags than it reads."""
+        return Conversion.safe if isinstance(other, _SetOfModes) else None
 
 
 @typeof_impl.register(Modes)
@@ -36,6 +48,35 @@ register_model(_SetOfModes)(models.OpaqueModel)
 @unbox(_SetOfModes)
 def _unbox_modes(kind: Any, _: Any, passed: Any) -> NativeValue:
     return NativeValue(passed.context.get_dummy_value())
+
+
+@lower_cast(_SetOfModes, _SetOfModes)
+def _leave_out_flags(_context: Any, _builder: Any, _from: Any, _to: Any, value: Any) -> Any:
+    return value  # a set of modes is nothing when the code runs
+
+
+@functools.cache
+def _flags_read(function: Callable[..., Any]) -> frozenset[str]:
+    """Return the flags that a kernel reads, itself or in what it calls."""
+    flags = set()
+    for before, line in pairwise(dis.get_instructions(function)):
+        names = (
+            before.argval if isinstance(before.argval, tuple) else (before.argval,)
+        )  # some versions load two at once
+        if line.opname == "LOAD_ATTR" and names[-1] == "modes":
+            flags.add(line.argval)
+    seen = inspect.getclosurevars(function)
+    for called in (*seen.globals.values(), *seen.nonlocals.values()):
+        if isinstance(called, Kernel):
+            flags |= _flags_read(called.py_func)
+    return frozenset(flags)
+
+
+def for_flags_read(function: Callable[..., Any], kind: Any) -> Any:
+    """Return the type that a kernel is compiled for where it is given an argument of some type."""
+    if not isinstance(kind, _SetOfModes):
+        return kind
+    return _SetOfModes(kind.modes.without(*set(Modes._fields) - _flags_read(function)))
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
@@ -64,7 +105,10 @@ class _WriteOutModes(FunctionPass):  # type: ignore[misc]
                     elif isinstance(source, FreeVar | Global) and isinstance(source.value, Modes):
                         modes = source.value
                     if modes is not None:
-                        known = Const(getattr(modes, line.value.attr), line.loc)
+                        flag = getattr(modes, line.value.attr)
+                        if flag is None:
+                            raise AttributeError(f"{line.loc}: {line.value.attr} is one of the modes this does without")
+                        known = Const(flag, line.loc)
                         definitions = code._definitions[line.target.name]
                         definitions[definitions.index(line.value)] = known
                         line.value = known

@@ -30,21 +30,38 @@ class Kernel:
     function
         The function as it is written.
     compile
-        Makes what runs.
+        Makes what other kernels call.
+    for_python
+        Makes what Python calls, where that is something else.
     plain
         Whether Python runs it as it is written, so that only code that is compiled asks for it to be compiled.
     """
 
-    def __init__(self, function: Callable[..., Any], compile: Callable[[], Any], *, plain: bool = False) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        compile: Callable[[], Any],
+        for_python: Callable[[], Any] | None = None,
+        *,
+        plain: bool = False,
+    ) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
         self._compile = compile
-        self._run = np.errstate(all="ignore")(function) if plain else None
+        self._for_python = for_python
+        self._plain = plain
 
     @functools.cached_property
     def compiled(self) -> Any:
-        """What runs."""
+        """What other kernels call."""
         return self._compile()
+
+    @functools.cached_property
+    def _run(self) -> Any:
+        """What Python calls."""
+        if self._plain:
+            return np.errstate(all="ignore")(self.py_func)
+        return self._for_python() if self._for_python else self.compiled
 
     @property
     def _numba_type_(self) -> Any:
@@ -55,7 +72,7 @@ class Kernel:
 
     def __call__(self, *arguments: Any) -> Any:
         """Run it."""
-        return self.compiled(*arguments) if self._run is None else self._run(*arguments)
+        return self._run(*arguments)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):  # copy and pickle look for special methods, which numba's object need not have
@@ -103,12 +120,14 @@ def kernel(
     if not COMPILED:
         return np.errstate(all="ignore")(function)  # as compiled code is silent
 
-    def compile() -> Any:
+    def compiled(**kind: bool) -> Any:
         from atmosbox.engine.core import compiler
 
-        return compiler.compiled(function, entry=entry, early=early, allocates=allocates, parallel=parallel)
+        return compiler.compiled(function, **kind, allocates=allocates, parallel=parallel, kept=entry)
 
-    return Kernel(function, compile, plain=plain)
+    called = functools.partial(compiled, entry=entry, early=early)
+    alone = None if entry else functools.partial(compiled, entry=True, early=False)
+    return Kernel(function, called, alone, plain=plain)
 
 
 def use_threads(number: int) -> None:

@@ -98,6 +98,11 @@ class Modes(NamedTuple):
     ascends: bool = False
     rows: bool = False
 
+    def without(self, *flags: str) -> "Modes":
+        """Return the modes of a kernel that does without some flags: the compiler refuses one that reads them."""
+        left_out: dict[str, Any] = dict.fromkeys(flags)
+        return self._replace(**left_out)
+
 
 class Box(NamedTuple):
     """The box, and what holds everywhere in it.

@@ -194,11 +194,8 @@ def _into_box(i, axis, u, size, gas):
 
 
 @functools.cache
-def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
-
-    They are closures over plain flags, compiled once per set and kept on disk.
-    """
+def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``place`` and ``refill``."""
 
     @kernel(entry=True)
     def place(gas, now):
@@ -233,6 +230,55 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
         gas = by_reference(gas)
         return fill(now, gas, modes)
 
+    return place, refill
+
+
+@functools.cache
+def _checking(modes: Modes) -> Any:
+    """Return the kernel ``overlap``."""
+
+    @kernel(entry=True)
+    def overlap(gas):
+        """Return the deepest overlap, in diameters, and the two molecules; all clocks must read the same."""
+        gas = by_reference(gas)
+        cells = gas.cells
+        deepest = -1.0
+        first = -1
+        second = -1
+        for cell in range(cells.number_x * cells.number_y * cells.number_z):
+            start = (cell * cells.stride) & POSITIVE
+            for p in range(places(start, cells, modes)):
+                i = listed(start, p, cells, modes)
+                for q in range(p):
+                    j = listed(start, q, cells, modes)
+                    if i < 0 or j < 0:
+                        continue
+                    one, two = gas.molecules[i], gas.molecules[j]
+                    _, radius = size_and_radius(i, gas, modes)
+                    _, other_radius = size_and_radius(j, gas, modes)
+                    rx, ry, rz = nearest_image(one.x - two.x, one.y - two.y, one.z - two.z, gas.box, modes)
+                    distance = reach(radius, other_radius)
+                    depth = 1.0 - math.sqrt(rx * rx + ry * ry + rz * rz) / distance if distance > 0.0 else -1.0
+                    if depth > deepest:
+                        deepest = depth
+                        first = min(i, j)
+                        second = max(i, j)
+        return deepest, first, second
+
+    return overlap
+
+
+@functools.cache
+def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
+
+    They are closures over plain flags, compiled once per set and kept on disk. Those that ask for few of the flags are
+    shared by all sets that differ in the others.
+    """
+    of_events = ("rotation", "pool", "drops", "images", "ascends")
+    place, refill = _laying_out(modes.without("piston", *of_events))
+    overlap = _checking(modes.without("contacts", "spanning", "phases", *of_events))
+
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
         """Plan anew, at time ``now``, the moves of all that may meet a ceiling that comes down to ``lowest``."""
@@ -266,33 +312,5 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
             at = gauges(stop, gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
             if not turn(stop, at, gas, ascent, modes):
                 return Status.TURNED.value, done
-
-    @kernel(entry=True)
-    def overlap(gas):
-        """Return the deepest overlap, in diameters, and the two molecules; all clocks must read the same."""
-        gas = by_reference(gas)
-        cells = gas.cells
-        deepest = -1.0
-        first = -1
-        second = -1
-        for cell in range(cells.number_x * cells.number_y * cells.number_z):
-            start = (cell * cells.stride) & POSITIVE
-            for p in range(places(start, cells, modes)):
-                i = listed(start, p, cells, modes)
-                for q in range(p):
-                    j = listed(start, q, cells, modes)
-                    if i < 0 or j < 0:
-                        continue
-                    one, two = gas.molecules[i], gas.molecules[j]
-                    _, radius = size_and_radius(i, gas, modes)
-                    _, other_radius = size_and_radius(j, gas, modes)
-                    rx, ry, rz = nearest_image(one.x - two.x, one.y - two.y, one.z - two.z, gas.box, modes)
-                    distance = reach(radius, other_radius)
-                    depth = 1.0 - math.sqrt(rx * rx + ry * ry + rz * rz) / distance if distance > 0.0 else -1.0
-                    if depth > deepest:
-                        deepest = depth
-                        first = min(i, j)
-                        second = max(i, j)
-        return deepest, first, second
 
     return place, ascend if modes.ascends else advance, replan_ceiling, overlap, refill
