@@ -225,7 +225,7 @@ def test_the_spectrum_counts_each_that_left():
 # ------------------------------------------------------------------ hardly any molecules
 
 
-@settings(max_examples=24)
+@settings(max_examples=12)
 @given(
     kind=st.sampled_from(["mist", "pool"]),
     number=st.integers(0, 2),

@@ -189,9 +189,9 @@ def test_no_contact_of_a_molecule_at_a_thousand_thermal_speeds_is_missed():
     assert parcel._modes.rows
     speeds = np.sqrt((parcel.snapshot().velocity ** 2).sum(axis=1))
     assert np.sort(speeds)[-2] < parcel._cells.copies.epoch[2] < speeds.max()
-    assert misses_none(parcel, 300, 2e-5) > 60
+    assert misses_none(parcel, 150, 2e-5) > 30
     # and so until its energy is shared by all
-    assert misses_none(parcel, 100, 1e-3) > 20
+    assert misses_none(parcel, 50, 1e-3) > 10
     assert parcel.ledger() < 1e-12
 
 
@@ -200,8 +200,8 @@ def test_none_is_missed_while_walls_heat_a_gas_a_thousandfold():
     walls = (HeatBath(1000.0),) * 2 + (Specular(),) * 4
     parcel = ParcelSet(**gas(900, (30.0,) * 3, walls=walls))
     assert parcel._modes.rows
-    seen = misses_none(parcel, 250, 0.02)
-    assert seen > 50
+    seen = misses_none(parcel, 150, 0.03)
+    assert seen > 30
     assert parcel.energy()[0] > 100.0 * 900
 
 
