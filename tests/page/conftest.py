@@ -105,7 +105,7 @@ def opened(browser, site):
     """Return a function that opens a page without a network; whatever goes wrong in it fails the test."""
     contexts, faults = [], []
 
-    def page(name, size=(1280, 720), scheme="light"):
+    def page(name, size=(1280, 720), scheme="light", before=""):
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]},
             color_scheme=scheme,
@@ -119,6 +119,7 @@ def opened(browser, site):
         shown.on("pageerror", lambda error: faults.append(str(error)))
         shown.on("console", lambda said: faults.append(said.text) if said.type == "error" else None)
         shown.on("request", lambda asked: faults.append(asked.url) if is_outside(asked.url) else None)
+        shown.add_init_script(before)
         shown.goto(site(name))
         shown.wait_for_selector("body[data-ready]")
         return shown

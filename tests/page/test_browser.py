@@ -8,7 +8,7 @@ import pytest
 from matplotlib.image import imread
 
 from atmosbox.page import live_page
-from atmosbox.page.document import _text
+from atmosbox.page.document import _text, words
 from atmosbox.page.saved_run import pages
 from atmosbox.plot.curve import curve
 from atmosbox.scene.panels import from_json
@@ -51,6 +51,23 @@ def test_space_lets_the_molecules_fly_and_stops_them(opened):
     stopped = time(page)
     assert picture(page) != before
     assert time(page) == stopped
+
+
+WITHOUT_WEBGL = """
+    const usual = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+      return kind.startsWith("webgl") ? null : usual.call(this, kind, ...more);
+    };
+    console.error = () => {};
+"""
+
+
+def test_without_webgl_a_sentence_stands_where_the_box_would_and_all_else_works(opened):
+    page = opened("pair", before=WITHOUT_WEBGL)
+    assert page.locator(".no-picture").all_inner_texts() == [words("en")["page"]["no_picture"]] * 2
+    assert page.locator(".box canvas").first.is_hidden()
+    page.keyboard.press("Space")
+    until(page, "Number(document.body.dataset.time) > 0.015")
 
 
 def test_arrows_step_through_the_frames_and_change_the_pace(opened):

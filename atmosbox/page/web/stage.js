@@ -25,7 +25,7 @@ export class Stage {
     this.canvas.setAttribute("aria-label", word("picture", { title: phrase(record.title) }));
     parent.append(this.canvas);
     this.parent = parent;
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = this.#rendererOrSentence();
     this.scene = new THREE.Scene();
     const sun = new THREE.DirectionalLight(0xffffff, 2.2);
     sun.position.set(-2, -3, 5);
@@ -41,6 +41,20 @@ export class Stage {
     this.dirty = true;
     this.#watch();
     this.paint();
+  }
+
+  // What draws; where the browser cannot draw in three dimensions, null, and a sentence in place of the picture.
+  #rendererOrSentence() {
+    try {
+      return new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, powerPreference: "high-performance" });
+    } catch {
+      this.canvas.hidden = true;
+      const sentence = document.createElement("p");
+      sentence.className = "no-picture";
+      sentence.textContent = word("no_picture");
+      this.parent.append(sentence);
+      return null;
+    }
   }
 
   #watch() {
@@ -66,7 +80,7 @@ export class Stage {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.parent;
-    if (!width || !height) return;
+    if (!this.renderer || !width || !height) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, SHARPEST));
     this.renderer.setSize(width, height, false);
     this.molecules.material.uniforms.height.value = this.renderer.domElement.height;
@@ -158,8 +172,8 @@ export class Stage {
 
   // Give back what the graphics card holds.
   leave() {
-    this.renderer.dispose();
-    this.renderer.forceContextLoss();
+    this.renderer?.dispose();
+    this.renderer?.forceContextLoss();
     this.camera.controls.dispose();
     this.parent.remove();
   }
