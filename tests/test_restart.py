@@ -44,7 +44,7 @@ LARGE = {
     "discs": {"molecules": 400, "duration": "7500 s"},
     "walls": {"molecules": 4000, "duration": "200 ns"},
     "strips": {"molecules": 400, "duration": "70 s"},
-    "column": {"molecules": 1000, "duration": 300},
+    "column": {"molecules": 3000, "duration": 1200},
     "column by dsmc": {"molecules": 4000, "duration": 16000},
     "stirred column": {"molecules": 4000, "duration": 1000},
     "piston": {"molecules": 8000, "ascent": 3000},
@@ -56,7 +56,7 @@ LARGE = {
     "drops": {"molecules": 2000, "duration": "200 ns", "drops": 2},
     "rain": {"molecules": 2000, "travel": 2000},
 }
-KILLS = 50
+KILLS = 56  # four of each, so that fifty strike also where a box is done with before the last of them
 
 
 class Stop(KeyboardInterrupt):
@@ -189,7 +189,7 @@ def test_fifty_kills_of_the_command_change_nothing(tmp_path, request):
                 file.write(json.dumps(facts) + "\n")
         assert same, (name, seed)
         assert left == ["x.nc"]
-    assert total > KILLS / 2  # a fast computer is done with some boxes sooner
+    assert total >= 50
 
 
 @pytest.fixture
