@@ -80,6 +80,7 @@ class Picture:
             mass=mass,
             diameter=diameter,
             water=water,
+            drops=hasattr(parcel, "drops"),
             right=setup.right,
             time_unit=setup.time_unit,
             fastest=self._fastest(),

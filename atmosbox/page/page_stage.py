@@ -24,6 +24,7 @@ Indices = NDArray[np.intp]
 
 _SEEN = 0.034  # diameter that can be seen, over the side of a cube as large as the box, if there are _CROWD of them
 _CROWD = 800
+_BESIDE_DROPS = 0.4  # so wide, over what is usual, molecules are drawn where there are drops to be seen
 _ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
 _PARTICLES = {False: "molecule", True: "disc"}
@@ -116,6 +117,7 @@ def stage(
     diameter: ArrayLike,
     fastest: float,
     water: ArrayLike | None = None,
+    drops: bool = False,
     right: ArrayLike | None = None,
     story: str = "",
     facts: Iterable[tuple[str, str]] = (),
@@ -146,6 +148,8 @@ def stage(
         Speed that the scale of colours must reach [m/s]; it ends at the next round number.
     water : (molecule,), optional
         Which molecules are water.
+    drops : bool
+        Whether drops fly among the molecules: they are drawn true to size, and molecules so small that they stand out.
     right : (molecule,), optional
         Which molecules belong to the second of two gases, those that began on the right.
     story, facts, settings, version, seed, engine
@@ -190,7 +194,8 @@ def stage(
     shown = chosen(len(heavy), most, wet)
     kinds, kind = _kinds(heavy, wet, None if right is None else np.asarray(right, np.bool_), discs=discs)
     lengths = np.array([side for axis, side in enumerate(box.length) if not (box.planar and axis == 1)])
-    wider, said = _width(wide, float(np.exp(np.log(lengths).mean())), len(shown), discs=discs, unit=box.unit)
+    room = float(np.exp(np.log(lengths).mean())) * (_BESIDE_DROPS if drops else 1.0)
+    wider, said = _width(wide, room, len(shown), discs=discs, unit=box.unit)
     drawn = wide * wider
     if not discs and np.ptp(wide[np.isfinite(wide)]) == 0.0:
         drawn = drawn * np.cbrt(heavy / np.nanmax(heavy))  # alike in diameter, told apart by their masses

@@ -97,6 +97,7 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
         mass=seen.mass,
         diameter=seen.diameter,
         water=seen.water,
+        drops=seen.drops is not None,
         right=seen.right,
         fastest=fastest,
         time_unit=str(dataset["elapsed_time"].attrs.get("units", "ns")),

@@ -32,6 +32,12 @@ def test_molecules_that_are_large_enough_are_drawn_as_they_are():
     )
 
 
+def test_molecules_are_drawn_smaller_where_drops_are_to_be_seen():
+    alone, beside = air(800).record, air(800, drops=True).record
+    assert beside["species"][0]["drawn"] < 0.6 * alone["species"][0]["drawn"]
+    assert beside["exaggeration"] != alone["exaggeration"]
+
+
 def test_molecules_without_a_size_are_drawn_and_the_stage_says_that_they_have_none():
     assert "points" in air(diameter=0.0).record["exaggeration"]
 
