@@ -24,3 +24,11 @@ def test_the_command_that_is_saved_begins_the_same_run(scene, settings):
     assert options[-2:] == ["--seed", str(prepared.settings.seed)]
     values = dict(each.split("=", 1) for each in options if "=" in each)
     assert prepare(scene, values | {"seed": options[-1]}).settings == prepared.settings
+
+
+@pytest.mark.parametrize(
+    ("scene", "names"), [("temperature", ["thermometer", "barometer"]), ("elastic-collisions", [])]
+)
+def test_discs_of_a_table_have_no_thermometer(scene, names):
+    plan, _, _ = lab_plan(prepare(scene, {}))
+    assert [each["name"] for each in plan["gauges"]] == names
