@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.errors import SoundingError
+from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.conversion import Unit, from_si, known_unit
 from atmosbox.scene.sounding.column import QUANTITIES
 from atmosbox.theory.constants import DRY_AIR, GAS_CONSTANT, STANDARD_GRAVITY
@@ -117,7 +117,7 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
         return
     high_up = quantity == "pressure" and measure.low <= in_si(values, known)[wrong] < _HIGHEST_GROUND
     ground = " at the ground" if high_up else ""
-    what = f"{place(wrong)}: a {quantity} of {values[wrong]:.10g} {unit}{ground} is not one of the atmosphere"
+    what = f"{place(wrong)}: a {quantity} of {values[wrong]:.10g} {shown(unit)}{ground} is not one of the atmosphere"
     for other in measure.units:
         candidate = known_unit(other)
         if candidate and candidate != known and _first_implausible(quantity, values, candidate) is None:
@@ -126,7 +126,7 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
     low, high = (f"{(limit - known.offset) * known.down / known.up:.6g}" for limit in (measure.low, measure.high))
     if ground:
         low = f"{_HIGHEST_GROUND * known.down / known.up:.6g}"
-    raise SoundingError(f"{what} ({low} to {high} {unit}): correct it, or write -9999 where it is missing.")
+    raise SoundingError(f"{what} ({low} to {high} {shown(unit)}): correct it, or write -9999 where it is missing.")
 
 
 def widest_gap(pressure: Floats) -> tuple[float, int]:
