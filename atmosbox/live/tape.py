@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, shown
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.output_path import check_writable
 from atmosbox.file.provenance import history_line
@@ -99,8 +99,10 @@ def file_for(name: str | None, scene: str, folder: Path, *, force: bool) -> Path
         raise FileError(f"There are {_NAMES} recordings of {stem} here: move them, or give the file a name.")
     plain = name.strip()
     if not plain or Path(plain).name != plain or plain.startswith(".") or not plain.isprintable() or "\\" in plain:
-        like = f"{Path(plain).stem or scene}.nc".lstrip(".")
-        raise FileError(f"{plain or 'Nothing'} is not the name of a file: give one without a folder, such as {like}.")
+        stem = Path(plain).stem.lstrip(".")
+        like = f"{stem if stem and stem.isprintable() else Path(scene).stem}.nc"
+        what = shown(plain) if plain else "Nothing"
+        raise FileError(f"{what} is not the name of a file: give one without a folder, such as {like}.")
     path = folder / (plain if plain.endswith(".nc") else f"{plain}.nc")
     if os.path.exists(path) and not force:
         raise FileError(f"{path.name} exists already: give another name, or start atmosbox live with --force.")

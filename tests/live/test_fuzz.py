@@ -55,6 +55,13 @@ def test_no_request_breaks_a_box(session, message, place, odd):
         json.dumps(session.state())
 
 
+def test_a_name_that_cannot_be_printed_is_refused_in_a_sentence_that_can(session):
+    with pytest.raises(AtmosboxError) as refused:
+        session.obey({"type": "record", "file": "\U000d5105"})
+    assert str(refused.value).isprintable()
+    assert "such as" in str(refused.value)
+
+
 texts = st.one_of(
     st.text(max_size=60), st.binary(max_size=60), asked.map(json.dumps), values.map(json.dumps), st.just("[" * 5000)
 )
