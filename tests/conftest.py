@@ -45,8 +45,9 @@ def pytest_collection_modifyitems(config, items):
     named = any("::" in argument for argument in config.args)
     more = config.getoption("--fuzz")
     if more > 1:
-        for item in items:
-            test = getattr(item, "obj", None)
+        # once each, also where several items are cases of one function
+        for test in {getattr(item, "obj", None) for item in items}:
+            test = getattr(test, "__func__", test)
             stated = getattr(test, "_hypothesis_internal_use_settings", None)
             if stated is not None:
                 test._hypothesis_internal_use_settings = settings(
