@@ -56,6 +56,7 @@ def test_no_request_breaks_a_box(session, message, place, odd):
 
 
 def test_a_name_that_cannot_be_printed_is_refused_in_a_sentence_that_can(session):
+    session.obey({"type": "stop_record"})
     with pytest.raises(AtmosboxError) as refused:
         session.obey({"type": "record", "file": "\U000d5105"})
     assert str(refused.value).isprintable()
