@@ -63,7 +63,7 @@ def pytest_collection_modifyitems(config, items):
 
 
 def pytest_collection_finish(session):
-    """What is loaded by now stays: let nobody look through it for garbage, which happens hundreds of times."""
+    """Exempt what is loaded by now from the garbage collector, which would go through it hundreds of times."""
     gc.collect()
     gc.freeze()
 

@@ -144,14 +144,14 @@ def compiled(
     kernels = _KeptKernels(function) if kept and _CACHE is not None else None
     if kernels:
         made._cache = kernels
-    made.compile = _undisturbed(made.compile, kernels)
+    made.compile = _without_garbage_collection(made.compile, kernels)
     return made
 
 
-def _undisturbed(compile: Callable[[Any], Any], kernels: _KeptKernels | None) -> Callable[[Any], Any]:
-    """Let a kernel be compiled while nobody looks for garbage: there is hardly any, and looking takes a tenth more."""
+def _without_garbage_collection(compile: Callable[[Any], Any], kernels: _KeptKernels | None) -> Callable[[Any], Any]:
+    """Switch the garbage collector off while a kernel is compiled: it would take a tenth of the time, and find little."""
 
-    def undisturbed(signature: Any) -> Any:
+    def uncollected(signature: Any) -> Any:
         collects = gc.isenabled()
         gc.disable()
         try:
@@ -162,7 +162,7 @@ def _undisturbed(compile: Callable[[Any], Any], kernels: _KeptKernels | None) ->
             if kernels:
                 kernels.let_others_go_on()  # also where a kernel cannot be compiled
 
-    return undisturbed
+    return uncollected
 
 
 def _of_plain_types(made: Any) -> Any:

@@ -19,7 +19,6 @@ from numba.core.typeconv import Conversion
 from numba.core.untyped_passes import RewriteSemanticConstants
 from numba.extending import NativeValue, lower_cast, models, register_model, typeof_impl, unbox
 
-from atmosbox.engine.core.jit import Kernel
 from atmosbox.engine.core.state import Modes
 
 __all__ = ["KernelCompiler", "for_flags_read"]
@@ -59,16 +58,17 @@ def _leave_out_flags(_context: Any, _builder: Any, _from: Any, _to: Any, value: 
 def _flags_read(function: Callable[..., Any]) -> frozenset[str]:
     """Return the flags that a kernel reads, itself or in what it calls."""
     flags = set()
+    # an attribute that is loaded just after the modes; some versions of Python load two names at once
     for before, line in pairwise(dis.get_instructions(function)):
-        names = (
-            before.argval if isinstance(before.argval, tuple) else (before.argval,)
-        )  # some versions load two at once
-        if line.opname == "LOAD_ATTR" and names[-1] == "modes":
+        loaded = before.argval if isinstance(before.argval, tuple) else (before.argval,)
+        if line.opname == "LOAD_ATTR" and loaded[-1:] == ("modes",):
             flags.add(line.argval)
+    # and what the kernels read that it names
     seen = inspect.getclosurevars(function)
-    for called in (*seen.globals.values(), *seen.nonlocals.values()):
-        if isinstance(called, Kernel):
-            flags |= _flags_read(called.py_func)
+    for named in (*seen.globals.values(), *seen.nonlocals.values()):
+        called = getattr(named, "py_func", None)
+        if called is not None:
+            flags |= _flags_read(called)
     return frozenset(flags)
 
 
