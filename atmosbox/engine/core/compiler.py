@@ -149,7 +149,7 @@ def compiled(
 
 
 def _without_garbage_collection(compile: Callable[[Any], Any], kernels: _KeptKernels | None) -> Callable[[Any], Any]:
-    """Switch the garbage collector off while a kernel is compiled: it would take a tenth of the time and find little."""
+    """Switch the garbage collector off while a kernel is compiled: it takes a tenth of the time and finds little."""
 
     def uncollected(signature: Any) -> Any:
         collects = gc.isenabled()
