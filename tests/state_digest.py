@@ -43,7 +43,7 @@ CASES = {
     "diffusion": Case("diffusion", {"molecules": 1000}, 0.002),
     "attraction": Case("attraction", {"molecules": 200}, 0.002),
     "attraction-vapour": Case("attraction", {"molecules": 200, "start": "vapour", "air": 0.5, "bath": "walls"}, 0.002),
-    "stepped": Case("temperature", {"molecules": 60}, 0.02, "stepped:delta=0.1"),
+    "stepped": Case("temperature", {"molecules": 60}, 0.004, "stepped:delta=0.1"),
     "dsmc": Case("temperature", {"molecules": 60}, 0.02, "dsmc"),
     "dsmc-moist": Case("lifting-moist", FEW | {"ascent": 20}, 0.1, "dsmc"),
     "classic": Case("elastic-collisions", {"molecules": 30}, 0.01, "classic"),

@@ -19,6 +19,7 @@ from docutils import nodes
 from atmosbox import scenarios
 from atmosbox.file.netcdf import read
 from atmosbox.lab.wasm_module import SCENES
+from atmosbox.simulation.preparation import prepare
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -30,8 +31,8 @@ FETCHED = {"stylesheet", "icon", "shortcut", "preload", "prefetch", "moduleprelo
 """Kinds of ``<link>`` whose target a browser fetches."""
 VERBATIM = {"code", "pre", "script", "style", "math", "title"}
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
-FILMED = "elastic-collisions"
-"""The one scene that is filmed here: each film takes seconds."""
+SHOWN = ["elastic-collisions", "temperature"]
+"""Scenes that the gallery has here; each takes seconds."""
 PARTS = ["Run it", "What to notice, what to try", "Settings", "What is modelled, left out, exaggerated", "Theory"]
 PARTS += ["What it does not show", "Questions"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", "MPLBACKEND": "agg"}
@@ -76,7 +77,7 @@ def site(tmp_path_factory):
     """Return the folder of the site as it was built, what the build said, and its exit status."""
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", str(folder / "trees")]
-    command += ["-D", f"gallery_films={FILMED}", str(DOCS), str(folder / "site")]
+    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", str(DOCS), str(folder / "site")]
     done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=False)
     said = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("[IPKernelApp] WARNING")]
     return folder / "site", "\n".join(said), done.returncode
@@ -98,20 +99,28 @@ def test_the_site_is_built_without_a_warning(site):
     assert (status, said.strip()) == (0, "")
 
 
-def test_the_gallery_has_a_page_that_plays_and_a_worksheet_of_every_scene(site, pages):
+def test_the_gallery_has_a_page_that_plays_a_film_a_worksheet_and_a_lab_of_every_scene_that_it_shows(site, pages):
     made = {path.name: path.read_bytes()[:15] for path in (site[0] / "gallery").iterdir()}
-    for name in scenarios.names():
+    for name in SHOWN:
         assert made.pop(f"{name}.html") == b"<!doctype html>"
+        assert made.pop(f"{name}.mp4")[4:8] == b"ftyp"
         assert made.pop(f"{name}-sheet.pdf").startswith(b"%PDF")
-        assert {f"gallery/{name}.html", f"gallery/{name}-sheet.pdf"} <= set(pages["gallery.html"].links)
-        assert f"gallery/{name}.html" in pages["gallery.html"].loads, "it plays in the gallery itself"
-    assert made.pop(f"{FILMED}.mp4")[4:8] == b"ftyp"
-    assert f"gallery/{FILMED}.mp4" in pages["gallery.html"].loads
-    for name in SCENES:
         assert made.pop(f"{name}-lab.html") == b"<!doctype html>"
-        assert f"gallery/{name}-lab.html" in pages["gallery.html"].links
+        assert {f"gallery/{name}-sheet.pdf", f"gallery/{name}-lab.html"} <= set(pages["gallery.html"].links)
+        assert {f"gallery/{name}.html", f"gallery/{name}.mp4"} <= set(pages["gallery.html"].loads)
         assert f"../gallery/{name}-lab.html" in pages[f"scenes/{name}.html"].loads
     assert made == {}
+    for name in set(scenarios.names()) - set(SHOWN):
+        assert not [link for link in pages["gallery.html"].links if link.startswith(f"gallery/{name}")]
+
+
+def test_the_gallery_runs_every_scene_with_settings_that_it_has(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS)
+    gallery = importlib.import_module("extension.gallery")
+    assert set(gallery.FEW) == set(scenarios.names())
+    assert set(gallery.LABS) == set(SCENES)
+    for name, settings in [*gallery.FEW.items(), *gallery.LABS.items()]:
+        prepare(name, settings)
 
 
 def test_every_page_is_reached_from_the_navigation_of_the_first(pages):

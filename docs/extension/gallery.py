@@ -3,7 +3,7 @@
 A page or a film is a megabyte or two, so none is kept: each is made of a run with few molecules. In the source the
 gallery has the pictures and the commands; on the site each scene has its page and its film as well, which are loaded
 when they are opened, and links to them. The page of a scene that has a lab holds it, too. With the option
-``-D gallery_films=NAME`` of Sphinx only this scene is filmed.
+``-D gallery_scenes=NAME,NAME`` of Sphinx these scenes alone have them, which is a quick way to see the rest of the site.
 """
 
 import subprocess
@@ -47,46 +47,50 @@ FILM = {"seconds": 8.0, "fps": 8.0}
 """How long a film is, and of how many pictures a second: it takes seconds to make, and a megabyte."""
 
 
-def make(folder: Path, filmed: str) -> None:
-    """Make pages, films and worksheets in a folder."""
+def make(folder: Path, chosen: list[str]) -> None:
+    """Make pages, films and worksheets of some scenes, and their labs, in a folder."""
     import atmosbox as ab
-    from atmosbox import film, scenarios, sheet
+    from atmosbox import film, sheet
     from atmosbox.lab import save_lab
     from atmosbox.page import save
     from atmosbox.simulation.preparation import prepare
 
-    for name in scenarios.names():
+    for name in chosen:
         run = ab.run(name, save_molecules=True, **FEW.get(name, {}))
         save([run], folder / f"{name}.html", force=True)
-        if filmed in ("all", name):
-            film.save(run, folder / f"{name}.mp4", force=True, **FILM)
+        film.save(run, folder / f"{name}.mp4", force=True, **FILM)
         sheet.save(sheet.worksheet(name, {}), folder / f"{name}-sheet.pdf", force=True)
-    for name, settings in LABS.items():
-        save_lab(prepare(name, settings), folder / f"{name}-lab.html", force=True)
+        if name in LABS:
+            save_lab(prepare(name, LABS[name]), folder / f"{name}-lab.html", force=True)
+
+
+def scenes(app: Sphinx) -> list[str]:
+    """Return the scenes of which the gallery has more than a picture."""
+    from atmosbox import scenarios
+
+    wanted = app.config.gallery_scenes
+    return scenarios.names() if wanted == "all" else wanted.split(",")
 
 
 def add_links(app: Sphinx, docname: str, source: list[str]) -> None:
     """Put what is made below the heading of each scene, and its lab into its own page."""
     scene = docname.removeprefix("scenes/")
-    if docname != scene and scene in LABS:
+    chosen = scenes(app)
+    if docname != scene and scene in LABS and scene in chosen:
         heading, _, rest = source[0].partition("\n")
         lab = _framed(f"../{NAME}/{scene}-lab.html", "Let it run here", f"{scene}, running")
         source[0] = f"{heading}\n\n{lab}\n{rest}"
     if docname != NAME:
         return
-    from atmosbox import scenarios
-
     lines = []
     for line in source[0].splitlines():
         lines.append(line)
         name = line.removeprefix("## ")
-        if name not in scenarios.names() or line == name:
+        if name not in chosen or line == name:
             continue
         lab = f'<a href="{NAME}/{name}-lab.html">let it run</a> · ' if name in LABS else ""
         lines += ["", f'<p>{lab}<a href="{NAME}/{name}-sheet.pdf">worksheet (PDF)</a></p>', ""]
-        lines += [_framed(f"{NAME}/{name}.html", "Play it here", f"{name}, to play")]
-        if app.config.gallery_films in ("all", name):
-            lines += [_film(f"{NAME}/{name}.mp4", name)]
+        lines += [_framed(f"{NAME}/{name}.html", "Play it here", f"{name}, to play"), _film(f"{NAME}/{name}.mp4", name)]
     source[0] = "\n".join(lines)
 
 
@@ -108,16 +112,16 @@ def build(app: Sphinx, problem: Exception | None) -> None:
     if problem is None and app.builder.format == "html":
         folder = Path(app.outdir) / NAME
         folder.mkdir(exist_ok=True)
-        subprocess.run([sys.executable, __file__, str(folder), app.config.gallery_films], check=True)
+        subprocess.run([sys.executable, __file__, str(folder), *scenes(app)], check=True)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx."""
-    app.add_config_value("gallery_films", "all", "html", str)
+    app.add_config_value("gallery_scenes", "all", "html", str)
     app.connect("source-read", add_links)
     app.connect("build-finished", build)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
 if __name__ == "__main__":
-    make(Path(sys.argv[1]), sys.argv[2])
+    make(Path(sys.argv[1]), sys.argv[2:])
