@@ -85,6 +85,15 @@ class Hand:
             said = str(value) if not control.parameter.unit else f"{value} {control.parameter.unit}"
             raise SettingError(control.name, said, f"is not possible ({error})", "give another") from error
         self.turned[control.name] = value
+        self._note(control, value, experiment)
+
+    def leave(self, control: Control, experiment: Experiment) -> None:
+        """Make the box as it was before a knob was first turned, and note it."""
+        self._knobs[control.name].reset()
+        del self.turned[control.name]
+        self._note(control, None, experiment)
+
+    def _note(self, control: Control, value: Value | None, experiment: Experiment) -> None:
         experiment.begin_averages_anew()
         change = Change(experiment.now, experiment.frame, control.name, value, control.parameter.unit)
         last = self.changes[-1] if self.changes else None

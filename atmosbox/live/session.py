@@ -36,13 +36,17 @@ _PUMP = 4.0  # times as many molecules, or as few, at one stroke
 
 @dataclass(frozen=True)
 class _Past:
-    """How it was before a change: where a knob stood, or with which settings and engine the box had begun."""
+    """How it was before a change: where a knob stood, or with which settings and engine the box had begun.
+
+    ``first`` if the knob had not been turned before in this box.
+    """
 
     knob: str | None
     value: Value
     settings: Mapping[str, Any]
     engine: str
     when: float
+    first: bool = False
 
 
 class Session:
@@ -117,6 +121,7 @@ class Session:
         shown = tuple(panel for panel in map(while_it_runs, experiment.panels) if panel is not None)
         picture = Picture(prepared, experiment.setup, shown)
         self._recorder.stop("The box begins anew, and the recording ends.")
+        self._past = [replace(each, first=False) for each in self._past]
         self.experiment = experiment
         self.picture = picture
         self.report = Report(shown, picture.stage.variables)
@@ -283,7 +288,8 @@ class Session:
         if last.knob is None:
             self._begin(begun_anew(self.prepared, last.settings, last.engine))
         else:
-            self._turn(next(each for each in self.controls() if each.name == last.knob), last.value)
+            control = next(each for each in self.controls() if each.name == last.knob)
+            self._turn(control, last.value, back=last.first)
         self._past.pop()
 
     def _set(self, name: object, value: object) -> None:
@@ -293,7 +299,8 @@ class Session:
             raise SettingError("name", in_words(name), "is nothing that can be changed here", f"give one of {known}")
         wanted = control.parse(value)
         if not control.restarts:
-            before = _Past(control.name, control.value, {}, "", self._clock())
+            first = control.name not in self._hand.turned
+            before = _Past(control.name, control.value, {}, "", self._clock(), first)
             self._turn(control, wanted)
             last = self._past[-1] if self._past else None
             if last is not None and last.knob == control.name and before.when - last.when < _DRAG:
@@ -308,9 +315,12 @@ class Session:
             values[control.name] = wanted
         self._anew(values, engine)
 
-    def _turn(self, control: Control, value: Value) -> None:
-        """Turn a knob."""
-        self._hand.turn(control, value, self.experiment)
+    def _turn(self, control: Control, value: Value, *, back: bool = False) -> None:
+        """Turn a knob, or turn it ``back`` to where nobody had turned it."""
+        if back:
+            self._hand.leave(control, self.experiment)
+        else:
+            self._hand.turn(control, value, self.experiment)
         if self.finished:  # it rests only because its way was at an end
             self.playing, self.finished = True, False
         if self._hand.overflows:

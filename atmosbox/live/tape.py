@@ -42,13 +42,13 @@ class Change:
     frame
         How many frames were complete.
     name, value, unit
-        What it was set to.
+        What it was set to; None if the box was made as it was before the knob was first turned.
     """
 
     time: float
     frame: int
     name: str
-    value: Value
+    value: Value | None
     unit: str
 
     @property
@@ -59,7 +59,11 @@ class Change:
         --------
         >>> Change(3.0, 2, "temperature", 60.0, "degC").words
         'temperature = 60 degC'
+        >>> Change(9.0, 8, "temperature", None, "degC").words
+        'temperature as at the start'
         """
+        if self.value is None:
+            return f"{self.name} as at the start"
         return f"{self.name} = {phrase(float(self.value), self.unit)}"
 
 

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Knob", "altitude", "gravity", "open_pool", "wall_temperature", "warmed_walls", "way"]
 
-_CLOSED = -600.0
-"""Logarithm of the share of its rate at which a covered pool evaporates: never, in any time that there is."""
-
 
 @dataclass(frozen=True)
 class Knob:
@@ -46,6 +43,8 @@ class Knob:
         Its value at the start, in `unit`.
     turn
         Called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
+    leave
+        Makes the box as it was before the knob was first turned; None if turning it to `value` does.
 
     Raises
     ------
@@ -67,6 +66,7 @@ class Knob:
     high: float
     value: float
     turn: Callable[[float], None]
+    leave: Callable[[], None] | None = None
 
     def __post_init__(self) -> None:
         if not self.low <= self.value <= self.high:
@@ -75,6 +75,13 @@ class Knob:
     def set(self, value: float) -> None:
         """Set it to a value in its unit."""
         self.turn(value if self.unit in ("", "1") else to_si(value, self.unit))
+
+    def reset(self) -> None:
+        """Make the box as if it had never been turned, from now on."""
+        if self.leave is None:
+            self.set(self.value)
+        else:
+            self.leave()
 
 
 def wall_temperature(
@@ -153,30 +160,26 @@ def warmed_walls(
     >>> setup.knobs[0].set(1.0)
     >>> np.isfinite(setup.parcel.wall_kT()).tolist()
     [True, True, False, False, True, True]
+    >>> setup.knobs[0].reset()
+    >>> bool(np.isnan(setup.parcel.wall_kT()).all())
+    True
     """
+    from atmosbox.engine import HeatBath, Specular
 
     def turn(value: float) -> None:
-        from atmosbox.engine.core.walls import HEAT_BATH
+        bath = HeatBath(rounded(kT(value)))
+        for wall in walls:
+            parcel.set_wall(wall, bath)
 
-        law, smooth = parcel._walls.law, parcel._walls.law.copy()
-        law[list(walls)] = HEAT_BATH
-        parcel._walls.accommodation[list(walls)] = 1.0
-        try:
-            for wall in walls:
-                parcel.set_wall_kT(rounded(kT(value)), wall)
-        except Exception:  # refused: the walls are as they were
-            law[:] = smooth
-            raise
+    def leave() -> None:
+        for wall in walls:
+            parcel.set_wall(wall, Specular())
 
-    return replace(_of_setting(settings, name, low, high, turn), help=help)
+    return replace(_of_setting(settings, name, low, high, turn), help=help, leave=leave)
 
 
 def open_pool(parcel: Any) -> Knob:
-    r"""Return the knob that covers a part of a pool, or all of it, with a foil that lets heat pass but no water.
-
-    Vapour sticks to the open part s alone, and molecules leave from there alone: both rates are s times as large,
-    and the vapour pressure at which they are equal is the same. Air and vapour that hit the foil exchange heat with
-    the pool as before.
+    """Return the knob that covers a part of a pool with a foil, or all of it: see `set_open_pool` of the box.
 
     Parameters
     ----------
@@ -192,20 +195,8 @@ def open_pool(parcel: Any) -> Knob:
     >>> setup.parcel.evaporated, setup.parcel.condensed, setup.parcel.ledger() < 1e-12
     (0, 0, True)
     """
-    uncovered: list[tuple[float, float]] = []
-
-    def turn(share: float) -> None:
-        if not uncovered:
-            uncovered.append((parcel._reservoir.sticking, parcel._reservoir.log_rate))
-        ((sticking, log_rate),) = uncovered
-        leaves = max(math.log(share), _CLOSED) if share > 0.0 else _CLOSED
-        parcel._reservoir = parcel._reservoir._replace(sticking=sticking * share, log_rate=log_rate + leaves)
-        if hasattr(parcel, "_water"):  # in dsmc, which draws anew in each step
-            parcel._water = parcel._water._replace(reservoir=parcel._reservoir)
-        else:
-            parcel._draw(float(parcel._reservoir.bound[0]))
-
-    return Knob("open_pool", "share of the pool that is open; the rest is covered", "percent", 0.0, 100.0, 100.0, turn)
+    words = "share of the pool that is open; the rest is covered"
+    return Knob("open_pool", words, "percent", 0.0, 100.0, 100.0, parcel.set_open_pool)
 
 
 def gravity(

@@ -3,7 +3,7 @@
 A page or a film is a megabyte or two, so none is kept: each is made of a run with few molecules. In the source the
 gallery has the pictures and the commands; on the site each scene has its page and its film as well, which are loaded
 when they are opened, and links to them. The page of a scene that has a lab holds it, too. With the option
-``-D gallery_scenes=NAME,NAME`` of Sphinx these scenes alone have them, which is a quick way to see the rest of the site.
+``-D gallery_scenes=NAME,NAME`` of Sphinx these scenes alone have them, which is quicker.
 """
 
 import subprocess

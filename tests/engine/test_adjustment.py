@@ -13,6 +13,8 @@ from atmosbox.engine import (
     ParcelSet,
     Periodic,
     Piston,
+    Pool,
+    Ramp,
     RefusedError,
     Specular,
     Substance,
@@ -201,3 +203,47 @@ def test_a_step_that_would_become_too_long_is_refused(engine):
         gas.set_gravity(1e6)
     gas.advance(1.0)
     assert gas.gravity == 0.1
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_smooth_wall_becomes_a_heat_bath_and_is_smooth_again(engine):
+    gas = box(engine, number=50, walls=(Specular(),) * 6)
+    gas.set_wall(0, HeatBath(4.0))
+    gas.advance(20.0)
+    heat = gas.wall_heat.tolist()
+    assert heat[0] > 1.0
+    assert heat[1:] == [0.0] * 5
+    gas.set_wall(0, Specular())
+    warm = sum(gas.energy())
+    gas.advance(40.0)
+    assert sum(gas.energy()) == pytest.approx(warm, rel=1e-12)
+    assert gas.wall_heat.tolist() == heat
+    assert gas.ledger() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("wall", "law", "said"),
+    [
+        (5, HeatBath(1.0), "wall z_high is neither smooth nor a heat bath: choose one that is"),
+        (6, HeatBath(1.0), "wall 6 is neither"),
+        (0, Periodic(), "wall x_low = Periodic.*: give Specular or HeatBath"),
+        (0, HeatBath(Ramp(1.0, 2.0, start=0.0, end=1.0)), "changes with time: give one temperature"),
+        (0, HeatBath(-1.0), "kT of wall x_low"),
+    ],
+)
+def test_a_wall_that_cannot_become_another_is_refused_and_stays(wall, law, said):
+    gas = box(ParcelSet, number=1, walls=(Specular(),) * 5 + (Piston(),))
+    laws = gas._walls.law.tolist()
+    with pytest.raises(RefusedError, match=said):
+        gas.set_wall(wall, law)
+    assert gas._walls.law.tolist() == laws
+
+
+def test_only_a_pool_is_covered_and_by_no_more_than_all_of_it():
+    def wet(liquid):
+        return MoistParcelSet([], [], length=(3.0, 3.0, 3.0), liquid=liquid)
+
+    with pytest.raises(RefusedError, match="no pool that could be covered"):
+        wet(Mist(WATER, number=2, kT=1.0)).set_open_pool(0.5)
+    with pytest.raises(RefusedError, match=r"open share of the pool = 1\.5"):
+        wet(Pool(WATER, number=2, kT=1.0)).set_open_pool(1.5)

@@ -84,6 +84,18 @@ def test_undo_goes_back_through_knobs_drags_and_new_boxes():
     assert session.notes()[-1]["text"] == "There is nothing to take back."
 
 
+def test_undo_of_the_first_turn_takes_the_heat_baths_away_again():
+    session = Session(prepare("elastic-collisions", {"molecules": 20}))
+    session.obey({"type": "set", "name": "speed", "value": 1.0})
+    assert np.isfinite(session.setup.parcel.wall_kT()).sum() == 4
+    session.obey({"type": "undo"})
+    assert np.isnan(session.setup.parcel.wall_kT()).all()
+    before = session.setup.parcel.energy()
+    session.obey({"type": "step"})
+    assert session.setup.parcel.energy() == pytest.approx(before, rel=1e-12)
+    assert [change.words for change in session.changes] == ["speed as at the start"]
+
+
 def test_the_challenge_of_the_dry_ascent_is_missed_by_default_and_met_by_a_warmer_start():
     challenge = lesson_of(scenarios.load("lifting-dry")).challenges[0]
     met = {}

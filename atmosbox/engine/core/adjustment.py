@@ -5,8 +5,8 @@ from abc import abstractmethod
 
 from atmosbox.engine.core.account import Account
 from atmosbox.engine.core.inputs import number
-from atmosbox.engine.core.refusal import RefusedError
-from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
+from atmosbox.engine.core.refusal import RefusedError, shown
+from atmosbox.engine.core.walls import HEAT_BATH, PISTON, SPECULAR, WALL_NAMES, HeatBath, Specular, new_walls
 
 __all__ = ["Adjustable"]
 
@@ -95,6 +95,49 @@ class Adjustable(Account):
         for each in baths if wall is None else [wall]:
             first, last = self._walls.schedule[each], self._walls.schedule[each + 1]
             self._walls.schedule_kT[first:last] = kT
+
+    def set_wall(self, wall: int, law: Specular | HeatBath) -> None:
+        """Make a smooth wall a heat bath, or a heat bath a smooth wall, from now on.
+
+        Parameters
+        ----------
+        wall
+            Which wall, in the order of `walls.WALL_NAMES`.
+        law
+            What it is from now on; a heat bath of one temperature.
+
+        Raises
+        ------
+        RefusedError
+            If the wall is a piston, a pool or periodic, if the law is neither of the two or its temperature changes
+            with time; or if the molecules would become too fast for the step of an engine that marches.
+
+        Examples
+        --------
+        >>> from atmosbox.engine import HeatBath, ParcelSet, Specular
+        >>> box = ParcelSet([[1, 1, 1]], [[1, 0, 0]], length=(2, 2, 2))
+        >>> box.set_wall(1, HeatBath(2.0))
+        >>> box.wall_kT().tolist()
+        [nan, 2.0, nan, nan, nan, nan]
+        >>> box.set_wall(1, Specular())
+        >>> box.wall_kT().tolist()
+        [nan, nan, nan, nan, nan, nan]
+        """
+        name = WALL_NAMES[wall] if 0 <= wall < len(WALL_NAMES) else wall
+        if name == wall or self._walls.law[wall] not in (SPECULAR, HEAT_BATH):
+            raise RefusedError(f"wall {name} is neither smooth nor a heat bath: choose one that is")
+        if not isinstance(law, Specular | HeatBath):
+            raise RefusedError(f"wall {name} = {shown(law)}: give Specular or HeatBath")
+        new = new_walls(tuple(law if each == wall else Specular() for each in range(6)), self.ceiling)
+        temperatures = new.schedule_kT[new.schedule[wall] : new.schedule[wall + 1]]
+        if len(temperatures) > 1:
+            raise RefusedError(f"the temperature of wall {name} changes with time: give one temperature")
+        if new.law[wall] == HEAT_BATH:
+            self._bath_changes(float(temperatures[0]))
+        for each in range(self._walls.schedule[wall], self._walls.schedule[wall + 1]):
+            self._walls.schedule_kT[each] = temperatures[0]
+        self._walls.law[wall] = new.law[wall]
+        self._walls.accommodation[wall] = new.accommodation[wall]
 
     def set_gravity(self, gravity: float) -> None:
         """Let gravity be another from now on.

@@ -1,10 +1,12 @@
 """What a box with liquid in it holds and tells, however it lets time pass."""
 
 import math
+from abc import abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.parcel import Array, Parcel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.walls import POOL, SPECULAR
@@ -22,6 +24,9 @@ from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
 __all__ = ["MoistAccount"]
 
+_NEVER = -600.0
+"""Logarithm of the share of its rate at which a covered pool evaporates: never, in any time that there is."""
+
 
 class MoistAccount(Parcel):
     """A box with liquid in it: what the engines have in common that can hold one.
@@ -34,6 +39,7 @@ class MoistAccount(Parcel):
     _reservoir: Reservoir
     _vapours: int
     _rotations: float
+    _uncovered: tuple[float, float]
 
     def _refuse_what_no_liquid_bears(self) -> None:
         """Refuse a plane gas, gravity, and a pool that is not the floor; make the floor a pool."""
@@ -78,7 +84,48 @@ class MoistAccount(Parcel):
         rotation = float(substance.rotation) if self._rotates else 0.0
         reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)
         self._reservoir = reservoir._replace(rotation=rotation)
+        self._uncovered = reservoir.sticking, reservoir.log_rate
         self._rotations = float(self._rotation.sum())
+
+    def set_open_pool(self, share: float) -> None:
+        """Cover a part of a pool, or all of it, with a foil that lets heat pass but no water.
+
+        Vapour sticks to the open part alone, and molecules leave from there alone: both rates are `share` times as
+        large, and the vapour pressure at which they are equal is the same. What hits the foil exchanges heat with the
+        pool as before.
+
+        Parameters
+        ----------
+        share
+            The part that is open [1], 0 to 1.
+
+        Raises
+        ------
+        RefusedError
+            If the liquid is no pool, or the share is not from 0 to 1.
+
+        Examples
+        --------
+        >>> from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
+        >>> from atmosbox.engine.liquid.reservoir import Substance
+        >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+        >>> box = MoistParcelSet([], [], length=(1, 1, 1), liquid=Pool(water, number=5, kT=1.0))
+        >>> box.set_open_pool(0.0)
+        >>> box.advance(300.0)
+        >>> box.evaporated, box.liquid
+        (0, 5)
+        """
+        if not isinstance(self._liquid, Pool):
+            raise RefusedError("the liquid of this box is no pool that could be covered: make it a Pool")
+        share = number(share, "open share of the pool", least=0.0, most=1.0)
+        sticking, log_rate = self._uncovered
+        leaves = max(math.log(share), _NEVER) if share > 0.0 else _NEVER
+        self._reservoir = self._reservoir._replace(sticking=sticking * share, log_rate=log_rate + leaves)
+        self._reservoir_changes()
+
+    @abstractmethod
+    def _reservoir_changes(self) -> None:
+        """Take note that the liquid takes and gives at other rates from now on."""
 
     @property
     def number(self) -> int:

@@ -65,6 +65,9 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
         self._moist_begin(self._gas(), self._reservoir, self._now, speed)
 
+    def _reservoir_changes(self) -> None:
+        self._draw(float(self._reservoir.bound[0]))
+
     def _piston_turned(self) -> None:
         super()._piston_turned()
         speed = 2.0 * abs(self.piston_velocity)
