@@ -33,7 +33,9 @@ from atmosbox.file.run_states import RunStates
 from atmosbox.simulation import continuation, runner
 from atmosbox.sweep import SweepInterrupted, member, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.result import assemble, mean_and_error
+from tests.test_restart import parse_once
 
+assert parse_once  # a fixture
 ROOT = Path(__file__).resolve().parents[1]
 
 SCENE = '''"""Discs, some of which have trouble."""
@@ -70,6 +72,26 @@ def build(settings, engine=EXACT):
     if settings.trouble == 3:
         os.kill(os.getpid(), signal.SIGKILL)
     return discs.build(settings, engine)
+'''
+
+HELD = f'''{SCENE}
+
+if "HOLD" in os.environ:
+    from atmosbox.file import run_states
+
+    class Held(run_states.StateCheckpoint):
+        """The state of a run, saved after its first frame; from the third point on, the run then stands still."""
+
+        def __init__(self, path):
+            super().__init__(path)
+            self._every = 0.0
+
+        def save(self, dataset):
+            super().save(dataset)
+            if int(self.path.name.partition("-")[0]) > 2:
+                time.sleep(600)
+
+    run_states.StateCheckpoint = Held
 '''
 
 QUICK = {"duration": 2.0}
@@ -387,35 +409,6 @@ def test_the_command_ends_with_130_when_it_is_stopped(scene, tmp_path, monkeypat
     assert "1 of 2 runs are saved, type the same again" in done.stderr
 
 
-def test_a_killed_sweep_goes_on_computes_nothing_twice_and_leaves_no_process(scene, tmp_path):
-    file = tmp_path / "discs.nc"
-    words = ["sweep", str(scene), "--vary", "molecules=10:70:6", "--members", "2", "--jobs", "2", "--out", str(file)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(
-        [sys.executable, "-m", "atmosbox", *words], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-    )
-    deadline = time.monotonic() + 120.0
-    while len(saved(file)) < 2 and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.02)
-    process.send_signal(signal.SIGKILL)
-    _, said = process.communicate()
-    before = {record["seed"] for record in saved(file)}
-    assert 2 <= len(before) < 12, said
-    workers = {int(path.name.split("-")[2]) for path in tmp_path.glob("run-*")}
-    while any(Path(f"/proc/{pid}").exists() for pid in workers) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not any(Path(f"/proc/{pid}").exists() for pid in workers)
-    journal = file.with_name("discs.part.jsonl")
-    journal.write_bytes(journal.read_bytes() + b'{"point": 1, "mem')
-    done = CliRunner().invoke(app, [*words[:-4], "--jobs", "1", *words[-2:]])
-    assert done.exit_code == 0, done.output
-    assert f"{len(before)} of 12 runs are saved" in done.stderr
-    assert all(begun(scene)[seed] == 1 for seed in before)
-    assert np.isfinite(read(file).energy_of_light_discs_by_member.values).all()
-    history = read(file).attrs["history"].split("\n")
-    assert [line.partition(": ")[2].split()[0] for line in history] == ["atmosbox", "atmosbox"]
-
-
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -598,23 +591,39 @@ def raises(error):
 
 
 @pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.validate), 2])
-def test_the_command_killed_within_a_run_goes_on_within_it(tmp_path, monkeypatch, jobs):
-    """kill -9 while members are half-way: the same again finds what an undisturbed sweep finds."""
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    words = ["sweep", "temperature", "--vary", "temperature=0degC,40degC", "--set", "molecules=8000",
-             "--jobs", str(jobs), "--out"]  # fmt: skip
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    killed = tmp_path / "killed.nc"
-    with subprocess.Popen([sys.executable, "-m", "atmosbox", *words, str(killed)], env=environment) as process:
-        deadline = time.monotonic() + 120.0
-        while RunStates(killed).begun < jobs and process.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.02)
-        process.send_signal(signal.SIGKILL)
-    assert RunStates(killed).begun == jobs
-    assert saved(killed) == []
-    done = CliRunner().invoke(app, [*words, str(killed)])
+def test_a_killed_sweep_goes_on_within_its_runs_computes_nothing_twice_and_leaves_no_process(scene, tmp_path, jobs):
+    """kill -9 while two runs are saved and others half-way: the same again finds what an undisturbed sweep finds."""
+    scene.write_text(HELD, encoding="utf-8")
+    out = tmp_path / "out"
+    out.mkdir()
+    file = out / "discs.nc"
+    words = ["sweep", str(scene), "--vary", "molecules=10,20,30,40", "--out", str(file), "--jobs"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "atmosbox", *words, str(jobs)],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "HOLD": "1"}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    deadline = time.monotonic() + 120.0
+    while process.poll() is None and time.monotonic() < deadline:
+        if len(saved(file)) == 2 and RunStates(file).begun == jobs:
+            break
+        time.sleep(0.02)
+    process.send_signal(signal.SIGKILL)
+    _, said = process.communicate()
+    before = {record["seed"] for record in saved(file)}
+    assert (len(before), RunStates(file).begun) == (2, jobs), said
+    workers = {int(path.name.split("-")[2]) for path in tmp_path.glob("run-*")}
+    while any(Path(f"/proc/{pid}").exists() for pid in workers) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not any(Path(f"/proc/{pid}").exists() for pid in workers)
+    journal = file.with_name("discs.part.jsonl")
+    journal.write_bytes(journal.read_bytes() + b'{"point": 1, "mem')
+    done = CliRunner().invoke(app, [*words, "1"])
     assert done.exit_code == 0, done.output
-    assert f"0 of 2 runs are saved in {killed.with_name('killed.part.jsonl')} and {jobs} begun" in done.stderr
-    assert [each.name for each in tmp_path.iterdir()] == ["killed.nc"]
-    undisturbed = sweep(plan("temperature", words[3:4], settings={"molecules": 8000}), jobs=2).dataset
-    assert read(killed).drop_attrs().identical(undisturbed.drop_attrs())
+    assert f"2 of 4 runs are saved in {journal} and {jobs} begun" in done.stderr
+    assert all(begun(scene)[seed] == 1 for seed in before)
+    assert [each.name for each in out.iterdir()] == ["discs.nc"]
+    found = read(file)
+    history = found.attrs["history"].split("\n")
+    assert [line.partition(": ")[2].split()[0] for line in history] == ["atmosbox", "atmosbox"]
+    undisturbed = sweep(plan(scene, words[3:4]), jobs=1).dataset
+    assert found.drop_attrs().identical(undisturbed.drop_attrs())
