@@ -83,16 +83,17 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], Modes]:
     offered = sorted(start.plan["molecules"] for start in made)
     if len(made) > 1:
         for start in made:
+            particles = f"{start.plan['told']['stage']['particle']}s"
             start.plan["told"]["controls"].append(
                 {
                     "name": "molecules",
-                    "label": "number of molecules",
+                    "label": f"number of {particles}",
                     "unit": "",
                     "kind": "choice",
                     "choices": [str(number) for number in offered],
                     "value": str(start.plan["molecules"]),
                     "restarts": True,
-                    "help": "molecules: the box begins anew with so many",
+                    "help": f"{particles}: the box begins anew with so many",
                 }
             )
     return made, box.modes

@@ -21,6 +21,10 @@ function boxSentence({ box }, { walls: kelvins = box.wall_temperature, length = 
 // The small type, in whose parts numbers stand between words.
 const named = (footer) => footer.split(" · ").map((part, place) => (place > 1 ? phrase(part) : part)).join(" · ");
 
+// A setting as files write it, "-5 m s-1", as it is printed.
+const printed = (text) => String(text).replace(/^(-?)(\d[\d.]*(?:e[+-]?\d+)?)(?: (.*))?$/, (all, sign, digits, unit) =>
+  [`${sign && "−"}${digits}`, spelled(unit)].filter(Boolean).join(" "));
+
 // The first lines are there at once; a button opens the rest. Returns what lets the words of a box that runs follow it:
 // `follow({ walls, length, settings })` takes what is known anew.
 export function showCaption(parent, runs) {
@@ -46,7 +50,7 @@ export function showCaption(parent, runs) {
     [boxSentence(each, now), phrase(each.exaggeration), ...notes.map(phrase)]))].join(" ");
   const drawn = add("drawn", told());
   add("source", [...new Set(runs.map(({ footer }) => footer))].filter(Boolean).map(named).join(" | "));
-  const settings = new Map(stage.settings);
+  const settings = new Map(stage.settings.map(([name, value]) => [name, printed(value)]));
   const listed = () => [...settings].map(([name, value]) => `${name} ${value}`).join(", ");
   const source = add("source", runs.length === 1 ? listed() : "");
   const write = (line, words) => { if (line.textContent !== words) line.textContent = words; };

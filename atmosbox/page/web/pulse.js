@@ -9,7 +9,7 @@ const SLOWEST = 0.25, FASTEST = 16;
 export class Pulse {
   // `saves` where nothing can be recorded, but what has been measured can be saved.
   constructor(parent, say, { saves = false } = {}) {
-    Object.assign(this, { say, saves, state: { playing: false, pace: 1, recording: null }, unit: "" });
+    Object.assign(this, { say, saves, state: { playing: false, pace: 1, recording: null }, unit: "", particle: "molecule" });
     parent.innerHTML = `
       <button type="button" id="play" class="main" title="${word("play_title")}"></button>
       <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
@@ -56,9 +56,10 @@ export class Pulse {
     else this.say({ type: "record", file: this.part("file").value.trim() || null });
   }
 
-  // A new box begins: its unit of time, and where its recordings go if no file is named.
-  begin({ time, scene }) {
+  // A new box begins: its unit of time, what moves in it, and where its recordings go if no file is named.
+  begin({ time, scene, particle }) {
     this.unit = time.unit;
+    this.particle = particle;
     this.part("file").placeholder = `${scene.replace(/.*\//, "").replace(/\.py$/, "")}-live.nc`;
   }
 
@@ -75,7 +76,7 @@ export class Pulse {
     if (recording) this.part("file").value = recording;
     if (time !== undefined) this.part("time").textContent = withUnit(time, this.unit, 4);
     const vitals = busy ? [phrase(busy)] : [
-      molecules !== undefined && word("molecules", { number: molecules }),
+      molecules !== undefined && word(this.particle === "disc" ? "discs" : "molecules", { number: molecules }),
       Number.isFinite(rate) && playing && word("rate", { number: figure(rate, 2) }),
       Number.isFinite(ledger) && word("energy_off", { number: figure(ledger, 2) }),
       finished && word("over"),
