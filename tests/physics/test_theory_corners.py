@@ -27,10 +27,32 @@ THINNEST = 0.01
 BUSY = {("diffusion", "length"), ("diffusion", "pressure"), ("diffusion", "diameter")}
 """Settings whose highest values mean hundreds of collisions of each molecule before anything has mixed: minutes."""
 SCENES = scenarios.names()
+FRAMES = {
+    "atmosphere": (60, 12),
+    "attraction": (60, 12),
+    "condensation": (60, 12),
+    "diffusion": (30, None),
+    "elastic-collisions": (60, 12),
+    "evaporation": (80, None),
+    "nuclei": (60, 12),
+    "temperature": (60, 12),  # and temperature-large, which is built there
+}
+"""Into how many frames a run is cut, and how many of them settle: no fewer than a scene wants for its headlines."""
 ENERGIES = {"cape_theory", "cin_theory"}
 """Theory that may be below zero: energies of a parcel."""
 SILENT = {"virial_pressure_theory"}
 """Theory that has no value where its series does not hold."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def fewer_frames():
+    """Cut the runs of a scene into fewer frames: each costs as much, however short it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        for scene, (frames, settle) in FRAMES.items():
+            patch.setattr(scenarios.load(scene), "FRAMES", frames)
+            if settle is not None:
+                patch.setattr(scenarios.load(scene), "SETTLE", settle)
+        yield
 
 
 def values(scene, parameter):
