@@ -33,10 +33,22 @@ from atmosbox.trade.extremes.extreme_box import at, moist
 from atmosbox.trade.extremes.probe import parted, refused
 from atmosbox.trade.extremes.verdict import stored
 
-SLOW = {"hot-and-cold", "size-ratio", "packing-0.49-fine"}
-"""What takes engines that go in steps more than a second or two."""
-OWN_KERNELS = {"touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60"}
-"""Boxes of which each needs ten seconds to compile; many other tests try the water of the exact engine."""
+SLOW = {
+    *("hot-and-cold", "size-ratio", "packing-0.49-fine", "two-molecules", "mass-ratio"),
+    *("crushing-piston", "piston-on-points", "supersonic-piston"),
+}
+"""What takes engines that go in steps more than a second or two, compilation included."""
+OWN_KERNELS = {
+    *("touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60", "drying-pool"),
+    *("no-molecules", "hot-and-cold", "mass-ratio", "size-ratio"),
+    *("strong-gravity", "crushing-gravity", "tall-column"),
+    *("crushing-piston", "piston-on-points", "supersonic-piston", "fleeing-piston"),
+}
+"""Boxes of which each needs two to ten seconds to compile, as no scene has such a box on the exact engine.
+
+What remains has the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, in gravity, and
+with a mist. Empty boxes, pistons, and unlike molecules are tried elsewhere, too: test_extremes, physics/test_piston.
+"""
 
 
 def cases():
