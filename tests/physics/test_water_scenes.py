@@ -8,6 +8,7 @@ the same more finely.
 import json
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -43,8 +44,18 @@ FEW = {
 }
 
 
+LONG = pytest.param("mountains", marks=pytest.mark.validate)
+"""A run of the mountains takes two seconds; that its books balance is asserted of those that rain or save molecules."""
+
+
 def run(scene, save_molecules=False, **settings):
     return runner.execute(runner.prepare(scene, {**SHORT[scene], **settings}, save_molecules=save_molecules))
+
+
+@cache
+def usual(scene):
+    """Return the run of a scene that several tests look at."""
+    return run(scene)
 
 
 def found(outcome):
@@ -66,9 +77,9 @@ def is_sound(outcome):
     assert (data.vapor_molecule_count >= 0).all()
 
 
-@pytest.mark.parametrize("scene", SHORT)
+@pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
 def test_a_file_of_a_scene_is_verified_and_the_same_seed_gives_the_same_numbers(scene, tmp_path):
-    first, again, other = run(scene), run(scene), run(scene, seed=2)
+    first, again, other = usual(scene), run(scene), run(scene, seed=2)
     is_sound(first)
     path = write(first.dataset, tmp_path / "run.nc")
     checks = runner.verify(read(path))
@@ -80,7 +91,7 @@ def test_a_file_of_a_scene_is_verified_and_the_same_seed_gives_the_same_numbers(
     assert all(each.agrees for each in other.headlines)
 
 
-@pytest.mark.parametrize("scene", SHORT)
+@pytest.mark.parametrize("scene", ["condensation", "lifting-moist", LONG])
 @pytest.mark.parametrize("extreme", [DRY, COLD, FEW], ids=["dry", "cold", "few"])
 def test_the_books_balance_at_the_ends_of_the_scale(scene, extreme):
     outcome = run(scene, **extreme[scene])
@@ -94,7 +105,14 @@ def test_the_books_balance_at_the_ends_of_the_scale(scene, extreme):
         assert all(each.agrees for each in outcome.headlines)
 
 
-@pytest.mark.parametrize(("humidity", "liquid"), [(0.0, False), (50.0, True), (100.0, True), (120.0, True)])
+@pytest.mark.parametrize(
+    ("humidity", "liquid"),
+    [
+        (50.0, True),
+        (120.0, True),
+        *(pytest.param(*case, marks=pytest.mark.validate) for case in ((0.0, False), (100.0, True))),
+    ],
+)
 def test_vapour_condenses_until_its_pressure_is_that_of_saturation_or_it_is_used_up(humidity, liquid):
     outcome = run("condensation", molecules=4000, duration=16.0, humidity=humidity)
     is_sound(outcome)
@@ -112,16 +130,6 @@ def test_thin_air_holds_as_much_vapour():
     assert share.standard_error < 0.03
     assert share.agrees
     assert share.theory == pytest.approx(1.0, abs=1e-3)
-
-
-def test_the_error_that_the_hygrometer_states_is_its_scatter_from_run_to_run():
-    runs = [found(run("condensation", molecules=600, seed=seed))["mean_relative_humidity"] for seed in range(24)]
-    misfit = np.array([each.misfit for each in runs])
-    stated = math.sqrt(np.mean([each.standard_error**2 for each in runs]))
-    # 24 runs know their scatter by 15 %, and the error stated by 20 blocks each by 3 %
-    ratio = stated / math.sqrt(np.mean(misfit**2))
-    assert abs(math.log(ratio)) <= 4.0 * 0.15
-    assert abs(misfit.mean()) <= 4.0 * stated / math.sqrt(len(runs))
 
 
 def test_a_parcel_too_dry_for_a_cloud_follows_the_dry_adiabat_and_states_no_base():
@@ -183,7 +191,7 @@ def test_air_that_is_saturated_at_the_ground_is_in_its_cloud_from_the_start():
 
 
 def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
-    keeps, rains = run("lifting-moist"), run("lifting-moist", rain=True, cloud_water=0.0)
+    keeps, rains = usual("lifting-moist"), run("lifting-moist", rain=True, cloud_water=0.0)
     is_sound(rains)
     assert "rain_mixing_ratio" not in keeps.dataset
     fallen, held = rains.dataset.rain_mixing_ratio.values, rains.dataset.cloud_liquid_water_mixing_ratio.values
@@ -195,7 +203,10 @@ def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
 def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not():
     # 3.6 K are expected, and with so many the error of the difference is .5 K
     more = {"molecules": 12_000, "cloud_water": 2.0}
-    ends = {rain: found(run("mountains", rain=rain, **more))["arrival_temperature"] for rain in (True, False)}
+    outcomes = {rain: run("mountains", rain=rain, **more) for rain in (True, False)}
+    for outcome in outcomes.values():
+        is_sound(outcome)
+    ends = {rain: found(outcome)["arrival_temperature"] for rain, outcome in outcomes.items()}
     assert ends[False].theory == pytest.approx(298.15, abs=0.01)
     assert ends[True].theory - ends[False].theory > 2.0
     gap = ends[True].value - ends[False].value
