@@ -45,8 +45,10 @@ def test_virial_coefficients_are_the_integrals_of_mayer(range_):
     assert float(theory.square_well_third_virial(kT, range_)) == pytest.approx(product.mean(), abs=4.0 * error)
 
 
-@pytest.mark.parametrize("kT", [1.5, *(pytest.param(kT, marks=pytest.mark.validate) for kT in (1.0, 2.0, 3.0))])
-def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT):
+@pytest.mark.parametrize(
+    ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.validate) for kT in (1.0, 1.5, 2.0, 3.0))]
+)
+def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
     """Z - 1 and u at phi = .01, from the momentum that pairs hand on: B2 and B3 together, in 4 standard errors.
 
     Four terms of the series would differ from three by some 1e-5 here; B3 makes 5e-4 to 9e-4 of Z.
@@ -54,7 +56,7 @@ def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT):
     number, density = 600, 0.01 * 6.0 / math.pi
     volume = number / density
     factors, energies = [], []
-    for seed in range(4):
+    for seed in range(runs):
         gas = well_gas(number, density, kT, rate=0.05, seed=10 * seed + 1)
         gas.advance(60.0)
         for frame in range(60):
@@ -75,7 +77,7 @@ def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT):
 
 def test_air_that_does_not_attract_keeps_out_of_the_wells():
     """How many pairs are near: vapour e^(1/T) times as many as chance, air as many, but for excluded volume (5 %)."""
-    number, density, kT = 800, 0.01, 1.0
+    number, density, kT = 500, 0.01, 1.0
     species = np.arange(number) % 2
     table = SquareWell(1.5, [[1.0, 0.0], [0.0, 0.0]])
     gas = well_gas(number, density, kT, rate=0.2, seed=3, well=table, species=species)
@@ -137,7 +139,8 @@ def test_extreme_wells_keep_their_energy(well, kT, density):
     assert len(position) == number
     velocity = np.random.default_rng(2).normal(size=(number, 3)) * math.sqrt(kT)
     box = AttractingParcelSet(position, velocity, length=(side,) * 3, walls=ROUND, well=well)
-    box.advance(10.0 / math.sqrt(kT))
+    # where wells are so deep, all that fall into them are a thousand times as fast
+    box.advance(10.0 / math.sqrt(max(kT, 1e-4 * well.depth)))
     assert box.contacts > 20
     assert box.ledger() < 1e-12
 
