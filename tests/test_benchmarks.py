@@ -72,7 +72,8 @@ def test_a_feature_is_struck_out_of_every_source_of_the_engine_and_no_other_is(f
     assert all(used.values())
     assert left == used | ({feature: 0} if feature in used else {})
     for name, text in after.items():
-        compile(text, name, "exec")
+        if text != before[name]:
+            compile(text, name, "exec")
     assert (after == before) == (feature == "nothing")
 
 

@@ -2,13 +2,13 @@
 
 import csv
 import io
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import atmosbox as ab
+from atmosbox.cli import app
 from atmosbox.errors import FileError
 from atmosbox.file.spreadsheet import tables
 from atmosbox.file.trajectory import extended_xyz, gsd_file
@@ -114,12 +114,13 @@ def test_a_spreadsheet_has_the_same_numbers_under_their_units(box):
     assert float(row[2]) == float(box.mean_temperature)
 
 
-def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path):
+def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path, monkeypatch):
     ab.run("temperature", molecules=50, duration="1 ns", save_molecules=True, out=tmp_path / "box.nc")
 
+    monkeypatch.chdir(tmp_path)
+
     def export(*words):
-        command = [sys.executable, "-m", "atmosbox", "export", "box.nc", *words]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        return CliRunner().invoke(app, ["export", "box.nc", *words])
 
     assert export().stdout == "box.extxyz\n"
     assert export("-o", "moving.gsd").stdout == "moving.gsd\n"
@@ -127,9 +128,9 @@ def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path):
         f"box-{name}.csv" for name in tables(ab.open(tmp_path / "box.nc"))
     ]
     again = export()
-    assert (again.returncode, again.stdout) == (2, "")
+    assert (again.exit_code, again.stdout) == (2, "")
     assert "add --force" in again.stderr
-    assert export("-o", "box.pdb").returncode == 2
+    assert export("-o", "box.pdb").exit_code == 2
 
 
 def test_a_run_without_molecules_or_velocities_says_what_to_do(box):
