@@ -121,7 +121,14 @@ def agrees(values, exact, within):
 
 @pytest.mark.parametrize(
     ("nuclei", "sticking", "ball"),
-    [(10.0, 1.0, 0.0), (0.0, 1.0, 0.0), (10.0, 0.3, 0.0), (10.0, 1.0, 0.2), (0.0, 0.5, 0.2)],
+    [
+        (10.0, 1.0, 0.0),
+        (0.0, 0.5, 0.2),
+        *(
+            pytest.param(*case, marks=pytest.mark.validate)
+            for case in ((0.0, 1.0, 0.0), (10.0, 0.3, 0.0), (10.0, 1.0, 0.2))
+        ),
+    ],
 )
 def test_an_isolated_box_with_a_drop_visits_all_states_alike(nuclei, sticking, ball):
     # a ball of 0.2 makes the drop half as wide again with three of them: it then leaves a tenth less room
@@ -196,7 +203,9 @@ def test_two_drops_that_grow_leave_less_room_the_more_they_hold():
 BATHS = (HeatBath(1.0),) * 6
 
 
-@pytest.mark.parametrize(("position", "saturated"), [(MIDDLE, 20.0), (PAIR, 20.0), (MIDDLE, 3.0)])
+@pytest.mark.parametrize(
+    ("position", "saturated"), [pytest.param(MIDDLE, 20.0, marks=pytest.mark.validate), (PAIR, 20.0), (MIDDLE, 3.0)]
+)
 def test_the_vapour_over_drops_has_the_saturation_pressure(position, saturated):
     molecules = round(6 * saturated) - 7
     facts = {"nucleus": 0.15, "nucleus_mass": PINNED, "molecule_radius": 0.0, "nuclei": 10.0}
@@ -244,7 +253,10 @@ def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
     agrees(sampled(parcel, 2.0, 4000, lambda box: [box.liquid]), np.array([n @ chance]), 0.12)
 
 
-@pytest.mark.parametrize(("mass", "ball"), [(0.5, 0.0), (0.5, 0.15), (10.0, 0.15)])
+@pytest.mark.parametrize(
+    ("mass", "ball"),
+    [(0.5, 0.15), *(pytest.param(*case, marks=pytest.mark.validate) for case in ((0.5, 0.0), (10.0, 0.15)))],
+)
 def test_a_light_drop_that_flies_about_is_in_the_same_balance(mass, ball):
     # it has a room of its own in the box, and hardly more mass than a molecule
     molecules, nucleus = 4, 0.12

@@ -99,7 +99,7 @@ def test_a_column_between_heat_baths_is_barometric_and_isothermal():
     assert box.contacts > 10 * number
 
 
-@pytest.mark.parametrize("dt", [0.2, 2.0])
+@pytest.mark.parametrize("dt", [pytest.param(0.2, marks=pytest.mark.validate), 2.0])
 def test_walls_give_a_gas_their_temperature_however_long_the_step(dt):
     # what is emitted flies for the rest of the step: were it not so, long steps would make the gas too hot
     number, kT = 1000, 1.3

@@ -55,7 +55,9 @@ def test_the_error_that_a_rising_parcel_states_is_the_scatter_from_run_to_run():
         assert abs(math.log(ratio)) <= 4.0 * 0.076, (float(found.parcel_pressure[frame]), ratio)
 
 
-@pytest.mark.parametrize("settings", [{}, {"rotation": False}, {"top_pressure": "100 hPa"}])
+@pytest.mark.parametrize(
+    "settings", [pytest.param({}, marks=pytest.mark.validate), {"rotation": False}, {"top_pressure": "100 hPa"}]
+)
 def test_a_fast_parcel_is_as_much_too_warm_as_the_viscosity_of_its_gas_demands(settings):
     length = 200
     misfits, _, found = ascents(range(16), molecules=1000, ascent=length, **settings)

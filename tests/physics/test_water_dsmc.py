@@ -67,8 +67,18 @@ def test_unlike_molecules_that_collide_visit_all_states_alike(wet, kind):
     assert box.contacts > 20_000
 
 
-@pytest.mark.parametrize(("kind", "number"), [(Mist, 120), (Mist, 5), (Pool, 120)])
-@pytest.mark.parametrize(("nuclei", "sticking"), [(10.0, 1.0), (0.0, 0.4)])
+@pytest.mark.parametrize(
+    ("kind", "number", "nuclei", "sticking"),
+    [
+        (Mist, 120, 10.0, 1.0),
+        (Mist, 5, 0.0, 0.4),
+        (Pool, 120, 0.0, 0.4),
+        *(
+            pytest.param(*case, marks=pytest.mark.validate)
+            for case in ((Mist, 120, 0.0, 0.4), (Mist, 5, 10.0, 1.0), (Pool, 120, 10.0, 1.0))
+        ),
+    ],
+)
 def test_between_heat_baths_the_vapour_has_the_saturation_pressure(wet, kind, number, nuclei, sticking):
     saturated = 20.0 if number > 100 else 2.0
     substance = wet.water(saturated * math.exp(PHI))
