@@ -862,7 +862,7 @@ def test_a_difference_of_temperatures_in_celsius_is_in_kelvin():
 
 def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart():
     for decades in [0.05, 0.3, 0.7, 1.0, 2.5, 8.0, 30.0]:
-        for low in [1e-20, 0.07, 3.0, 300.0, 1e24]:
+        for low in [1e-20, 3.0, 1e24]:
             for length in [100.0, 300.0]:
                 limits, inch = (low, low * 10**decades), length / 72
                 drawing = Figure(figsize=(2 * inch, 2 * inch), dpi=72)

@@ -69,12 +69,6 @@ def text_of_pdf(content):
     return pages, " ".join(" ".join(pages).replace("\xa0", " ").split())
 
 
-def command_line(*words, folder):
-    command = [sys.executable, "-m", "atmosbox", "sheet", *words]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False)
-
-
 OWN = '''
 """Discs that nobody has written questions for. They fly {and meet}.
 
@@ -260,11 +254,13 @@ def test_the_students_sheet_gives_nothing_away():
 
 
 def test_the_same_sheet_gives_the_same_bytes(tmp_path):
-    again = [command_line("temperature", "--out", f"{number}.pdf", folder=tmp_path) for number in (1, 2)]
-    assert [done.returncode for done in again] == [0, 0]
-    assert again[0].stdout == "1.pdf\n"
-    first, second = ((tmp_path / f"{number}.pdf").read_bytes() for number in (1, 2))
-    assert first == second
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONHASHSEED": "7", "TZ": "Asia/Tokyo"}
+    done = subprocess.run(
+        [sys.executable, "-m", "atmosbox", "sheet", "temperature", "--out", "1.pdf"],
+        cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8", check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (0, "1.pdf\n")
+    first = (tmp_path / "1.pdf").read_bytes()
     assert pdf(sheets.worksheet("temperature")).content == first
     assert pdf(sheets.worksheet("temperature")).content == first
     assert str(tmp_path).encode() not in first
@@ -455,18 +451,23 @@ def test_a_file_appears_whole_and_replaces_nothing_unasked(tmp_path, monkeypatch
     assert sorted(each.name for each in tmp_path.iterdir()) == ["b.pdf", "sheet.md"]
 
 
-def test_the_command_says_the_path_and_refuses_in_a_sentence(tmp_path):
-    done = command_line("lifting-dry", "--format", "md", "--seed", "7", folder=tmp_path)
-    assert (done.returncode, done.stdout) == (0, "lifting-dry-sheet.md\n")
+def test_the_command_says_the_path_and_refuses_in_a_sentence(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def command(*words):
+        return CliRunner().invoke(app, ["sheet", *words])
+
+    done = command("lifting-dry", "--format", "md", "--seed", "7")
+    assert (done.exit_code, done.stdout) == (0, "lifting-dry-sheet.md\n")
     assert "--seed 7" in (tmp_path / "lifting-dry-sheet.md").read_text(encoding="utf-8")
-    again = command_line("lifting-dry", "--format", "md", folder=tmp_path)
-    assert again.returncode == 2
+    again = command("lifting-dry", "--format", "md")
+    assert again.exit_code == 2
     assert again.stderr.startswith("error: lifting-dry-sheet.md exists already: add --force to replace it")
-    wrong = command_line("lifting-dry", "--set", "temperature=25m", folder=tmp_path)
-    assert (wrong.returncode, wrong.stdout) == (2, "")
+    wrong = command("lifting-dry", "--set", "temperature=25m")
+    assert (wrong.exit_code, wrong.stdout) == (2, "")
     assert "is a length" in wrong.stderr
-    nobody = command_line("lifting-wet", folder=tmp_path)
-    assert nobody.returncode == 2
+    nobody = command("lifting-wet")
+    assert nobody.exit_code == 2
     assert sorted(each.name for each in tmp_path.iterdir()) == ["lifting-dry-sheet.md"]
 
 

@@ -1,5 +1,6 @@
 """The words of the pages: one table a language, complete, and nothing said beside them."""
 
+import functools
 import re
 from importlib import resources
 
@@ -27,6 +28,7 @@ def asked():
     return keys | {name.lower() for name in re.findall(r"@@(WAIT|NO_SCRIPT|CANNOT_START)@@", text)}
 
 
+@functools.cache
 def said_by_scenes():
     """Return all that the shipped scenes say on a page with graphs: titles, curves, axes, settings."""
     found = set()
