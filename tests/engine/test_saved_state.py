@@ -53,7 +53,8 @@ BOXES = {
         walls=(Periodic(),) * 4 + (HeatBath(Ramp(1.0, 3.0, 0.0, 30.0)), Specular()),
     ),
     "mixture": lambda: ParcelSet(
-        *gas(), length=(12.0,) * 3, mass=[1.0, 3.0] * 32, diameter=[1.0, 0.2] * 32, walls=(Periodic(),) * 6
+        *gas(), length=(12.0,) * 3, mass=[1.0, 3.0] * 32, diameter=[1.0, 0.2] * 32, walls=(Periodic(),) * 6,
+        rotation=[2.0, 0.0] * 32, rotational_energy=[1.0, 0.0] * 32,
     ),
     "lift": lambda: ParcelSet(*gas(), **lifted()),
     "mist": lambda: MoistParcelSet(*gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()),
@@ -69,7 +70,10 @@ BOXES = {
             surface_tension=0.5, dissolved=(0.0, 6.0),
         ),
     ),
-    "stepped": lambda: SteppedParcel(*gas(), delta=0.01, **lifted()),
+    "stepped": lambda: SteppedParcel(
+        *gas(), delta=0.01, gravity=0.01, mass=[1.0, 3.0] * 32,
+        **lifted() | {"walls": (*SMOOTH[:2], *(Periodic(),) * 2, Specular(), Piston())},
+    ),
     "dsmc": lambda: DsmcParcel(*gas(), threads=2, **lifted()),
     "moist dsmc": lambda: MoistDsmcParcel(
         *gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()
