@@ -103,11 +103,18 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
     assert counters(other) not in runs
 
 
-@pytest.mark.parametrize("walls", [SMOOTH, TURNING, (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05))])
-@pytest.mark.parametrize("gravity", [0.0, 0.3])
+@pytest.mark.parametrize(
+    ("walls", "gravity"),
+    [
+        *((walls, 0.0) for walls in (SMOOTH, TURNING, (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))),
+        *(
+            (walls, 0.3)
+            for walls in ((*TURNING[:4], *SMOOTH[:2]), (*SMOOTH[:5], Piston(0.1)), (*SMOOTH[:5], Piston(-0.05)))
+        ),
+        pytest.param(SMOOTH, 0.3, marks=pytest.mark.validate),
+    ],
+)
 def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):
-    if gravity and walls == TURNING:
-        walls = (*TURNING[:4], *SMOOTH[:2])
     number, side = (BLOCK + 500, 8.0) if COMPILED else (40, 8.0)
     small = 1e-7  # so that there are cells to be sorted into, and nobody meets anybody
     gas = box(number, side, walls=walls, gravity=gravity, diameter=small, dt=0.2)
@@ -172,7 +179,7 @@ def test_a_gas_at_rest_falls_and_collides():
 
 def test_a_cold_floor_in_strong_gravity_does_not_stop_time():
     gas = box(50, 5.0, walls=(*SMOOTH[:4], HeatBath(1e-12), Specular()), gravity=100.0)
-    gas.advance(5.0)
+    gas.advance(1.0)
     assert gas.escaped() == 0
     assert gas.energy()[0] < 0.1 * gas.number
 
