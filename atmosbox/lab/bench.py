@@ -17,7 +17,8 @@ from atmosbox.lab.kernels.gauging import Gauges, Reading
 from atmosbox.lab.kernels.laying_out import Layout
 from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
-from atmosbox.scene.instruments import Air, Discs, Layers, Speeds
+from atmosbox.lab.kernels.two_gases import Mixture
+from atmosbox.scene.instruments import Air, Discs, Layers, Lift, Mixing, Speeds
 from atmosbox.simulation.preparation import Prepared, build
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ __all__ = ["Bench", "bench", "refuse"]
 _CORNERS = 4
 _SPARE = 1.5
 _PLACES = 32
+_INSTRUMENTS = (Air, Discs, Layers, Lift, Mixing, Speeds)
 
 
 class Bench(NamedTuple):
@@ -68,6 +70,7 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         With what to use instead.
     """
     parcel: Any = setup.parcel
+    unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
     why = None
     if str(prepared.engine) != "exact":
         why = "runs in the page with the exact engine alone"
@@ -79,6 +82,8 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = "has cells too crowded, or too small, for the rows that the page works with"
     elif parcel._driver is not None and not parcel._ascends:
         why = "moves its piston in a way that is not compiled for the page"
+    elif unknown:
+        why = f"has an instrument that is not compiled for the page, {unknown[0]}"
     if why is not None:
         raise SettingError(
             "scene", prepared.scene, why, f"let it run with atmosbox live {prepared.scene}, or show a run with view"
@@ -209,6 +214,26 @@ def _gauges(setup: Setup) -> Gauges:
         scratch=np.zeros((6, number)),
         half=half,
         running=np.zeros(8),
+        mixture=_mixture(setup),
+    )
+
+
+def _mixture(setup: Setup) -> Mixture:
+    """Return two gases that mix, and nothing where none do."""
+    instrument, parcel = _of(setup, Mixing), setup.parcel
+    moments = [] if instrument is None else list(instrument._moments.values())
+    bins = 0 if instrument is None else instrument._bins
+    radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
+    return Mixture(
+        right=np.zeros(0, np.int64) if instrument is None else instrument._right.astype(np.int64),
+        low=radius,
+        width=float(parcel.length[0]) - 2.0 * radius,
+        moments=np.array(moments, float),
+        frame=setup.frame,
+        off=np.full(len(moments), math.inf),
+        mean=np.full(len(moments) * bins, math.nan),
+        error=np.full(len(moments) * bins, math.nan),
+        counts=np.zeros((2, bins)),
     )
 
 

@@ -19,7 +19,7 @@ from atmosbox.live.picture import Picture
 from atmosbox.live.summary import while_it_runs
 from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
-from atmosbox.scene.instruments import Lift
+from atmosbox.scene.instruments import MOMENTS, Lift
 from atmosbox.simulation.preparation import Prepared
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
     memory = image(arguments(box), named)
     wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *STATE}
-    wanted |= {"sight.place", "sight.colour", "sight.length"}
+    wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
     found, numbers = _knobs(setup)
     readings = _readings(box)
     shown = controls(found, [], {}, collisions=None)
@@ -125,6 +125,8 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
             ("energy_change", Reading.ENERGY_CHANGE, 1.0),
             ("momentum_residual", Reading.MOMENTUM, 1.0),
         ]
+    if box.gauges.mixture.right.size:
+        found += [("mixing_amplitude", Reading.AMPLITUDE, 1.0), ("mixing_entropy", Reading.ENTROPY, 1.0)]
     if box.modes.ascends:
         found += [
             ("parcel_temperature", Reading.PARCEL_KT, scale.temperature),
@@ -168,6 +170,12 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
             ("layer_temperature", "layers", layers, layers, scale.temperature),
             ("layer_pressure", "layers", 2 * layers, layers, scale.pressure),
         ]
+    across = box.gauges.mixture.counts.shape[1]
+    if across:
+        found += [
+            (f"left_gas_share_{name}", "gauges.mixture", place * across, across, 1.0)
+            for place, name in enumerate(MOMENTS)
+        ]
     return [
         (name + end, f"{array}.{part}", first, count, float(factor))
         for name, array, first, count, factor in found
@@ -176,12 +184,17 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
 
 
 def _fixed(box: Bench) -> dict[str, Any]:
-    """Return what does not change: the middles of bins and of layers, in SI."""
+    """Return what does not change: the middles of bins, of layers, and of parts of a box in which gases mix, in SI."""
     edges, layers = box.gauges.edges * box.setup.scale.velocity, box.gauges.sums.shape[1]
     found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
     if layers:
         height = np.linspace(0.0, float(box.setup.parcel.length[2]), layers + 1) * box.setup.scale.length
         found["height"] = plain(0.5 * (height[1:] + height[:-1]))
+    mixture = box.gauges.mixture
+    across = mixture.counts.shape[1]
+    if across:
+        edges = np.linspace(0.0, mixture.width, across + 1) * box.setup.scale.length
+        found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
     return found
 
 

@@ -18,12 +18,14 @@ from atmosbox.simulation.preparation import Prepared
 if TYPE_CHECKING:
     import xarray as xr
 
+    from atmosbox.scene.knob import Knob
     from atmosbox.scene.setup import Setup
 
 __all__ = ["short_run", "tables"]
 
 _FRAMES = 3
 _POINTS = 121
+_LONG = 20.0
 _WAY = 401
 
 
@@ -81,33 +83,39 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
     if lift is not None:
         return [_way(setup, lift), _adiabat(setup, lift)]
-    return [_walls(prepared, setup, found)]
-
-
-def _walls(prepared: Prepared, setup: Setup, found: xr.Dataset) -> dict[str, Any]:
-    """Return what the scene's theory says at each temperature that the walls can have."""
     knob = next((knob for knob in setup.knobs if knob.name == "temperature"), None)
-    if knob is None:
-        grid = [0.0]
-    else:
-        grid = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS).tolist()
+    return [_walls(prepared, found, knob)] if knob is not None else _course(prepared, setup, found)
+
+
+def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return what the scene's theory says as time passes, at each frame of a run and long after."""
+    told = prepared.module.theory(found, prepared.settings)
+    if any(_is_series(values, found) and np.ptp(values) > 0.0 for values in told.values()):
+        run = np.arange(1, setup.frames + 1) * float(found.elapsed_time[0])
+        times = np.concatenate([run, run[-1] * np.geomspace(1.0, _LONG, _POINTS)[1:]])
+        found = found.drop_dims("elapsed_time").assign_coords(elapsed_time=times)
+        told = prepared.module.theory(found, prepared.settings)
+    series = {name: plain(values) for name, values in told.items() if _is_series(values, found)}
+    rest = {name: [plain(values)] for name, values in told.items() if name not in series}
+    return [
+        {"along": "elapsed_time", "grid": plain(found.elapsed_time.values), "curves": series},
+        {"along": "elapsed_time", "grid": [0.0], "curves": rest},
+    ]
+
+
+def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
+    """Return what the scene's theory says at each temperature that the walls can have."""
+    grid = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS).tolist()
     curves: dict[str, list[Any]] = {}
     for kelvin in grid:
-        here = found
-        if knob is not None:
-            here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
-        told = prepared.module.theory(here, prepared.settings)
-        for name, values in told.items():
-            curves.setdefault(name, []).append(_at_last(np.asarray(values), found))
-    along = "elapsed_time" if knob is None else "wall_temperature[z_low]"
-    return {"along": along, "grid": plain(grid), "curves": curves}
+        here = found.assign(wall_temperature=found.wall_temperature.where(found.wall_temperature.isnull(), kelvin))
+        for name, values in prepared.module.theory(here, prepared.settings).items():
+            curves.setdefault(name, []).append(plain(values[-1:])[0] if _is_series(values, found) else plain(values))
+    return {"along": "wall_temperature[z_low]", "grid": plain(grid), "curves": curves}
 
 
-def _at_last(values: Any, found: xr.Dataset) -> Any:
-    """Return the last value of a series, or all of what is none."""
-    if values.shape == (found.sizes["elapsed_time"],):
-        return plain(values[-1:])[0]
-    return plain(values)
+def _is_series(values: Any, found: xr.Dataset) -> bool:
+    return bool(np.shape(values) == (found.sizes["elapsed_time"],))
 
 
 def _way(setup: Setup, lift: Lift) -> dict[str, Any]:

@@ -19,8 +19,10 @@ SCENES: dict[str, dict[str, Any]] = {
     "elastic-collisions": {},
     "atmosphere": {"start": "equilibrium"},
     "lifting-dry": {},
+    "temperature-large": {},
+    "diffusion": {"molecules": 4000},
 }
-"""The shipped scenes that a page can run, with the settings that they need for it."""
+"""The shipped scenes that a page can run, with the settings that they need for it, or for a page of 1.5 MB."""
 
 
 def module_name(modes: Any) -> str:

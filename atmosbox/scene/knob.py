@@ -195,8 +195,11 @@ def open_pool(parcel: Any) -> Knob:
     >>> setup.parcel.evaporated, setup.parcel.condensed, setup.parcel.ledger() < 1e-12
     (0, 0, True)
     """
-    words = "share of the pool that is open; the rest is covered"
-    return Knob("open_pool", words, "percent", 0.0, 100.0, 100.0, parcel.set_open_pool)
+
+    def turn(share: float) -> None:
+        parcel.set_open_pool(share)
+
+    return Knob("open_pool", "share of the pool that is open; the rest is covered", "percent", 0.0, 100.0, 100.0, turn)
 
 
 def gravity(

@@ -22,6 +22,8 @@ LABS = {
     "elastic-collisions": {},
     "atmosphere": {"molecules": 1500, "start": "equilibrium"},
     "lifting-dry": {"molecules": 1500, "ascent": 400},
+    "temperature-large": {},
+    "diffusion": {"molecules": 3000},
 }
 """The settings of the labs: so few molecules that a phone keeps up."""
 

@@ -18,6 +18,8 @@ SMALL = {
     "elastic-collisions": ({}, 30),
     "atmosphere": ({"molecules": 800}, 3),
     "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out anew twice
+    "temperature-large": ({"molecules": 300}, 20),
+    "diffusion": ({"molecules": 2000}, 8),
 }
 TOLD = ("adiabat", "environment", "parcel_height")
 """What theory says of a parcel's way begins so."""

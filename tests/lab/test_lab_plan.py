@@ -2,9 +2,11 @@
 
 import shlex
 
+import numpy as np
 import pytest
 
 from atmosbox.lab.lab_plan import lab_plan
+from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import prepare
 
 
@@ -24,6 +26,19 @@ def test_the_command_that_is_saved_begins_the_same_run(scene, settings):
     assert options[-2:] == ["--seed", str(prepared.settings.seed)]
     values = dict(each.split("=", 1) for each in options if "=" in each)
     assert prepare(scene, values | {"seed": options[-1]}).settings == prepared.settings
+
+
+def test_theory_that_changes_with_time_goes_on_as_theory_does():
+    prepared = prepare("diffusion", {"molecules": 1000})
+    plan, _, _ = lab_plan(prepared)
+    course, rest = plan["tables"]
+    assert course["along"] == "elapsed_time"
+    decay = np.array(course["curves"]["mixing_amplitude_theory"])
+    time = np.array(course["grid"]) / course["grid"][plan["frames"] - 1] * prepared.settings.duration
+    # seven figures of times up to 60 mixing times, each half a unit off at most, and of the curve itself
+    np.testing.assert_allclose(decay, np.exp(-time), rtol=61 * 5e-7)
+    assert time[-1] == pytest.approx(20.0 * prepared.settings.duration)
+    assert {f"left_gas_share_{name}_theory" for name in MOMENTS} <= set(rest["curves"])
 
 
 @pytest.mark.parametrize(

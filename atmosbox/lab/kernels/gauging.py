@@ -1,4 +1,4 @@
-"""What is read off a box in a page: thermometer, barometer, layers, speeds, unlike discs, a parcel that rises.
+"""What is read off a box in a page: thermometer, barometer, layers, speeds, unlike discs, a parcel that rises, mixing.
 
 These are the sums of `atmosbox.scene.instruments`, as kernels. What is shown of them, and in which unit, the room's
 `reading` says; the averages of many frames are in `averaging`.
@@ -15,6 +15,7 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
+from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
 __all__ = ["Gauges", "Reading", "gauging"]
 
@@ -33,6 +34,7 @@ class Gauges(NamedTuple):
 
     ``half : (molecule,)`` 0 for a light disc, 1 for a heavy one, empty where molecules are alike; ``running : (8,)``
     sums of the mean energies of both halves [energy], the frames, the first energy, and the first momentum.
+    ``mixture`` two gases that mix.
     """
 
     reading: Any
@@ -47,6 +49,7 @@ class Gauges(NamedTuple):
     scratch: Any
     half: Any
     running: Any
+    mixture: Mixture
 
 
 class Reading(IntEnum):
@@ -65,7 +68,9 @@ class Reading(IntEnum):
     PARCEL_PRESSURE = 10
     MOMENT = 11
     KINETIC = 12
-    WALL_KT = 13
+    AMPLITUDE = 13
+    ENTROPY = 14
+    WALL_KT = 15
 
 
 _TIME, _ENERGY = 6, 7
@@ -74,6 +79,7 @@ _TIME, _ENERGY = 6, 7
 @functools.cache
 def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``begin``, ``sample`` and ``end_frame`` of one set of modes."""
+    begin_mixing, end_mixing = mixing(modes)
 
     @kernel
     def ceiling(gas, now):
@@ -247,6 +253,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         for layer in range(gauges.sums.shape[1]):
             gauges.sums[3, layer] = gas.tallies.virial[layer]
         gauges.running[:] = 0.0
+        begin_mixing(gauges.mixture)
         return 0
 
     @kernel
@@ -286,6 +293,8 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
             gauges.sums[3, layer] = gas.tallies.virial[layer]
         if gauges.half.size > 0:
             end_halves(gas, book, total, px, py, pz, gauges)
+        if gauges.mixture.right.size > 0:
+            reading[Reading.AMPLITUDE], reading[Reading.ENTROPY] = end_mixing(gas, now, time, gauges.mixture)
         end_lift(gas, ascent, book, gauges)
         gauges.warmth[:] = 0.0
         gauges.counts[:] = 0.0

@@ -1,0 +1,89 @@
+"""Two gases that mix, as kernels: what `atmosbox.scene.instruments.Mixing` measures."""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.elementary import circle, log
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.encounter import motion_at
+
+__all__ = ["Mixture", "mixing"]
+
+
+class Mixture(NamedTuple):
+    """Two gases, and where they are; all arrays are empty in a scene where none mix.
+
+    ``right : (molecule,)`` 1 for those that began on the right, else 0. ``low`` and ``width`` [length]: from where on,
+    and how far, centres reach along x. ``moments : (moment,)`` when to look [time], ``off : (moment,)`` how far the end
+    of a frame was from it, half a ``frame`` at most [time]; ``mean, error : (moment * bin,)`` the share of the left gas
+    then, and its standard error. ``counts : (2, bin)`` molecules of both gases at the end of the last frame.
+    """
+
+    right: Any
+    low: float
+    width: float
+    moments: Any
+    frame: float
+    off: Any
+    mean: Any
+    error: Any
+    counts: Any
+
+
+@functools.cache
+def mixing(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``begin`` and ``end_frame`` of one set of modes; the second returns mode and entropy."""
+
+    @kernel
+    def begin(mixture):
+        """Forget where the gases were."""
+        mixture.off[:] = math.inf
+        mixture.mean[:] = math.nan
+        mixture.error[:] = math.nan
+
+    @kernel
+    def entropy(counts):
+        """Return the entropy of mixing per molecule, in units of k: see `entropy_of_counts`."""
+        total = found = 0.0
+        for b in range(counts.shape[1]):
+            both = counts[0, b] + counts[1, b]
+            if both > 0.0:
+                kinds = term = 0.0
+                for gas in range(2):
+                    part = counts[gas, b] / both
+                    if part > 0.0:
+                        term -= part * log(part)
+                        kinds += 1.0
+                found += both * (term + 0.5 * (kinds - 1.0) / both)
+                total += both
+        return found / total
+
+    @kernel
+    def end_frame(gas, now, time, mixture):
+        """Count both gases across the box, and return the slowest mode and the entropy, 1 where they are one gas."""
+        counts, bins = mixture.counts, mixture.counts.shape[1]
+        counts[:] = 0.0
+        amplitude = 0.0
+        for i in range(gas.molecules.size):
+            across = (motion_at(i, now, gas, modes).x - mixture.low) / mixture.width
+            # rounding may leave one that touches a wall a little behind it
+            inside = min(max(across, 0.0), 1.0)
+            cosine, _ = circle(0.5 * inside)
+            amplitude += -cosine if mixture.right[i] else cosine
+            counts[mixture.right[i], min(int(inside * bins), bins - 1)] += 1.0
+        for m in range(mixture.moments.size):
+            off = abs(time - mixture.moments[m])
+            if off < mixture.off[m] and off <= 0.5 * mixture.frame:
+                mixture.off[m] = off
+                for b in range(bins):
+                    both = counts[0, b] + counts[1, b]
+                    # Laplace's estimate in the error, so that a bin of one gas alone has one too
+                    guess = (counts[0, b] + 1.0) / (both + 2.0)
+                    mixture.mean[m * bins + b] = counts[0, b] / both if both > 0.0 else math.nan
+                    mixture.error[m * bins + b] = math.sqrt(guess * (1.0 - guess) / (both + 2.0))
+        return 0.5 * math.pi * amplitude / gas.molecules.size, entropy(counts) / log(2.0)
+
+    return begin, end_frame
