@@ -212,7 +212,7 @@ def test_gravity_may_be_switched_on_and_pulls_the_liquid_down():
 
 def test_two_molecules_that_orbit_in_a_well_stay_there():
     pair = AttractingParcelSet(
-        [[4.4, 5, 5], [5.6, 5, 5]], [[0, 0.3, 0.1], [0, -0.3, -0.1]], length=(10,) * 3, well=SquareWell()
+        [[4.4, 5, 5], [5.6, 5, 5]], [[0, 0.3, 0.1], [0, -0.3, -0.1]], length=(10,) * 3, walls=ROUND, well=SquareWell()
     )
     pair.advance(1000.0)
     assert pair.number_of_wells == 1
