@@ -34,6 +34,9 @@ FRAMES = {
     "diffusion": (30, None),
     "elastic-collisions": (60, 12),
     "evaporation": (80, None),
+    "lifting-moist": (30, None),
+    "lifting-sounding": (30, None),
+    "mountains": (30, None),
     "nuclei": (60, 12),
     "temperature": (60, 12),  # and temperature-large, which is built there
 }
