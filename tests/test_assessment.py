@@ -46,8 +46,9 @@ OWN_KERNELS = {
 }
 """Boxes of which each needs two to ten seconds to compile, as no scene has such a box on the exact engine.
 
-What remains has the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, in gravity, and
-with a mist. Empty boxes, pistons, and unlike molecules are tried elsewhere, too: test_extremes, physics/test_piston.
+What remains has the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, with a mist;
+and one more for gravity. Empty boxes, pistons and unlike molecules are tried elsewhere, too: test_extremes,
+physics/test_piston, physics/test_column.
 """
 
 
