@@ -60,6 +60,42 @@ def test_the_first_hour_of_a_forecast_is_read(written, lines):
     assert sounding.remarks[0] == "The first of 2 soundings in the file taken."
 
 
+def test_a_forecast_as_a_service_issued_it_is_read(written):
+    """The first levels for Missoula, Montana, by the model GFS: a station without letters, nine values a level."""
+    text = """
+SNPARM = PRES;TMPC;TMWC;DWPC;THTE;DRCT;SKNT;OMEG;HGHT
+STNPRM = SHOW;LIFT;SWET;KINX;LCLP;PWAT;TOTL;CAPE;LCLT;CINS;EQLV;LFCT;BRCH
+
+STID = STNM = 727730 TIME = 170401/0600
+SLAT = 46.92 SLON = -114.08 SELV = 972.0
+STIM = 0
+
+SHOW = 10.91 LIFT = 11.42 SWET = 28.88 KINX = -4.19
+LCLP = 835.07 PWAT = 9.62 TOTL = 34.84 CAPE = 0.00
+LCLT = 272.59 CINS = 0.00 EQLV = -9999.00 LFCT = -9999.00
+BRCH = 0.00
+
+PRES TMPC TMWC DWPC THTE DRCT SKNT OMEG
+HGHT
+906.90 5.94 3.47 0.58 299.79 234.46 3.34 -1.50
+993.65
+901.80 6.34 3.74 0.75 300.94 234.46 3.34 -1.50
+1039.88
+895.90 6.74 3.97 0.84 302.11 233.13 2.91 -1.50
+1093.76
+889.30 7.04 4.08 0.77 303.12 225.00 2.74 -1.50
+1154.54
+881.90 6.84 3.87 0.53 303.51 216.03 2.64 -1.50
+1223.24
+"""
+    sounding = read(written([f"{line} " for line in text.splitlines()]))
+    assert sounding.name == "727730 170401/0600"
+    assert list(sounding.pressure) == pytest.approx([90690.0, 90180.0, 89590.0, 88930.0, 88190.0])
+    assert list(sounding.temperature - 273.15) == pytest.approx([5.94, 6.34, 6.74, 7.04, 6.84])
+    assert list(sounding.dewpoint - 273.15) == pytest.approx([0.58, 0.75, 0.84, 0.77, 0.53])
+    assert list(sounding.height) == [993.65, 1039.88, 1093.76, 1154.54, 1223.24]
+
+
 def test_values_may_be_laid_out_in_other_lines(written, lines):
     laid = read(written(lines))
     start = lines.index("PRES TMPC TMWC DWPC THTE DRCT SKNT OMEG")

@@ -41,6 +41,23 @@ def test_columns_stand_where_the_description_of_the_archive_has_them(lines):
     assert first[34:39] == "   51"  # DPDP, 35 to 39
 
 
+def test_records_of_the_archive_itself_are_read(written):
+    """The first five of 66 levels of a sounding over Edwards, California."""
+    text = """
+#USM00072381 2026 07 22 17 1700    5 ncdc-gts ncdc-gts  349167 -1179000
+21 -9999  93200B-9999   336B-9999   230   240    46
+20 -9999  92700 -9999   314B-9999   210 -9999 -9999
+10 -9999  92500   798B  316B-9999   210   275    46
+10 -9999  85000  1541B  244B-9999   160   300    26
+20 -9999  80300 -9999   206B-9999   130 -9999 -9999
+"""
+    sounding = read(written([f"{line} " for line in text.split("\n")[1:-1]]))
+    assert sounding.name == "USM00072381 2026-07-22 17 UTC"
+    assert list(sounding.pressure) == [93200.0, 92700.0, 92500.0, 85000.0, 80300.0]
+    assert list(sounding.temperature - 273.15) == pytest.approx([33.6, 31.4, 31.6, 24.4, 20.6])
+    assert list(sounding.temperature - sounding.dewpoint) == pytest.approx([23.0, 21.0, 21.0, 16.0, 13.0])
+
+
 def test_a_sounding_is_read_with_its_missing_values(written, lines):
     sounding = read(written(lines))
     assert sounding.name == "USM00072357 2014-09-10 00 UTC"

@@ -20,7 +20,7 @@ __all__ = ["parse", "recognised"]
 
 _NAMES = {"PRES": "pressure", "HGHT": "height", "TMPC": "temperature", "DWPC": "dewpoint"}
 _UNITS = {"pressure": "hPa", "height": "m", "temperature": "degC", "dewpoint": "degC"}
-_STATION = re.compile(r"\s*STID\s*=\s*(?P<station>\S*)\s+STNM\s*=\s*(?P<number>\S*)\s+TIME\s*=\s*(?P<time>\S+).*")
+_STATION = re.compile(r"\s*STID\s*=\s*(?P<station>\S*?)\s*STNM\s*=\s*(?P<number>\S*)\s+TIME\s*=\s*(?P<time>\S+).*")
 _PARAMETERS = re.compile(r"\s*SNPARM\s*=\s*(?P<names>\S+)\s*")
 
 
@@ -111,7 +111,9 @@ def _head(
 ) -> tuple[int, str, int]:
     """Return where the first sounding begins, its name, and the line of its first level."""
     start = stations[0][0] if stations else 0
-    title = f"{stations[0][1]['station']} {stations[0][1]['time']}" if stations else ""
+    head = stations[0][1] if stations else None
+    # forecasts of some models name their stations by the number alone
+    title = f"{head['station'] or head['number']} {head['time']}" if head else ""
     for i in range(start, len(lines)):
         said: list[str] = []
         for j in range(i, min(i + len(columns), len(lines))):
