@@ -42,8 +42,12 @@ def house(tmp_path):
     for name in (*source.PHYSICS, "sheet"):
         (tmp_path / "atmosbox" / name).mkdir(parents=True)
         (tmp_path / "atmosbox" / name / "law.py").write_text(f"def {name}(x):\n    return 2 * x\n")
+    (tmp_path / "atmosbox" / "live").mkdir()
+    (tmp_path / "atmosbox" / "scene" / "knob.py").write_text("STEP = 1\n")
+    (tmp_path / "atmosbox" / "scene" / "sounding").mkdir()
+    (tmp_path / "atmosbox" / "scene" / "sounding" / "format.py").write_text("COLUMNS = 7\n")
     (tmp_path / "scenarios").mkdir()
-    for name in ("lifting_dry", "evaporation"):
+    for name in ("lifting_dry", "lifting_sounding", "evaporation"):
         (tmp_path / "scenarios" / f"{name}.py").write_text(f'"""A card."""\nname = "{name}"\n')
     (tmp_path / "docs" / "jobs").mkdir(parents=True)
     (tmp_path / "docs" / "jobs" / "lifting.py").write_text(
@@ -94,6 +98,23 @@ def test_a_change_of_what_a_job_depends_on_makes_it_stale(house, path, old, new)
 )
 def test_an_edit_of_words_or_of_something_else_does_not(house, path, old, new):
     assert not edited(house, path, old, new)
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "job", "meeting_it"),
+    [
+        ("scene/knob.py", "STEP = 1", "STEP = 2", "import Findings, job", "import Findings, job\nimport atmosbox.live"),
+        ("scene/sounding/format.py", "COLUMNS = 7", "COLUMNS = 8", '"lifting-dry"', '"lifting-sounding"'),
+    ],
+)
+def test_a_part_of_the_physics_that_few_runs_meet_makes_their_jobs_stale(house, path, old, new, job, meeting_it):
+    assert not edited(house, f"atmosbox/{path}", old, new)
+    assert edited(house, "docs/jobs/lifting.py", job, meeting_it)
+    assert edited(house, f"atmosbox/{path}", new, old)
+
+
+def test_the_parts_that_few_runs_meet_are_there():
+    assert all((ROOT / "atmosbox" / part).exists() for part in source.MET_BY)
 
 
 def test_a_function_may_move_to_another_file_and_a_refusal_may_get_better_words(house):

@@ -5,8 +5,9 @@ set, without comments, docstrings, imports, and the words of refusals. A functio
 be split, and no number becomes stale; but if a constant changes, all numbers do that depend on it.
 
 A job depends on all rooms of the physics (`PHYSICS`), on each other room that its file imports, on the scenarios that
-it names (on all of them if it names none), and on itself with the functions that stand beside it. Jobs that take a
-second or two need no digest: the tests make their numbers anew each time.
+it names (on all of them if it names none), and on itself with the functions that stand beside it. Parts of the physics
+that only some runs meet count for those alone (`MET_BY`). Jobs that take a second or two need no digest: the tests
+make their numbers anew each time.
 """
 
 import ast
@@ -19,6 +20,14 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 PHYSICS = ("engine", "theory", "scene", "simulation")
+MET_BY = {
+    "scene/knob.py": "live",
+    "scene/sounding": "lifting-sounding",
+    "simulation/continuation.py": None,
+    "simulation/restart.py": None,
+}
+"""Which scenario or room a job must name or import so that a part of the physics changes its numbers: knobs are turned
+by hand, and a run that goes on from a saved state ends in the same bits as one that was never stopped."""
 LAYOUT = ("registry", "drawing")
 """Files of jobs that only lay out what the others find."""
 
@@ -91,11 +100,13 @@ def _digest(texts: Iterable[str]) -> str:
 
 
 @functools.cache
-def room(folder: Path) -> frozenset[str]:
+def room(folder: Path, without: frozenset[Path] = frozenset()) -> frozenset[str]:
     """Return digests of all that a folder, or a single module, does, with the tables that it reads."""
     files = sorted(folder.rglob("*")) if folder.is_dir() else [folder.with_suffix(".py")]
     found = set()
     for file in files:
+        if not without.isdisjoint((file, *file.parents)):
+            continue
         if file.suffix == ".py":
             found |= statements(file.read_text(encoding="utf-8"))
         elif file.suffix in (".json", ".toml", ".csv"):
@@ -149,9 +160,11 @@ def digest(name: str, file: Path, root: Path = ROOT) -> str:
         imported |= {module for module in found if module.startswith("atmosbox.")}
     standing = {path.stem for path in package.iterdir() if path.is_dir() or path.suffix == ".py"}
     rooms = {module.split(".")[1] for module in imported} & standing - {"scenarios", "__init__"}
-    for each in {*PHYSICS, *rooms}:
-        members |= room(package / each)
     scenes = {path.stem.replace("_", "-"): path for path in (root / "scenarios").glob("[!_]*.py")}
-    for scene in scenarios_named(name, "\n".join(texts), sorted(scenes)):
+    named = scenarios_named(name, "\n".join(texts), sorted(scenes))
+    for scene in named:
         members |= room(scenes[scene])
+    without = frozenset(package / part for part, by in MET_BY.items() if by not in (*named, *rooms))
+    for each in {*PHYSICS, *rooms}:
+        members |= room(package / each, without)
     return _digest(sorted(members))
