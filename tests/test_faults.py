@@ -21,9 +21,7 @@ from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import runner
 from atmosbox.text import progress as bars
-from tests.test_restart import content, parse_once
-
-assert parse_once  # a fixture
+from tests.test_restart import content
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENE = "elastic-collisions"

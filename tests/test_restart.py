@@ -1,7 +1,6 @@
 """A run that was stopped, killed or finished goes on: what comes out is what a run that was let alone measures."""
 
 import contextlib
-import functools
 import json
 import os
 import random
@@ -17,7 +16,6 @@ import pytest
 from typer.testing import CliRunner
 
 from atmosbox.cli import app
-from atmosbox.engine.core import kernel_cache
 from atmosbox.errors import FileError, SettingError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
@@ -75,14 +73,6 @@ def content(path):
             values = np.asarray(each[...])
             held[name] = values.tolist() if values.dtype == object else values.tobytes(), each.dimensions, said
     return held
-
-
-@pytest.fixture(autouse=True, scope="module")
-def parse_once():
-    """Parse each source of the engine once: every state holds their digest, and a stop takes a dozen of them."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kernel_cache, "code_of", functools.cache(kernel_cache.code_of))
-        yield
 
 
 @pytest.fixture(autouse=True)

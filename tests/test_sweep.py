@@ -33,9 +33,7 @@ from atmosbox.file.run_states import RunStates
 from atmosbox.simulation import continuation, runner
 from atmosbox.sweep import SweepInterrupted, member, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.result import assemble, mean_and_error
-from tests.test_restart import parse_once
 
-assert parse_once  # a fixture
 ROOT = Path(__file__).resolve().parents[1]
 
 SCENE = '''"""Discs, some of which have trouble."""

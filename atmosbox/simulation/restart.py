@@ -7,6 +7,7 @@ numbers, texts and lists, and an object that the scene does not build itself is 
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import platform
@@ -20,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.engine import RefusedError
-from atmosbox.engine.core.kernel_cache import source_digest
+from atmosbox.engine.core.kernel_cache import cache_folder, source_digest
 from atmosbox.engine.core.saved_state import SavedState
 from atmosbox.errors import FileError
 from atmosbox.simulation.preparation import Prepared
@@ -88,11 +89,18 @@ def described(prepared: Prepared) -> dict[str, Any]:
     return {
         "format of the state": FORMAT,
         "version": __version__,
-        "sources of the engine": source_digest(),
+        "sources of the engine": _sources(),
         "content of the scene": scene.hexdigest()[:16],
         "processor": platform.machine(),
         "settings": {name: value for name, value in prepared.parameters.items() if name != "version"},
     }
+
+
+@functools.cache
+def _sources() -> str:
+    """Return the digest of the engine's sources, by which its kernels are kept: to parse them anew takes 0.2 s."""
+    folder = cache_folder()
+    return source_digest() if folder is None else folder.name
 
 
 def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer: int = 1) -> xr.Dataset:
