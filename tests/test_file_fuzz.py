@@ -138,3 +138,23 @@ def tried(files, seed):
 @given(seed=st.integers(0, 2**40))
 def test_no_file_breaks_a_command(files, seed):
     tried(files, seed)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["check", "odd.nc"], ["run", "lifting-sounding", "--set", "sounding=odd.nc", "--dry-run"]],
+    ids=["run", "sounding"],
+)
+def test_a_heap_that_the_library_never_comes_to_the_end_of_is_refused(files, words):
+    good = next(path for path in files if path.name == "lift.nc")
+    content = bytearray(good.read_bytes())
+    first = content.find(b"GCOL") + 16
+    content[first : first + 16] = bytes(16)  # an object without a number and of no length
+    odd = good.with_name("odd.nc")
+    odd.write_bytes(content)
+    try:
+        result = typed("netCDF files", *words)
+    finally:
+        odd.unlink()
+    assert result.exit_code == 2
+    assert "damaged" in result.stderr

@@ -30,7 +30,7 @@ LAYERS = {
     "theory": Layer("", "numpy scipy", lazily="metpy"),
     "file": Layer("version errors", "numpy xarray netCDF4", lazily="gsd"),
     "scenarios": Layer("errors"),
-    "scene": Layer("engine errors theory", "numpy scipy pydantic", lazily="metpy pint xarray"),
+    "scene": Layer("engine errors theory", "numpy scipy pydantic", lazily="metpy pint xarray file"),
     "a scenario": Layer("engine errors theory scene", "numpy", lazily="xarray"),
     "simulation": Layer("version engine errors scenarios scene", "numpy", lazily="xarray file"),
     "plot": Layer("callable_room errors theory file scene scenarios", "numpy xarray matplotlib metpy"),

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError, shown
+from atmosbox.file.heap import has_endless_heap
 from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_whole
 from atmosbox.file.provenance import FORMAT
 from atmosbox.file.validity import check_valid
@@ -131,7 +132,10 @@ def read(path: AnyPath) -> xr.Dataset:
     import netCDF4
     import xarray as xr
 
+    damaged = f"{source} is no netCDF file, or a damaged one: {fix}."
     try:
+        if has_endless_heap(source):
+            raise FileError(damaged)
         with netCDF4.Dataset(source) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}
             if "atmosbox_parameters" not in attributes:
@@ -147,7 +151,7 @@ def read(path: AnyPath) -> xr.Dataset:
     except FileError:
         raise
     except (OSError, RuntimeError, ValueError, TypeError, LookupError, AttributeError) as error:
-        raise FileError(f"{source} is no netCDF file, or a damaged one: {fix}.") from error
+        raise FileError(damaged) from error
 
 
 def read_state(path: AnyPath) -> NDArray[np.uint8] | None:

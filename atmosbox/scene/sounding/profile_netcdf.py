@@ -19,6 +19,7 @@ __all__ = ["parse", "recognised"]
 
 _SIGNATURES = (b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 _MOST_VALUES = 1_000_000
+_DAMAGED = "the netCDF file is damaged or not readable by xarray: save it again"
 
 
 def recognised(head: bytes) -> bool:
@@ -69,7 +70,11 @@ def parse(path: str | os.PathLike[str], file: str, name: str) -> Table:
     """
     import xarray as xr
 
+    from atmosbox.file.heap import has_endless_heap
+
     try:
+        if has_endless_heap(path):
+            raise SoundingError(f"{file}: {_DAMAGED}.")
         with (
             warnings.catch_warnings(action="ignore"),
             xr.open_dataset(path, engine="netcdf4", decode_times=False, decode_timedelta=False) as dataset,
@@ -78,7 +83,7 @@ def parse(path: str | os.PathLike[str], file: str, name: str) -> Table:
     except SoundingError:
         raise
     except Exception as error:  # HDF5, netCDF and xarray each fail in their own ways on a damaged or odd file
-        raise SoundingError(f"{file}: the netCDF file is damaged or not readable by xarray: save it again.") from error
+        raise SoundingError(f"{file}: {_DAMAGED}.") from error
 
 
 def _table(dataset: xr.Dataset, file: str, name: str) -> Table:
