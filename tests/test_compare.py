@@ -235,7 +235,7 @@ def test_three_runs_stand_below_each_other(files, tmp_path):
     path = tmp_path / "three.pdf"
     result = command(files, "cold.nc", "mild.nc", "again.nc", "--out", str(path))
     assert result.exit_code == 0, result.output
-    assert "less the first" in result.stdout
+    assert "minus the first" in result.stdout
     assert path.read_bytes()[:4] == b"%PDF"
 
 

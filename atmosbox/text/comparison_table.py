@@ -40,7 +40,7 @@ def comparison_lines(files: Sequence[str], names: Naming, numbers: Sequence[Comp
     if len(files) == 2:
         header = ["quantity", *names.labels, "difference", "by theory"]
     else:
-        header = ["quantity", "run", "measured", "less the first", "by theory"]
+        header = ["quantity", "run", "measured", "minus the first", "by theory"]
     return [*made, *table(header, rows, columns)]
 
 

@@ -45,15 +45,18 @@ def signed(value: float, digits: int) -> str:
 def moist_seeds(found: Findings) -> None:
     """Lift moist air with four seeds, and compare cloud base and temperatures with theory."""
     names = ["cloud_base", *(f"temperature_at_{level}_hpa" for level in LEVELS)]
-    rows = []
+    units = np.array([0.01, *(1.0 for _ in LEVELS)])
+    rows, errors = [], []
     for seed in SEEDS:
         stated = headlines(lifted(seed=seed))
-        rows.append([(stated[name].misfit or 0.0) * (0.01 if name == "cloud_base" else 1.0) for name in names])
+        rows.append([stated[name].misfit or 0.0 for name in names] * units)
+        errors.append([stated[name].standard_error for name in names] * units)
         for each in stated.values():
             if not each.agrees:
                 found.failures.append(f"seed {seed}: {each.label} is off by {each.misfit:.3g} {each.unit}")
     misfit = np.array(rows)
-    mean, error = misfit.mean(axis=0), misfit.std(axis=0, ddof=1) / math.sqrt(len(SEEDS))
+    # the scatter of four runs tells little; the errors that the runs state are tested over many
+    mean, error = misfit.mean(axis=0), np.sqrt(np.sum(np.square(errors), axis=0)) / len(SEEDS)
     digits = (1, *(2 for _ in LEVELS))
     lines = [[seed, *(signed(v, d) for v, d in zip(row, digits, strict=True))] for seed, row in enumerate(misfit, 1)]
     together = list(zip(mean, error, digits, strict=True))
@@ -161,7 +164,7 @@ def draw_adiabats(found: Findings, keeps: list[Any], rains: list[Any], settings:
             axes.set_yticks(TICKS, [str(tick) for tick in TICKS])
             axes.set_yticks([], minor=True)
         left.set(title="Clouds cool half as fast", xlabel="temperature (°C)")
-        right.set(title="Which adiabat is it?", xlabel="less the reversible adiabat (K)", xlim=(-3.3, 1.1))
+        right.set(title="Which adiabat is it?", xlabel="minus the reversible adiabat (K)", xlim=(-3.3, 1.1))
         left.legend(loc="upper right")
         right.legend(loc="center left")
         save(found, drawing, "moist-adiabats")
@@ -175,7 +178,7 @@ def moist_price(found: Findings) -> None:
         runs = [lifted(molecules=10_000, ascent=length, seed=seed) for seed in SEEDS]
         top = [headlines(run)["temperature_at_500_hpa"] for run in runs]
         misfit = np.array([each.misfit for each in top])
-        error = misfit.std(ddof=1) / math.sqrt(len(SEEDS))
+        error = math.hypot(*(each.standard_error for each in top)) / len(SEEDS)
         fast.append((length, misfit.mean(), error, top[0].tolerance))
         if not abs(misfit.mean()) <= top[0].tolerance + 4.0 * error:
             found.failures.append(f"an ascent of {length} mean free times is {misfit.mean():.2f} K off")
@@ -189,7 +192,7 @@ def moist_price(found: Findings) -> None:
         scatter = math.sqrt(
             float(np.mean([(run.dataset.parcel_temperature - run.dataset.adiabat_temperature) ** 2 for run in runs]))
         )
-        error = misfit.std(ddof=1) / math.sqrt(len(SEEDS))
+        error = 0.01 * math.hypot(*(each.standard_error for each in base)) / len(SEEDS)
         few.append((molecules, misfit.mean(), error, 0.01 * (base[0].tolerance + 4.0 * base[0].standard_error)))
         water = int(runs[0].dataset.vapor_molecule_count[0] + runs[0].dataset.liquid_molecule_count[0])
         stated = f"{0.01 * base[0].standard_error:.0f}"

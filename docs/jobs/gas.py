@@ -132,7 +132,7 @@ def draw_equation_of_state(found: Findings, points: np.ndarray) -> None:
         right.set(
             title="The misfit",
             xlabel="packing fraction φ",
-            ylabel="measured less theory, % of Z",
+            ylabel="measured minus theory, % of Z",
             xlim=(0.0, 0.51),
             ylim=(-0.4, 0.4),
         )

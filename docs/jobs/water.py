@@ -19,7 +19,7 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 RUNS: dict[float, dict[str, float]] = {
     -10.0: {"pressure": 100.0, "duration": 400.0},
     0.0: {"pressure": 150.0, "duration": 260.0},
-    10.0: {"pressure": 300.0, "duration": 200.0},
+    10.0: {"pressure": 300.0, "duration": 300.0},
     20.0: {"pressure": 500.0, "duration": 140.0},
     30.0: {"duration": 95.0},
     40.0: {"duration": 75.0},
