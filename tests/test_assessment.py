@@ -40,7 +40,7 @@ SLOW = {
 """What takes engines that go in steps more than a second or two, compilation included."""
 OWN_KERNELS = {
     *("touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60", "drying-pool"),
-    *("no-molecules", "hot-and-cold", "mass-ratio", "size-ratio"),
+    *("no-molecules", "one-molecule", "ball-at-rest", "count-of-pi", "hot-and-cold", "mass-ratio", "size-ratio"),
     *("strong-gravity", "crushing-gravity", "tall-column"),
     *("crushing-piston", "piston-on-points", "supersonic-piston", "fleeing-piston"),
 }

@@ -35,6 +35,7 @@ def test_the_pace_of_the_engine_is_measured(tmp_path):
     assert 0.0 < result["bytes_per_molecule"] < 2000.0
 
 
+@pytest.mark.validate  # compiles the same scene twice
 def test_whole_runs_are_timed_in_turns_with_another_checkout(tmp_path):
     file = tmp_path / "scenes.json"
     asked = ("elastic-collisions", "--set", "duration=2s", "--repeats", 1, "--against", ROOT, "--json", file)
