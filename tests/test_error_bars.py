@@ -25,6 +25,7 @@ from atmosbox import scenarios
 from atmosbox.simulation import accuracy, runner
 from atmosbox.theory.constants import BOLTZMANN
 from atmosbox.trade.tradeoff.timed_run import PROFILES
+from tests.few_frames import cut
 
 FRAMES = {
     "atmosphere": (80, 14),
@@ -37,8 +38,7 @@ FRAMES = {
 }
 """Into how many frames the cheap tier cuts a run, and how many of them settle.
 
-The run is as long as before, and so are the blocks that its errors are read from; a short run in as many frames as a
-scene has spends most of its time on what is measured at the end of each.
+The run is as long as before, and so are the blocks that its errors are read from.
 """
 
 
@@ -50,11 +50,7 @@ def runs(scene, number, **settings):
 @pytest.fixture
 def fewer_frames(monkeypatch):
     """Cut the runs of a test into fewer frames."""
-    for scene, (frames, settle) in FRAMES.items():
-        module = scenarios.load(scene)
-        for name, number in (("FRAMES", frames), ("SETTLE", settle)):
-            if number is not None:
-                monkeypatch.setattr(module, name, number)
+    cut(monkeypatch, FRAMES)
 
 
 def range_of_ratio(number):

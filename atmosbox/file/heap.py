@@ -15,8 +15,8 @@ _HEAD = 16
 def has_endless_heap(path: str | os.PathLike[str]) -> bool:
     """Return whether a file has a heap in which an object begins where it ends.
 
-    HDF5 (2.0 and before) goes from object to object by their lengths, and never comes to the end of such a heap: no
-    signal and no exception stops it. A whole file has none.
+    HDF5 (seen in 2.2) goes from object to object by their lengths, and never comes to the end of such a heap: no signal
+    handler of Python is heard until then. A whole file has none.
 
     Parameters
     ----------

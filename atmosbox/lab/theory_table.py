@@ -25,8 +25,11 @@ __all__ = ["short_run", "tables"]
 
 _FRAMES = 3
 _POINTS = 121
+"""Values of a table along a knob, or along the time after a run."""
 _LONG = 20.0
+"""How many times as long as a run theory is tabulated, for the page goes on."""
 _WAY = 401
+"""Values of a table along the way of a parcel."""
 
 
 def short_run(prepared: Prepared) -> xr.Dataset:

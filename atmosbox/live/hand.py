@@ -87,6 +87,10 @@ class Hand:
         self.turned[control.name] = value
         self._note(control, value, experiment)
 
+    def changes_more(self, control: Control) -> bool:
+        """Return whether the first turn of a knob changes more than a value, as one that makes heat baths does."""
+        return self._knobs[control.name].leave is not None
+
     def leave(self, control: Control, experiment: Experiment) -> None:
         """Make the box as it was before a knob was first turned, and note it."""
         self._knobs[control.name].reset()

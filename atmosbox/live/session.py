@@ -38,7 +38,7 @@ _PUMP = 4.0  # times as many molecules, or as few, at one stroke
 class _Past:
     """How it was before a change: where a knob stood, or with which settings and engine the box had begun.
 
-    ``first`` if the knob had not been turned before in this box.
+    ``first`` if the knob had not been turned before in the box, whose number is ``box``.
     """
 
     knob: str | None
@@ -47,6 +47,7 @@ class _Past:
     engine: str
     when: float
     first: bool = False
+    box: int = 0
 
 
 class Session:
@@ -108,6 +109,7 @@ class Session:
         self.pace = 1.0
         self._notes: list[dict[str, str]] = []
         self._past: list[_Past] = []
+        self._boxes = 0
         self._gauges: list[dict[str, Any]] = []
         self.lesson = lesson_of(prepared.module)
         self._recorder = Recorder(folder, out, force, command or f"atmosbox live {prepared.scene}", self.note)
@@ -121,7 +123,7 @@ class Session:
         shown = tuple(panel for panel in map(while_it_runs, experiment.panels) if panel is not None)
         picture = Picture(prepared, experiment.setup, shown)
         self._recorder.stop("The box begins anew, and the recording ends.")
-        self._past = [replace(each, first=False) for each in self._past]
+        self._boxes += 1
         self.experiment = experiment
         self.picture = picture
         self.report = Report(shown, picture.stage.variables)
@@ -289,7 +291,16 @@ class Session:
             self._begin(begun_anew(self.prepared, last.settings, last.engine))
         else:
             control = next(each for each in self.controls() if each.name == last.knob)
-            self._turn(control, last.value, back=last.first)
+            if last.first and last.box != self._boxes and self._hand.changes_more(control):
+                self._begin(
+                    begun_anew(
+                        self.prepared,
+                        self._hand.settings(self.prepared) | {control.name: last.value},
+                        str(self.prepared.engine),
+                    )
+                )
+            else:
+                self._turn(control, last.value, back=last.first and last.box == self._boxes)
         self._past.pop()
 
     def _set(self, name: object, value: object) -> None:
@@ -300,7 +311,7 @@ class Session:
         wanted = control.parse(value)
         if not control.restarts:
             first = control.name not in self._hand.turned
-            before = _Past(control.name, control.value, {}, "", self._clock(), first)
+            before = _Past(control.name, control.value, {}, "", self._clock(), first, self._boxes)
             self._turn(control, wanted)
             last = self._past[-1] if self._past else None
             if last is not None and last.knob == control.name and before.when - last.when < _DRAG:
@@ -316,7 +327,7 @@ class Session:
         self._anew(values, engine)
 
     def _turn(self, control: Control, value: Value, *, back: bool = False) -> None:
-        """Turn a knob, or turn it ``back`` to where nobody had turned it."""
+        """Turn a knob; with ``back``, make the box as it was before the knob was first turned."""
         if back:
             self._hand.leave(control, self.experiment)
         else:

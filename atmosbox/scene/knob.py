@@ -77,7 +77,7 @@ class Knob:
         self.turn(value if self.unit in ("", "1") else to_si(value, self.unit))
 
     def reset(self) -> None:
-        """Make the box as if it had never been turned, from now on."""
+        """Make the box as it was before the knob was first turned; what has happened since stays."""
         if self.leave is None:
             self.set(self.value)
         else:

@@ -94,6 +94,14 @@ def test_undo_of_the_first_turn_takes_the_heat_baths_away_again():
     session.obey({"type": "step"})
     assert session.setup.parcel.energy() == pytest.approx(before, rel=1e-12)
     assert [change.words for change in session.changes] == ["speed as at the start"]
+    # and so it does where a new box has begun between
+    session.obey({"type": "set", "name": "speed", "value": 1.0})
+    session.obey({"type": "set", "name": "molecules", "value": 30})
+    for speed, molecules in ((1.0, 20), (0.5, 20)):
+        session.obey({"type": "undo"})
+        assert np.isnan(session.setup.parcel.wall_kT()).all()
+        settings = session.prepared.settings
+        assert (settings.speed, settings.molecules) == (speed, molecules)
 
 
 def test_the_challenge_of_the_dry_ascent_is_missed_by_default_and_met_by_a_warmer_start():

@@ -17,6 +17,7 @@ from atmosbox import scenarios, theory
 from atmosbox.errors import AtmosboxError
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+from tests.few_frames import cut
 
 SHORT = ("duration", "ascent", "travel")
 FEW = 300
@@ -49,12 +50,9 @@ SILENT = {"virial_pressure_theory"}
 
 @pytest.fixture(scope="module", autouse=True)
 def fewer_frames():
-    """Cut the runs of a scene into fewer frames: each costs as much, however short it is."""
+    """Cut the runs of a scene into fewer frames."""
     with pytest.MonkeyPatch.context() as patch:
-        for scene, (frames, settle) in FRAMES.items():
-            patch.setattr(scenarios.load(scene), "FRAMES", frames)
-            if settle is not None:
-                patch.setattr(scenarios.load(scene), "SETTLE", settle)
+        cut(patch, FRAMES)
         yield
 
 
