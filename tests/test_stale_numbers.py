@@ -113,8 +113,15 @@ def test_a_part_of_the_physics_that_few_runs_meet_makes_their_jobs_stale(house, 
     assert edited(house, f"atmosbox/{path}", new, old)
 
 
-def test_the_parts_that_few_runs_meet_are_there():
-    assert all((ROOT / "atmosbox" / part).exists() for part in source.MET_BY)
+def test_the_parts_that_few_runs_meet_are_there_and_some_job_meets_each_of_them(figures, monkeypatch):
+    sources = sys.modules["jobs.source"]
+    usual = {name: sources.digest(name, each.file) for name, each in figures.JOBS.items()}
+    for part, by in source.MET_BY.items():
+        assert (ROOT / "atmosbox" / part).exists()
+        if by is not None:
+            monkeypatch.setitem(sources.MET_BY, part, None)
+            assert any(sources.digest(name, figures.JOBS[name].file) != usual[name] for name in usual), part
+            monkeypatch.setitem(sources.MET_BY, part, by)
 
 
 def test_a_function_may_move_to_another_file_and_a_refusal_may_get_better_words(house):

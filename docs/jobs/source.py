@@ -4,10 +4,10 @@ A digest covers what the code does, wherever it stands: each statement at the to
 set, without comments, docstrings, imports, and the words of refusals. A function may move to another file, a file may
 be split, and no number becomes stale; but if a constant changes, all numbers do that depend on it.
 
-A job depends on all rooms of the physics (`PHYSICS`), on each other room that its file imports, on the scenarios that
-it names (on all of them if it names none), and on itself with the functions that stand beside it. Parts of the physics
-that only some runs meet count for those alone (`MET_BY`). Jobs that take a second or two need no digest: the tests
-make their numbers anew each time.
+A job depends on all rooms of the physics (`PHYSICS`), on each other room that its file imports or that it is named
+after, on the scenarios that it names (on all of them if it names none), and on itself with the functions that stand
+beside it. Parts of the physics that only some runs meet count for those alone (`MET_BY`). Jobs that take a second or two
+need no digest: the tests make their numbers anew each time.
 """
 
 import ast
@@ -159,7 +159,7 @@ def digest(name: str, file: Path, root: Path = ROOT) -> str:
         waiting += [module.split(".")[1] for module in found if module.startswith("jobs.")]
         imported |= {module for module in found if module.startswith("atmosbox.")}
     standing = {path.stem for path in package.iterdir() if path.is_dir() or path.suffix == ".py"}
-    rooms = {module.split(".")[1] for module in imported} & standing - {"scenarios", "__init__"}
+    rooms = {name, *(module.split(".")[1] for module in imported)} & standing - {"scenarios", "__init__"}
     scenes = {path.stem.replace("_", "-"): path for path in (root / "scenarios").glob("[!_]*.py")}
     named = scenarios_named(name, "\n".join(texts), sorted(scenes))
     for scene in named:
