@@ -31,7 +31,7 @@ from atmosbox.engine.core.constant_modes import KernelCompiler
 from atmosbox.engine.core.state import Modes
 from atmosbox.lab.bench import bench
 from atmosbox.lab.kernels.kernel_table import kernels
-from atmosbox.lab.wasm_module import FOLDER, SCENES, module_name, source_stamp, stamp_of
+from atmosbox.lab.wasm_module import FOLDER, SCENES, source_stamp, stamp_of
 from atmosbox.lab.work import arguments
 from atmosbox.simulation.preparation import prepare
 
@@ -169,21 +169,21 @@ def link(objects: dict[str, bytes]) -> bytes:
         return made.read_bytes()
 
 
-def needed(scenes: list[str]) -> dict[str, tuple[Modes, dict[str, tuple]]]:
-    """Return what is to be compiled for some scenes: by the name of a module its modes, and the types of arguments."""
+def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]:
+    """Return what is to be compiled for some scenes: by the name of a module its modes, wells, types of arguments."""
     found = {}
     for scene in scenes:
         box = bench(prepare(scene, SCENES[scene]))
         types = {name: tuple(map(numba.typeof, given)) for name, given in arguments(box).items()}
-        found[module_name(box.modes)] = box.modes, types
+        found[box.module] = box.modes, box.attracts, types
     return found
 
 
-def module_of(modes: Modes, types: dict[str, tuple]) -> bytes:
+def module_of(modes: Modes, wells: bool, types: dict[str, tuple]) -> bytes:
     """Return the module for one set of modes."""
     target = machine()
     with Source() as source:
-        works = kernels(modes)
+        works = kernels(modes, wells=wells)
         return link({name: object_of(*source.of(works[name], types[name]), name, target) for name in types})
 
 
@@ -203,9 +203,9 @@ def main() -> None:
     for path in FOLDER.glob("*.wasm.gz"):
         if stamp_of(path.read_bytes()) != stamp:
             path.unlink()
-    for name, (modes, types) in wanted.items():
+    for name, (modes, wells, types) in wanted.items():
         begun = time.perf_counter()
-        content = module_of(modes, types)
+        content = module_of(modes, wells, types)
         path = FOLDER / f"{name}.wasm.gz"
         path.write_bytes(gzip.compress(content + stamped(stamp), 9, mtime=0))
         size = path.stat().st_size / 1000

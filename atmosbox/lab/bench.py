@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine import ParcelSet
+from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.rows import MOST, row_stride
@@ -18,7 +18,10 @@ from atmosbox.lab.kernels.laying_out import Layout
 from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
 from atmosbox.lab.kernels.two_gases import Mixture
-from atmosbox.scene.instruments import Air, Discs, Layers, Lift, Mixing, Speeds
+from atmosbox.lab.wasm_module import module_name
+from atmosbox.lab.well_bench import READINGS, crowd, lists, well_gas
+from atmosbox.page import NEIGHBOURS
+from atmosbox.scene.instruments import Air, Clusters, Discs, Layers, Lift, Mixing, Speeds
 from atmosbox.simulation.preparation import Prepared, build
 
 if TYPE_CHECKING:
@@ -33,32 +36,44 @@ __all__ = ["Bench", "bench", "refuse"]
 _CORNERS = 4
 _SPARE = 1.5
 _PLACES = 32
-_INSTRUMENTS = (Air, Discs, Layers, Lift, Mixing, Speeds)
+_INSTRUMENTS = (Air, Clusters, Discs, Layers, Lift, Mixing, Speeds)
 
 
 class Bench(NamedTuple):
     """A box at its start, as a page gets it.
 
     ``layers`` is the average of the profiles of three quantities, one after the other, ``speeds`` that of the shares of
-    molecules by speed; both are empty in a scene that shows neither.
+    molecules by speed; both are empty in a scene that shows neither. Where molecules attract each other, ``gas`` and
+    ``layout`` are those of `well_bench`, and ``crowd`` is what is kept of drops; else it is 0.
     """
 
     prepared: Prepared
     setup: Setup
-    gas: Gas
+    gas: Any
     ascent: Any
     book: Book
-    layout: Layout
+    layout: Any
     gauges: Gauges
     speeds: Average
     layers: Average
     sight: Sight
+    crowd: Any
 
     @property
     def modes(self) -> Modes:
         """What the scene requires of the engine."""
         modes: Modes = self.setup.parcel._modes  # type: ignore[attr-defined]
         return modes
+
+    @property
+    def attracts(self) -> bool:
+        """Whether molecules attract each other."""
+        return isinstance(self.setup.parcel, AttractingParcelSet)
+
+    @property
+    def module(self) -> str:
+        """The name of the module that holds its kernels."""
+        return module_name(self.modes, wells=self.attracts)
 
 
 def refuse(prepared: Prepared, setup: Setup) -> None:
@@ -76,9 +91,9 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = "runs in the page with the exact engine alone"
     elif hasattr(parcel, "vapour"):
         why = "has liquid water, whose laws are not compiled for the page"
-    elif type(parcel) is not ParcelSet:
+    elif type(parcel) not in (ParcelSet, AttractingParcelSet):
         why = "has an engine of its own, which is not compiled for the page"
-    elif not parcel._modes.rows:
+    elif type(parcel) is ParcelSet and not parcel._modes.rows:
         why = "has cells too crowded, or too small, for the rows that the page works with"
     elif parcel._driver is not None and not parcel._ascends:
         why = "moves its piston in a way that is not compiled for the page"
@@ -115,16 +130,18 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
     refuse(prepared, setup)
     parcel: Any = setup.parcel
     stage = None if picture is None else picture(setup)
+    attracts = type(parcel) is AttractingParcelSet
     return Bench(
         prepared,
         setup,
-        _gas(parcel),
+        well_gas(parcel) if attracts else _gas(parcel),
         _ascent(parcel),
         Book(np.array([parcel._now]), parcel._epoch_length),
-        _layout(parcel),
-        _gauges(setup),
+        lists(parcel) if attracts else _layout(parcel),
+        _gauges(setup, READINGS if attracts else 0),
         *_averages(setup),
-        _sight(parcel, setup.scale, stage),
+        _sight(parcel, setup.scale, stage)._replace(**{"highest": NEIGHBOURS} if attracts else {}),
+        crowd(setup) if attracts else 0,
     )
 
 
@@ -192,7 +209,8 @@ def _of(setup: Setup, kind: type) -> Any:
     return next((each for each in setup.instruments if type(each) is kind), None)
 
 
-def _gauges(setup: Setup) -> Gauges:
+def _gauges(setup: Setup, more: int) -> Gauges:
+    """Return what the instruments keep at their start, with room for some more readings."""
     air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
     edges = np.zeros(1) if speeds is None else speeds._edges
     number = 0 if layers is None else layers._number
@@ -202,7 +220,7 @@ def _gauges(setup: Setup) -> Gauges:
         half = np.ones(mass.size, np.int64)
         half[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
     return Gauges(
-        reading=np.zeros(len(Reading) + 5),
+        reading=np.zeros(len(Reading) + 5 + more),
         warmth=np.zeros(2),
         before=np.zeros(8),
         barometer=0 if air is None or air._barometer == slice(None) else 4,

@@ -33,8 +33,8 @@ def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto",
     >>> "WebAssembly" in lab_text(prepare("temperature", {"molecules": 20}), others=False)
     True
     """
-    starts, modes = lab_starts(prepared, _MOST_BYTES if others else 0)
-    module = module_bytes(modes, prepared.scene)
+    starts, needed = lab_starts(prepared, _MOST_BYTES if others else 0)
+    module = module_bytes(needed, prepared.scene)
     stored = gzip.compress(b"".join(each.stored() for each in starts), 9, mtime=0)
     packed = (base64.b64encode(each).decode("ascii") for each in (module, stored))
     plan = starts[0].plan | {"others": [each.size() for each in starts[1:]]}

@@ -10,6 +10,7 @@ from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.memory_image import BASE, Image, image
 from atmosbox.lab.theory_table import short_run, tables
+from atmosbox.lab.well_bench import drop_readings, has_bath
 from atmosbox.lab.work import arguments
 from atmosbox.live.control import controls
 from atmosbox.live.experiment import Experiment
@@ -68,8 +69,13 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     memory = image(arguments(box), named)
     wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *STATE}
     wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
-    found, numbers = _knobs(setup)
+    found, numbers = _knobs(box)
+    known = short_run(prepared)
     readings = _readings(box)
+    if not np.isfinite(known.air_pressure.values).any():  # no wall that could tell it
+        readings = [each for each in readings if each[0] != "air_pressure"]
+    if box.attracts:
+        readings += drop_readings(setup, set(prepared.module.theory(known, prepared.settings)))
     shown = controls(found, [], {}, collisions=None)
     plan = {
         "told": {
@@ -101,7 +107,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "gauges": [] if box.gauges.half.size else _gauges([name for name, _, _ in readings]),
         "profiles": _profiles(box),
         "fixed": _fixed(box),
-        "tables": tables(prepared, setup, short_run(prepared)),
+        "tables": [] if box.attracts else tables(prepared, setup, known),
         "knobs": numbers,
         "command": _command(prepared),
     }
@@ -198,15 +204,19 @@ def _fixed(box: Bench) -> dict[str, Any]:
     return found
 
 
-def _knobs(setup: Setup) -> tuple[list[Any], dict[str, Any]]:
+def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and what each does with its value."""
-    kept = [knob for knob in setup.knobs if knob.name in ("temperature", "altitude")]
+    setup = box.setup
+    kept = [knob for knob in setup.knobs if knob.name in ("temperature", "altitude", "attraction")]
     numbers: dict[str, Any] = {}
     for knob in kept:
         zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)
         if knob.name == "temperature":
             unit = setup.scale.temperature
-            told = {"kernel": "warm_walls", "argument": "1", "factor": (one - zero) / unit, "offset": zero / unit}
+            kernel = "warm_bath" if box.attracts and has_bath(setup) else "warm_walls"
+            told = {"kernel": kernel, "argument": "1", "factor": (one - zero) / unit, "offset": zero / unit}
+        elif knob.name == "attraction":
+            told = {"kernel": "attract", "argument": "3", "factor": 1.0, "offset": 0.0}
         else:  # a height becomes a moment of the way
             told = {"kernel": "lead", "argument": "3", "factor": one - zero, "offset": zero, **_moments(setup)}
         numbers[knob.name] = told

@@ -10,7 +10,6 @@ import gzip
 import json
 from typing import Any, NamedTuple
 
-from atmosbox.engine.core.state import Modes
 from atmosbox.errors import AtmosboxError
 from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.simulation.preparation import Prepared, prepare
@@ -40,8 +39,8 @@ class Start(NamedTuple):
         return json.dumps(self.plan, separators=(",", ":")).encode("utf-8")
 
 
-def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], Modes]:
-    """Return the starts of the page of a scene, that of its own settings first, and the modes of all.
+def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
+    """Return the starts of the page of a scene, that of its own settings first, and the name of the module of all.
 
     The others have half as many molecules, twice as many, and so on, and only those are offered whose box runs with the
     same kernels.
@@ -77,7 +76,7 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], Modes]:
             continue
         start = Start(plan, _content(memory), False)
         size = len(gzip.compress(start.stored(), 9))
-        if its_box.modes == box.modes and size <= room:
+        if its_box.module == box.module and size <= room:
             room -= size
             made.append(start)
     offered = sorted(start.plan["molecules"] for start in made)
@@ -96,7 +95,7 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], Modes]:
                     "help": f"{particles}: the box begins anew with so many",
                 }
             )
-    return made, box.modes
+    return made, box.module
 
 
 def _content(memory: Any) -> bytes:

@@ -21,12 +21,13 @@ SCENES: dict[str, dict[str, Any]] = {
     "lifting-dry": {},
     "temperature-large": {},
     "diffusion": {"molecules": 4000},
+    "attraction": {},
 }
 """The shipped scenes that a page can run, with the settings that they need for it, or for a page of 1.5 MB."""
 
 
-def module_name(modes: Any) -> str:
-    """Return the name of the module for one set of modes.
+def module_name(modes: Any, *, wells: bool = False) -> str:
+    """Return the name of the module for one set of modes, and for molecules that attract each other.
 
     Examples
     --------
@@ -34,7 +35,8 @@ def module_name(modes: Any) -> str:
     >>> module_name(Modes(True, False, False, False, False, False, False, rows=True))
     'contacts-rows'
     """
-    return "-".join(name for name, is_on in modes._asdict().items() if is_on)
+    flags = {"wells": wells, **modes._asdict()}
+    return "-".join(name for name, is_on in flags.items() if is_on)
 
 
 def source_stamp() -> str:
@@ -65,22 +67,22 @@ def stamp_of(content: bytes) -> str:
     return gzip.decompress(content).rpartition(b"sources")[2].decode("ascii")
 
 
-def module_bytes(modes: Any, scene: str) -> bytes:
-    """Return the module for one set of modes, as it lies in the package: gzip.
+def module_bytes(name: str, scene: str) -> bytes:
+    """Return a module by its name, as it lies in the package: gzip.
 
     Raises
     ------
     EngineError
         If the package has none, or one of another version of the engine.
     """
-    path = FOLDER / f"{module_name(modes)}.wasm.gz"
+    path = FOLDER / f"{name}.wasm.gz"
     if not path.is_file():
         if not any(FOLDER.glob("*.wasm.gz")):
             problem = "This checkout has no WebAssembly modules: pip install ziglang and run python tools/wasm.py."
         else:
             problem = (
                 f"The settings of {scene} need kernels that no WebAssembly module of this version has "
-                f"({module_name(modes)}): leave them as they are, or let the scene run with atmosbox live {scene}."
+                f"({name}): leave them as they are, or let the scene run with atmosbox live {scene}."
             )
         raise EngineError(problem)
     return path.read_bytes()

@@ -18,12 +18,12 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
     >>> from atmosbox.lab.kernels.kernel_table import kernels
     >>> from atmosbox.simulation.preparation import prepare
     >>> box = bench(prepare("temperature", {"molecules": 20}))
-    >>> set(arguments(box)) == set(kernels(box.modes))
+    >>> set(arguments(box)) == set(kernels(box.modes, wells=box.attracts))
     True
     """
     gas, ascent, book, layout, gauges = box.gas, box.ascent, box.book, box.layout, box.gauges
     found: dict[str, tuple[Any, ...]] = {"lead": (gas, ascent, book, 0.0)} if box.modes.ascends else {}
-    return found | {
+    found |= {
         "place": (gas, book, layout),
         "pass_time": (gas, ascent, book, layout, 0.0, 0),
         "begin": (gas, ascent, book, gauges),
@@ -34,3 +34,12 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
         "look": (gas, book, box.sight),
         "warm_walls": (gas.walls, 1.0),
     }
+    if box.attracts:
+        found |= {
+            "begin": (gas, ascent, book, gauges, box.crowd),
+            "end_frame": (gas, ascent, book, gauges, layout, box.crowd),
+            "look": (gas, book, layout, box.crowd, box.sight),
+            "attract": (gas, book, layout, 1.0),
+            "warm_bath": (gas.bath, 1.0),
+        }
+    return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.live.outlook import outlook, planned
-from atmosbox.page import Box, Stage, round_up, stage
+from atmosbox.page import NEIGHBOURS, Box, Stage, round_up, stage
 from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.quantity import phrase
 from atmosbox.scene.setup import Setup
@@ -59,6 +59,7 @@ class Picture:
         self._lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
         module, settings = prepared.module, prepared.settings
         self._highest = 0.0
+        self._counted = hasattr(parcel, "neighbours")  # what a drop is, colours of speeds do not show
         self.stage: Stage = stage(
             scene=prepared.scene,
             title=str(getattr(module, "title", prepared.scene)),
@@ -83,9 +84,10 @@ class Picture:
             drops=hasattr(parcel, "drops"),
             right=setup.right,
             time_unit=setup.time_unit,
-            fastest=self._fastest(),
+            fastest=NEIGHBOURS if self._counted else self._fastest(),
             panels=panels,
             discs=any(panel.kind == "discs" for panel in panels),
+            counted=self._counted,
         )
 
         for record, points in zip(
@@ -126,9 +128,12 @@ class Picture:
         snapshot = parcel.snapshot()
         present = parcel.present
         position = np.full((present.size, 3), math.nan)
-        speed = np.full(present.size, math.nan)
+        shown = np.full(present.size, math.nan)
         position[present] = snapshot.position * scale.length
-        speed[present] = np.sqrt(np.sum(snapshot.velocity**2, axis=1)) * scale.velocity
+        if self._counted:
+            shown[present] = parcel.neighbours()
+        else:
+            shown[present] = np.sqrt(np.sum(snapshot.velocity**2, axis=1)) * scale.velocity
         drops = None
         if hasattr(parcel, "drops"):
             centre, radius, _ = parcel.drops()
@@ -138,11 +143,11 @@ class Picture:
             self.time(),
             parcel.length * scale.length,
             position,
-            speed,
+            shown,
             drops=drops,
             liquid=int(getattr(parcel, "liquid", 0)),
             rained=int(getattr(parcel, "rained", 0)),
-            highest=self._scale(),
+            highest=NEIGHBOURS if self._counted else self._scale(),
         )
 
 

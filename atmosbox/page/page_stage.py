@@ -17,7 +17,7 @@ from atmosbox.page.thinning import MOST, chosen
 from atmosbox.scene.panels import Panel
 from atmosbox.theory.constants import DRY_AIR
 
-__all__ = ["Stage", "round_up", "stage"]
+__all__ = ["NEIGHBOURS", "Stage", "round_up", "stage"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -27,6 +27,8 @@ _CROWD = 800
 _BESIDE_DROPS = 0.4  # so wide, over what is usual, molecules are drawn where there are drops to be seen
 _ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
+NEIGHBOURS = 12.0
+"""At which the scale of colours ends where it tells neighbours."""
 _PARTICLES = {False: "molecule", True: "disc"}
 
 

@@ -14,7 +14,7 @@ from atmosbox.file.molecules import Molecules, molecules
 from atmosbox.file.provenance import parameters
 from atmosbox.page.page_box import Box, page_box
 from atmosbox.page.page_panel import Meaning, declared, names
-from atmosbox.page.page_stage import Stage, stage
+from atmosbox.page.page_stage import NEIGHBOURS, Stage, stage
 from atmosbox.page.thinning import share
 from atmosbox.page.word import changed, footer_of, notes, settings_of, story_of
 from atmosbox.scene.panels import Panel, from_json
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Page", "pages"]
 
-_NEIGHBOURS = 12.0  # at which the scale of colours ends where it tells neighbours
 _FASTEST = 99.9  # percentile of the speeds at which the scale of colours ends
 _FIGURES, _TIME_FIGURES = 6, 9
 
@@ -73,7 +72,7 @@ def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
     counted = [seen.neighbours is not None for seen in every]
     if any(counted) and not all(counted):
         raise FileError("Colours are neighbours in one run and speeds in the other: view one by one.")
-    fastest = _NEIGHBOURS if all(counted) else max(_fastest(seen.speed) for seen in every)
+    fastest = NEIGHBOURS if all(counted) else max(_fastest(seen.speed) for seen in every)
     return [
         _page(run, seen, heading, fastest, len(runs)) for run, seen, heading in zip(runs, every, headings, strict=True)
     ]

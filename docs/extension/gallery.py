@@ -24,6 +24,7 @@ LABS = {
     "lifting-dry": {"molecules": 1500, "ascent": 400},
     "temperature-large": {},
     "diffusion": {"molecules": 3000},
+    "attraction": {"molecules": 400},
 }
 """The settings of the labs: so few molecules that a phone keeps up."""
 

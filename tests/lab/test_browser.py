@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from atmosbox.lab import save_lab
+from atmosbox.lab import bench, save_lab
 from atmosbox.lab.lab_plan import STATE
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import build, prepare
@@ -20,6 +20,7 @@ SMALL = {
     "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out anew twice
     "temperature-large": ({"molecules": 300}, 20),
     "diffusion": ({"molecules": 2000}, 8),
+    "attraction": ({"molecules": 300, "duration": "0.6 ns"}, 40),  # drops grow, and touch each other
 }
 TOLD = ("adiabat", "environment", "parcel_height")
 """What theory says of a parcel's way begins so."""
@@ -128,6 +129,31 @@ def test_the_page_has_the_same_bytes_as_python_and_measures_the_same(lab, scene)
             np.testing.assert_allclose(table[name], found[name].values, rtol=width, err_msg=name)
             compared += 1
     assert compared > 3
+
+
+@pytest.mark.parametrize("frames", [90, pytest.param(138, marks=pytest.mark.validate)])
+def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_again(lab, monkeypatch, frames):
+    usual = bench.lists
+    # 23 words are enough at the start, but not where a drop forms: there the page gives them 46, or 92
+    monkeypatch.setattr(bench, "lists", lambda parcel: usual(parcel)._replace(stride=np.array([23]), longest=92))
+    settings, turns = {"molecules": 100, "duration": "2.4 ns"}, ((50, 0.5), (70, 1.0), (frames, 1.0))
+    shown = lab("attraction", settings)
+    setup = build(prepare("attraction", settings))
+    parcel, frame = setup.parcel, 0
+    for until, strength in turns:
+        shown.ask(type="frames", value=until)
+        shown.ask(type="set", name="attraction", value=strength)
+        while frame < until:
+            for sample in range(1, setup.samples + 1):
+                parcel.advance(setup.moment(frame, sample))
+            frame += 1
+        parcel.set_strength(strength)
+    assert (parcel._walls.epoch[0] > 0.0) == (frames > 134)  # where all clocks begin anew
+    assert shown.digest() == state_of(parcel)
+    _, table = shown.table()
+    assert table["work_by_attraction"][50] > 0.0  # weaker wells
+    free = table["vapor_molecule_count"]
+    assert free[65:70].mean() > free[40:50].mean() + 10.0  # the drop has gone with the attraction
 
 
 def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab):

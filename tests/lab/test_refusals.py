@@ -11,7 +11,7 @@ from atmosbox.simulation.preparation import prepare
     ("scene", "settings", "engine", "reason"),
     [
         ("condensation", {"molecules": 500}, None, "liquid water"),
-        ("attraction", {"molecules": 200}, None, "engine of its own"),
+        ("attraction", {"start": "slab", "density": 1.0}, None, "Slab"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
         ("lifting-moist", {"molecules": 500}, None, "liquid water"),
         ("atmosphere", {"start": "uniform"}, None, "start=equilibrium"),

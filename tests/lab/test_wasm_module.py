@@ -7,8 +7,9 @@ import pytest
 
 from atmosbox.engine.core.state import Modes
 from atmosbox.errors import EngineError
+from atmosbox.lab.bench import bench
 from atmosbox.lab.wasm_module import FOLDER, SCENES, module_bytes, module_name, source_stamp, stamp_of
-from atmosbox.simulation.preparation import build, prepare
+from atmosbox.simulation.preparation import prepare
 
 MODULES = sorted(FOLDER.glob("*.wasm.gz"))
 
@@ -61,16 +62,16 @@ def test_a_module_imports_memory_and_nothing_else(path):
 
 def test_the_modules_are_small_and_there_is_one_for_every_scene_that_has_a_lab():
     assert 0 < sum(path.stat().st_size for path in MODULES) <= 400_000
-    needed = {module_name(build(prepare(scene, settings)).parcel._modes) for scene, settings in SCENES.items()}
+    needed = {bench(prepare(scene, settings)).module for scene, settings in SCENES.items()}
     assert needed == {path.name.removesuffix(".wasm.gz") for path in MODULES}
 
 
 def test_a_set_of_modes_without_a_module_is_refused_in_a_sentence():
     with pytest.raises(EngineError, match="atmosbox live elastic-collisions"):
-        module_bytes(Modes(*[True] * 13), "elastic-collisions")
+        module_bytes(module_name(Modes(*[True] * 13)), "elastic-collisions")
 
 
 def test_a_checkout_without_modules_says_how_they_are_made(monkeypatch, tmp_path):
     monkeypatch.setattr("atmosbox.lab.wasm_module.FOLDER", tmp_path)
     with pytest.raises(EngineError, match=r"python tools/wasm\.py"):
-        module_bytes(Modes(*[True] * 13), "temperature")
+        module_bytes(module_name(Modes(*[True] * 13)), "temperature")

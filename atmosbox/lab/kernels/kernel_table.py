@@ -10,7 +10,9 @@ from atmosbox.engine.core.course import interpolate
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.lab.kernels.attracting import attracting, warm_bath
 from atmosbox.lab.kernels.averaging import average, forget
+from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.height_profile import end_profile
 from atmosbox.lab.kernels.passing import passing
@@ -58,11 +60,17 @@ def note_frame(gas, gauges, speeds, layers):
     return 0
 
 
-def kernels(modes: Modes) -> dict[str, Callable[..., Any]]:
-    """Return the kernels for one set of modes by name."""
-    pass_time, place = passing(modes)
-    begin, sample, end_frame = gauging(modes)
-    found = {"lead": lead} if modes.ascends else {}
+def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
+    """Return the kernels for one set of modes by name, and for molecules that attract each other."""
+    found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
+    if wells:
+        pass_time, place, attract = attracting(modes)
+        begin, sample, end_frame, look = clustering(modes)
+        found |= {"attract": attract, "warm_bath": warm_bath}
+    else:
+        pass_time, place = passing(modes)
+        begin, sample, end_frame = gauging(modes)
+        look = sight(modes)
     return found | {
         "place": place,
         "pass_time": pass_time,
@@ -71,6 +79,6 @@ def kernels(modes: Modes) -> dict[str, Callable[..., Any]]:
         "end_frame": end_frame,
         "note_frame": note_frame,
         "begin_averages_anew": begin_averages_anew,
-        "look": sight(modes),
+        "look": look,
         "warm_walls": warm_walls,
     }

@@ -1,0 +1,176 @@
+"""How time passes in a page among molecules that attract each other, and what a hand on a knob changes there.
+
+It is what `passing` is for hard spheres: the answers of `AttractingParcelSet` between two calls of the engine, in the
+same order and with the same numbers. Here a list of neighbours may become too short, and nothing else can happen.
+"""
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.exact import Status
+from atmosbox.engine.wells.vicinity import Vicinity
+from atmosbox.engine.wells.well_events import WellGas, specialise
+from atmosbox.lab.kernels.passing import Passed
+
+__all__ = ["Lists", "attracting", "energy_of_wells", "warm_bath"]
+
+# The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
+_DONE, _BUSY, _ROW_FULL = Status.DONE.value, Status.BUSY.value, Status.ROW_FULL.value
+
+
+class Lists(NamedTuple):
+    """The lists of neighbours, and the wells at their full depth.
+
+    ``stride : (1,)`` how many words a list has now, ``longest`` how many there is memory for; ``full_depth :
+    (kind, kind)`` of the wells [energy], ``strength : (1,)`` the depth that they have, over it; ``work : (1,)`` what
+    changes of that have given [energy].
+    """
+
+    stride: Any
+    longest: int
+    full_depth: Any
+    strength: Any
+    work: Any
+
+
+@kernel
+def energy_of_wells(wells):
+    """Return the potential energy of all pairs that are in each other's well [energy]."""
+    total = 0.0
+    for one in range(wells.depth.shape[0]):
+        for two in range(wells.depth.shape[1]):
+            total += wells.depth[one, two] * wells.number[one, two]
+    return -total
+
+
+@kernel
+def warm_bath(bath, kT):
+    """Keep the random bath at a temperature [energy] from now on: see `AttractingParcelSet.set_bath_kT`."""
+    bath.schedule_kT[:] = kT
+    return 0
+
+
+@kernel
+def _as_listed(gas, lists):
+    """Return the gas with its lists as long as they are now."""
+    v = gas.vicinity
+    vicinity = Vicinity(
+        v.entry, lists.stride[0], v.anchor, v.width, v.cell, v.next, v.previous, v.first, v.mark, v.found, v.gap,
+        v.reach, v.number_x, v.number_y, v.number_z, v.inverse_x, v.inverse_y, v.inverse_z,
+    )  # fmt: skip
+    return WellGas(
+        gas.molecules, gas.events, gas.kinds, gas.calendar, gas.box, gas.walls, gas.tallies, gas.wells, vicinity,
+        gas.bath,
+    )  # fmt: skip
+
+
+@kernel
+def _longer_lists(gas, lists):
+    """Make all lists twice as long, in the same memory; tell whether there is so much."""
+    old = lists.stride[0]
+    if 2 * old > lists.longest:
+        return False
+    entry = gas.vicinity.entry
+    # from the last one on, so that none is written over before it has been moved
+    for i in range(gas.molecules.size - 1, 0, -1):
+        for q in range(entry[i * old], -1, -1):
+            entry[2 * i * old + q] = entry[i * old + q]
+    lists.stride[0] = 2 * old
+    return True
+
+
+@kernel
+def _next_time(gas):
+    """Return the local time of what comes next: an event, or the bath."""
+    return min(gas.calendar.time[1], gas.bath.clock[0])
+
+
+@kernel
+def _rebase(step, gas, book):
+    """Let all clocks read small numbers again: see `AttractingParcelSet._rebase`."""
+    for i in range(gas.molecules.size):
+        gas.molecules[i].clock -= step
+        gas.events[i].contact_time -= step
+    times = gas.calendar.time
+    for k in range(times.size):
+        times[k] -= step
+    gas.bath.clock[0] -= step
+    gas.walls.piston[2] -= step
+    gas.tallies.progress[0] -= step
+    gas.walls.epoch[0] += step
+    book.now[0] -= step
+
+
+@functools.cache
+def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``pass_time``, ``place`` and ``attract`` of one set of modes."""
+    place_all, advance, replan, _ = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
+
+    @kernel
+    def resolve(gas, book, lists, stop, most):
+        """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
+        done = 0
+        while True:
+            status, some = advance(_as_listed(gas, lists), stop, most - done)
+            done += some
+            book.now[0] = max(book.now[0], min(stop, _next_time(gas)))
+            if status == _DONE:
+                book.now[0] = stop
+                return Passed.DONE, done
+            if status == _BUSY:
+                return Passed.BUSY, done
+            if status != _ROW_FULL:
+                return Passed.STALLED, done
+            if not _longer_lists(gas, lists):
+                return Passed.FULL, done
+
+    @kernel
+    def pass_time(gas, ascent, book, lists, until, most):
+        """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
+        done = 0
+        while True:
+            local = until - gas.walls.epoch[0]
+            goal = local
+            shifts = local > book.epoch_length
+            if shifts and book.now[0] >= book.epoch_length:
+                ahead = _next_time(gas)
+                shifts = not math.isinf(ahead)  # or nothing is left to happen at all
+                if shifts:
+                    _rebase(max(1.0, math.floor(ahead / book.epoch_length)) * book.epoch_length, gas, book)
+                    continue
+            if shifts:
+                goal = book.epoch_length
+            status, some = resolve(gas, book, lists, goal, most - done)
+            done += some
+            if status != Passed.DONE or not shifts:
+                return status.value, done
+
+    @kernel
+    def place(gas, book, lists):
+        """List the neighbours of all molecules at the start; when the bath acts first has been drawn already."""
+        state, clock = gas.tallies.random[0], gas.bath.clock[0]
+        placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
+        while not placed and _longer_lists(gas, lists):
+            placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
+        gas.tallies.random[0] = state
+        gas.bath.clock[0] = clock
+        return Passed.DONE.value if placed else Passed.FULL.value
+
+    @kernel
+    def attract(gas, book, lists, strength):
+        """Let all wells have another depth from now on: see `AttractingParcelSet.set_strength`."""
+        wells = gas.wells
+        before = energy_of_wells(wells)
+        for one in range(wells.depth.shape[0]):
+            for two in range(wells.depth.shape[1]):
+                wells.depth[one, two] = strength * lists.full_depth[one, two]
+        lists.strength[0] = strength
+        lists.work[0] += energy_of_wells(wells) - before
+        replan(gas, book.now[0])
+        return 0
+
+    return pass_time, place, attract

@@ -1,0 +1,192 @@
+"""Drops of molecules that attract each other, as a page measures and shows them.
+
+These are the counts and sums of `atmosbox.scene.instruments.Clusters`, as kernels, beside those of `gauging`.
+"""
+
+import functools
+import math
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from atmosbox.engine.core.elementary import expm1
+from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.state import Modes
+from atmosbox.engine.core.walls import wall_kT
+from atmosbox.engine.wells.vicinity import is_inside
+from atmosbox.lab.kernels.attracting import energy_of_wells
+from atmosbox.lab.kernels.gauging import Reading, gauging
+from atmosbox.lab.kernels.sight import sight
+
+__all__ = ["FIRST", "Crowd", "DropReading", "clustering"]
+
+FIRST = int(max(Reading)) + 6
+"""Where in ``Gauges.reading`` the numbers of drops begin: behind the temperatures of the six walls."""
+
+
+class DropReading(IntEnum):
+    """Where a number stands, from `FIRST` on; all in reduced units."""
+
+    LARGEST = 0
+    VAPOUR = 1
+    DROPS = 2
+    WELL_ENERGY = 3
+    ENERGY = 4
+    BATH_HEAT = 5
+    ATTRACTION_WORK = 6
+    PRESSURE = 7
+    WELLS = 8
+    BATH_KT = 9
+    GAS_PRESSURE = 10
+
+
+class Crowd(NamedTuple):
+    """What is kept of the drops.
+
+    ``members`` how many of the molecules attract each other, the first ones; ``crowded`` in how many wells one of a
+    drop is. ``wells``, ``drop``, ``size : (molecule,)``: in how many wells each is, a member of its drop that stands
+    for all (-1 in the vapour), and how large the drop is that one stands for. ``virial : (1,)`` at the end of the last
+    frame [energy]; ``gas_law : (2, 4)`` what p / n k T - 1 is of a gas: a sum over powers of its density, the first
+    one first, and of e^(strength / kT) - 1, from the zeroth on.
+    """
+
+    members: int
+    crowded: int
+    wells: Any
+    drop: Any
+    size: Any
+    virial: Any
+    gas_law: Any
+
+
+@kernel
+def _count_wells(vicinity, stride, wells):
+    """Count in how many wells each molecule is."""
+    for i in range(wells.size):
+        number = 0
+        for q in range(i * stride + 1, i * stride + 1 + np.int64(vicinity.entry[i * stride])):
+            number += is_inside(vicinity.entry[q])
+        wells[i] = number
+
+
+@kernel
+def _one_for_all(i, drop):
+    """Return which molecule stands for the drop of molecule i, and shorten the way to it."""
+    while drop[i] != i:
+        drop[i] = drop[drop[i]]
+        i = drop[i]
+    return i
+
+
+@kernel
+def _find_drops(vicinity, stride, crowd):
+    """Tell of each molecule which drop it belongs to: see `instruments.drops_of`."""
+    wells, drop, entry = crowd.wells, crowd.drop, vicinity.entry
+    for i in range(drop.size):
+        drop[i] = i if wells[i] >= crowd.crowded else -1
+    for i in range(drop.size):
+        for q in range(i * stride + 1, i * stride + 1 + np.int64(entry[i * stride])):
+            j = np.int64(entry[q]) >> 1
+            if j > i and is_inside(entry[q]) and drop[i] >= 0 and drop[j] >= 0:
+                drop[_one_for_all(j, drop)] = _one_for_all(i, drop)
+    for i in range(drop.size):
+        if drop[i] >= 0:
+            drop[i] = _one_for_all(i, drop)
+    # those at a surface: one that touches two drops belongs to the last that is found, in the order of Python
+    for lower_is_liquid in (True, False):
+        for i in range(drop.size):
+            for q in range(i * stride + 1, i * stride + 1 + np.int64(entry[i * stride])):
+                j = np.int64(entry[q]) >> 1
+                inner, outer = (i, j) if lower_is_liquid else (j, i)
+                touches = j > i and is_inside(entry[q])
+                if touches and wells[inner] >= crowd.crowded and wells[outer] < crowd.crowded:
+                    drop[outer] = drop[inner]
+
+
+@functools.cache
+def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
+    """Return the kernels ``begin``, ``sample``, ``end_frame`` and ``look`` of one set of modes."""
+    begin_air, sample, end_air = gauging(modes)
+    look_at_speeds = sight(modes)
+
+    @kernel
+    def begin(gas, ascent, book, gauges, crowd):
+        """Begin to measure now."""
+        begin_air(gas, ascent, book, gauges)
+        gauges.before[7] += energy_of_wells(gas.wells)
+        crowd.virial[0] = np.sum(gas.tallies.virial)
+        return 0
+
+    @kernel
+    def gas_pressure(density, kT, strength, law):
+        """Return the pressure of a gas of this density by the gas law with B2 and B3, NaN where that says nothing."""
+        x = expm1(max(strength, 1e-9) / kT)
+        factor, power = 1.0, 1.0
+        for k in range(law.shape[0]):
+            power *= density
+            term = 0.0
+            for m in range(law.shape[1] - 1, -1, -1):
+                term = term * x + law[k, m]
+            factor += power * term
+        return density * kT * factor if factor > 0.0 else math.nan
+
+    @kernel
+    def end_frame(gas, ascent, book, gauges, lists, crowd):
+        """Read what stands at the end of a frame, and finish its means."""
+        lasted = -gauges.before[6]
+        end_air(gas, ascent, book, gauges)
+        lasted += gauges.before[6]
+        reading, tallies = gauges.reading, gas.tallies
+        volume = gas.box.length_x * gas.box.length_z * (1.0 if gas.box.planar else gas.box.length_y)
+        _count_wells(gas.vicinity, lists.stride[0], crowd.wells)
+        _find_drops(gas.vicinity, lists.stride[0], crowd)
+        crowd.size[:] = 0
+        largest = vapour = drops = 0
+        for i in range(crowd.members):
+            if crowd.drop[i] < 0:
+                vapour += 1
+                continue
+            crowd.size[crowd.drop[i]] += 1
+            drops += crowd.size[crowd.drop[i]] == 1
+            largest = max(largest, crowd.size[crowd.drop[i]])
+        virial = np.sum(tallies.virial)
+        bound, kinetic = energy_of_wells(gas.wells), reading[Reading.KINETIC]
+        heat, work = gas.bath.heat[0], lists.work[0]
+        kT = reading[Reading.KT]
+        reading[FIRST + DropReading.LARGEST] = largest
+        reading[FIRST + DropReading.VAPOUR] = vapour
+        reading[FIRST + DropReading.DROPS] = drops
+        reading[FIRST + DropReading.WELL_ENERGY] = bound
+        reading[FIRST + DropReading.ENERGY] = kinetic + bound
+        reading[FIRST + DropReading.BATH_HEAT] = heat
+        reading[FIRST + DropReading.ATTRACTION_WORK] = work
+        motion = gas.molecules.size * kT
+        reading[FIRST + DropReading.PRESSURE] = (motion + (virial - crowd.virial[0]) / (3.0 * lasted)) / volume
+        reading[FIRST + DropReading.WELLS] = np.sum(gas.wells.number)
+        reading[FIRST + DropReading.BATH_KT] = wall_kT(gas.bath, 0, reading[Reading.TIME])
+        reading[FIRST + DropReading.GAS_PRESSURE] = gas_pressure(vapour / volume, kT, lists.strength[0], crowd.gas_law)
+        crowd.virial[0] = virial
+        # the ledger: see `Account.ledger`
+        given, passed = heat + work, abs(heat) + abs(work)
+        for wall in range(6):
+            given += tallies.heat[wall]
+            passed += abs(tallies.heat[wall])
+        start = gauges.before[7]
+        largest_part = max(abs(kinetic + bound), abs(start), passed, kinetic, abs(bound))
+        off = abs(kinetic + bound - start - given)
+        reading[Reading.LEDGER] = off / largest_part if largest_part > 0.0 else 0.0
+        return 0
+
+    @kernel
+    def look(gas, book, lists, crowd, sight):
+        """Write where all molecules are, and how many neighbours each attracts."""
+        look_at_speeds(gas, book, sight)
+        _count_wells(gas.vicinity, lists.stride[0], crowd.wells)
+        for k in range(sight.shown.size):
+            share = crowd.wells[sight.shown[k]] / sight.highest
+            sight.colour[k] = math.floor(min(share, 1.0) * 255 + 0.5)
+        return 0
+
+    return begin, sample, end_frame, look
