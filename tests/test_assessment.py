@@ -36,9 +36,11 @@ from atmosbox.trade.extremes.verdict import stored
 SLOW = {
     *("hot-and-cold", "size-ratio", "packing-0.49-fine", "two-molecules", "mass-ratio"),
     *("crushing-piston", "piston-on-points", "supersonic-piston"),
+    *("count-of-pi", "strong-gravity"),
 }
 """What takes engines that go in steps more than a second or two, compilation included."""
 OWN_KERNELS = {
+    *("water-at-95", "step-of-a-quarter", "bouncing-ball", "stack-at-rest", "three-walls-at-once", "two-molecules"),
     *("touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60", "drying-pool"),
     *("no-molecules", "one-molecule", "ball-at-rest", "count-of-pi", "hot-and-cold", "mass-ratio", "size-ratio"),
     *("strong-gravity", "crushing-gravity", "tall-column"),
@@ -46,8 +48,8 @@ OWN_KERNELS = {
 }
 """Boxes of which each needs two to ten seconds to compile, as no scene has such a box on the exact engine.
 
-What remains has the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, with a mist;
-and one more for gravity. Empty boxes, pistons and unlike molecules are tried elsewhere, too: test_extremes,
+What remains has the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, with a mist.
+Empty boxes, pistons and unlike molecules are tried elsewhere, too: test_extremes,
 physics/test_piston, physics/test_column.
 """
 
@@ -57,6 +59,7 @@ def cases():
         for each in EXTREMES.values():
             slow = each.long or (name in ("stepped", "classic") and each.name in SLOW)
             slow |= name == "exact" and each.name in OWN_KERNELS
+            slow |= name == "dsmc" and each.name in ("one-molecule-of-water", "drying-pool")
             yield pytest.param(name, each, id=f"{name}-{each.name}", marks=[pytest.mark.validate] if slow else [])
 
 

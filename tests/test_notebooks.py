@@ -1,6 +1,7 @@
 """The notebooks: kept without output, begun by a line that installs, launched from where they stand.
 
-The site runs every cell of them when it is built (tests/test_site.py), and a cell that fails is a failure of it.
+Here their cells run in small boxes. The site runs them as they are when it is published, and in the validate tier
+(tests/test_site.py); a cell that fails is a failure of it.
 """
 
 import ast
@@ -11,10 +12,37 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from matplotlib import pyplot
+
+import atmosbox
+from atmosbox.simulation.preparation import prepare
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 REPOSITORY = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Repository"]
+
+
+class Small:
+    """The package as a notebook sees it, whose boxes are small and whose ascents are fast."""
+
+    def __getattr__(self, name):
+        return getattr(atmosbox, name)
+
+    @staticmethod
+    def smaller(scene, settings):
+        """Return settings of fewer molecules, unless they follow from a wish for accuracy."""
+        if "accuracy" in settings:
+            return settings
+        of_scene = set(type(prepare(scene, {}).settings).model_fields)
+        least = {"molecules": 200} | ({"ascent": 150} if "ascent" in of_scene else {})
+        return settings | {name: min(settings.get(name, most), most) for name, most in least.items()}
+
+    def run(self, scene, **settings):
+        return atmosbox.run(scene, **self.smaller(scene, settings))
+
+    def sweep(self, scene, varied, **settings):
+        rest = {name: value for name, value in self.smaller(scene, settings).items() if name not in varied}
+        return atmosbox.sweep(scene, varied, **rest)
 
 
 def cells(path, kind):
@@ -43,6 +71,24 @@ def test_the_first_cell_installs_where_nothing_is_installed_and_the_rest_is_pyth
     assert first.endswith("import atmosbox as ab")
     for cell in rest:
         ast.parse(cell)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_all_cells_run_and_show_their_last_value(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = {"ab": Small()}
+    shown = 0
+    for cell in cells(path, "code")[1:]:
+        *before, last = ast.parse(cell).body
+        value = None
+        if isinstance(last, ast.Expr):
+            exec(compile(ast.Module(before, []), path.name, "exec"), names)
+            value = eval(compile(ast.Expression(last.value), path.name, "eval"), names)
+        else:
+            exec(compile(ast.Module([*before, last], []), path.name, "exec"), names)
+        shown += bool(getattr(value, "_repr_html_", str)())
+    pyplot.close("all")
+    assert shown > 0
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

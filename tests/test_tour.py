@@ -65,7 +65,7 @@ def test_a_folder_that_is_there_is_left_alone(tmp_path):
     assert "give --out another one" in done.stderr
 
 
-@pytest.mark.parametrize("ending", ["ctrl-c", "ctrl-d"])
+@pytest.mark.parametrize("ending", ["ctrl-c", pytest.param("ctrl-d", marks=pytest.mark.validate)])
 def test_enter_goes_on_and_ctrl_c_leaves_cleanly(tmp_path, ending):
     ours, theirs = pty.openpty()
     tour = subprocess.Popen(

@@ -97,8 +97,14 @@ def state(box):
     return b"".join(np.ascontiguousarray(a).tobytes() for a in arrays) + repr((box.contacts, box.receding)).encode()
 
 
+def boxes_but(other):
+    """Return a mark that tries every box, that one in the validate tier: each compiles a set of kernels of its own."""
+    params = [pytest.param(name, marks=pytest.mark.validate if name == other else ()) for name in BOXES]
+    return pytest.mark.parametrize("name", params)
+
+
 @many_steps
-@pytest.mark.parametrize("name", BOXES)
+@boxes_but("equal, gravity, baths")
 def test_a_run_is_the_same_however_it_is_cut(name):
     whole, pieces = (gas(300, delta=0.03, **BOXES[name]) for _ in range(2))
     whole.advance(8.0)
@@ -112,7 +118,7 @@ def test_a_run_is_the_same_however_it_is_cut(name):
 
 
 @many_steps
-@pytest.mark.parametrize("name", BOXES)
+@boxes_but("all at once")
 def test_a_run_has_the_same_bits_on_any_number_of_threads(name):
     boxes = [gas(300, delta=0.03, threads=threads, **BOXES[name]) for threads in (1, 2, 3)]
     for box in boxes:
