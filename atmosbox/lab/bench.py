@@ -11,17 +11,30 @@ from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.rows import MOST, row_stride
+from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.errors import SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
-from atmosbox.lab.kernels.gauging import Gauges, Reading
+from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.laying_out import Layout
 from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
 from atmosbox.lab.kernels.two_gases import Mixture
+from atmosbox.lab.moist_bench import hygrometer, liquid_sight, moisture
 from atmosbox.lab.wasm_module import module_name
-from atmosbox.lab.well_bench import READINGS, crowd, lists, well_gas
+from atmosbox.lab.well_bench import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
-from atmosbox.scene.instruments import Air, Clusters, Discs, Layers, Lift, Mixing, Speeds
+from atmosbox.scene.instruments import (
+    Air,
+    Clusters,
+    Discs,
+    Layers,
+    Leaving,
+    Lift,
+    Mixing,
+    MoistLift,
+    Speeds,
+    Water,
+)
 from atmosbox.simulation.preparation import Prepared, build
 
 if TYPE_CHECKING:
@@ -36,7 +49,9 @@ __all__ = ["Bench", "bench", "refuse"]
 _CORNERS = 4
 _SPARE = 1.5
 _PLACES = 32
-_INSTRUMENTS = (Air, Clusters, Discs, Layers, Lift, Mixing, Speeds)
+_INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Speeds, Water)
+_BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet)
+_READINGS = 64
 
 
 class Bench(NamedTuple):
@@ -75,6 +90,11 @@ class Bench(NamedTuple):
         """The name of the module that holds its kernels."""
         return module_name(self.modes, wells=self.attracts)
 
+    @property
+    def warmed(self) -> tuple[int, int]:
+        """The first wall that a knob warms, and the one behind the last: all, or the sides between floor and piston."""
+        return (0, 6) if not self.modes.piston else (0, 4)
+
 
 def refuse(prepared: Prepared, setup: Setup) -> None:
     """Refuse a box that no module is made for.
@@ -89,11 +109,9 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
     why = None
     if str(prepared.engine) != "exact":
         why = "runs in the page with the exact engine alone"
-    elif hasattr(parcel, "vapour"):
-        why = "has liquid water, whose laws are not compiled for the page"
-    elif type(parcel) not in (ParcelSet, AttractingParcelSet):
+    elif type(parcel) not in _BOXES:
         why = "has an engine of its own, which is not compiled for the page"
-    elif type(parcel) is ParcelSet and not parcel._modes.rows:
+    elif type(parcel) is not AttractingParcelSet and not parcel._modes.rows:
         why = "has cells too crowded, or too small, for the rows that the page works with"
     elif parcel._driver is not None and not parcel._ascends:
         why = "moves its piston in a way that is not compiled for the page"
@@ -136,9 +154,9 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         setup,
         well_gas(parcel) if attracts else _gas(parcel),
         _ascent(parcel),
-        Book(np.array([parcel._now]), parcel._epoch_length),
+        Book(np.array([parcel._now]), parcel._epoch_length, moisture(parcel)),
         lists(parcel) if attracts else _layout(parcel),
-        _gauges(setup, READINGS if attracts else 0),
+        _gauges(setup),
         *_averages(setup),
         _sight(parcel, setup.scale, stage)._replace(**{"highest": NEIGHBOURS} if attracts else {}),
         crowd(setup) if attracts else 0,
@@ -165,7 +183,7 @@ def _layout(parcel: Any) -> Layout:
 
 def _gas(parcel: Any) -> Gas:
     """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if they move."""
-    cells, number, copies = parcel._cells, parcel.number, parcel._cells.copies
+    cells, number, copies = parcel._cells, parcel._molecules.size, parcel._cells.copies
     many = cells.number_x * cells.number_y * cells.number_z
     if parcel._modes.piston:
         many = int(_SPARE * many)
@@ -209,7 +227,7 @@ def _of(setup: Setup, kind: type) -> Any:
     return next((each for each in setup.instruments if type(each) is kind), None)
 
 
-def _gauges(setup: Setup, more: int) -> Gauges:
+def _gauges(setup: Setup) -> Gauges:
     """Return what the instruments keep at their start, with room for some more readings."""
     air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
     edges = np.zeros(1) if speeds is None else speeds._edges
@@ -220,7 +238,7 @@ def _gauges(setup: Setup, more: int) -> Gauges:
         half = np.ones(mass.size, np.int64)
         half[np.argsort(mass, kind="stable")[: mass.size // 2]] = 0
     return Gauges(
-        reading=np.zeros(len(Reading) + 5 + more),
+        reading=np.zeros(_READINGS),
         warmth=np.zeros(2),
         before=np.zeros(8),
         barometer=0 if air is None or air._barometer == slice(None) else 4,
@@ -233,6 +251,7 @@ def _gauges(setup: Setup, more: int) -> Gauges:
         half=half,
         running=np.zeros(8),
         mixture=_mixture(setup),
+        water=hygrometer(setup),
     )
 
 
@@ -280,4 +299,12 @@ def _average(number: int, frames: int) -> Average:
 def _sight(parcel: Any, scale: Scale, stage: Stage | None) -> Sight:
     shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
     highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
-    return Sight(shown, np.zeros(3), np.zeros((shown.size, 3), np.uint16), np.zeros(shown.size, np.uint8), highest)
+    return Sight(
+        shown,
+        np.zeros(3),
+        np.zeros((shown.size, 3), np.uint16),
+        np.zeros(shown.size, np.uint8),
+        highest,
+        np.zeros(shown.size, np.uint8),
+        *liquid_sight(parcel, scale, stage),
+    )

@@ -8,19 +8,21 @@ import numpy as np
 
 from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
+from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.memory_image import BASE, Image, image
+from atmosbox.lab.moist_plan import WET_STATE, fixed_energies, leaving_energies, moist_knob, water_readings
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.well_bench import drop_readings, has_bath
 from atmosbox.lab.work import arguments
 from atmosbox.live.control import controls
 from atmosbox.live.experiment import Experiment
-from atmosbox.live.gauge import GAUGES
+from atmosbox.live.gauge import FEW, GAUGES
 from atmosbox.live.lesson import lesson_of
 from atmosbox.live.picture import Picture
 from atmosbox.live.summary import while_it_runs
 from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
-from atmosbox.scene.instruments import MOMENTS, Lift
+from atmosbox.scene.instruments import MOMENTS, Lift, MoistLift
 from atmosbox.simulation.preparation import Prepared
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "g
 
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
+_KNOBS = ("temperature", "altitude", "way", "open_pool", "attraction")
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
@@ -66,9 +69,13 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     box = bench(prepared, look)
     setup, stage = box.setup, pictures[0].stage
     named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
+    named["book"] = box.book
     memory = image(arguments(box), named)
-    wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *STATE}
+    state = (*STATE, *(WET_STATE if box.modes.phases else ()))
+    wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
     wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
+    wanted |= {"sight.state", "sight.drops", "sight.many"}
+    wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)
     known = short_run(prepared)
     readings = _readings(box)
@@ -89,8 +96,9 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "blocks": memory.blocks,
         "slots": {kernel: slots for kernel, slots in memory.slots.items() if slots},
         "arrays": {name: memory.arrays[name] for name in sorted(wanted)},
-        "state": STATE,
+        "state": state,
         "molecules": setup.parcel.number,
+        "present": int(WaterReading.MOLECULES) if box.modes.phases else None,
         "frame": setup.frame,
         "frames": setup.frames,
         "samples": setup.samples,
@@ -133,13 +141,16 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
         ]
     if box.gauges.mixture.right.size:
         found += [("mixing_amplitude", Reading.AMPLITUDE, 1.0), ("mixing_entropy", Reading.ENTROPY, 1.0)]
-    if box.modes.ascends:
+    found += water_readings(box) if box.modes.phases else []
+    if any(type(each) is Lift for each in setup.instruments):
         found += [
             ("parcel_temperature", Reading.PARCEL_KT, scale.temperature),
             ("parcel_pressure", Reading.PARCEL_PRESSURE, scale.pressure),
             ("moment", Reading.MOMENT, 1.0),
         ]
     warm = np.isfinite(setup.parcel.wall_kT())
+    if box.modes.phases and any(knob.name == "temperature" for knob in setup.knobs):
+        warm[slice(*box.warmed)] = True
     found += [
         (f"wall_temperature[{name}]", Reading.WALL_KT + wall, scale.temperature)
         for wall, name in enumerate(_WALLS)
@@ -151,10 +162,15 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
 def _gauges(names: list[str]) -> list[dict[str, Any]]:
     """Return the gauges beside the box: of each what it shows of which variable."""
     return [
-        {"name": name, "variable": known, "unit": unit, "factor": factor, "offset": offset}
+        {"name": name, "variable": known, "unit": unit, "factor": factor, "offset": offset, **_few(name)}
         for name, variables, unit, factor, offset in GAUGES
         if (known := next((each for each in variables if each in names), None)) is not None
     ]
+
+
+def _few(name: str) -> dict[str, Any]:
+    """Return how many molecules must saturate the air for a hygrometer to say anything: see `live.gauge`."""
+    return {"few": ["vapor_molecule_count", FEW]} if name == "hygrometer" else {}
 
 
 def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[str, Any]:
@@ -182,6 +198,7 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
             (f"left_gas_share_{name}", "gauges.mixture", place * across, across, 1.0)
             for place, name in enumerate(MOMENTS)
         ]
+    found += leaving_energies(box) if box.modes.phases else []
     return [
         (name + end, f"{array}.{part}", first, count, float(factor))
         for name, array, first, count, factor in found
@@ -201,24 +218,29 @@ def _fixed(box: Bench) -> dict[str, Any]:
     if across:
         edges = np.linspace(0.0, mixture.width, across + 1) * box.setup.scale.length
         found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
-    return found
+    return found | (fixed_energies(box) if box.modes.phases else {})
 
 
 def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
     """Return the knobs that act in a page, and what each does with its value."""
     setup = box.setup
-    kept = [knob for knob in setup.knobs if knob.name in ("temperature", "altitude", "attraction")]
+    kept = [knob for knob in setup.knobs if knob.name in _KNOBS]
     numbers: dict[str, Any] = {}
     for knob in kept:
         zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)
-        if knob.name == "temperature":
+        told = {"factor": one - zero, "offset": zero}
+        if hasattr(setup.parcel, "vapour") and knob.name in ("temperature", "open_pool"):
+            told = moist_knob(knob, told, setup.scale)
+        elif knob.name == "temperature":
             unit = setup.scale.temperature
             kernel = "warm_bath" if box.attracts and has_bath(setup) else "warm_walls"
             told = {"kernel": kernel, "argument": "1", "factor": (one - zero) / unit, "offset": zero / unit}
         elif knob.name == "attraction":
             told = {"kernel": "attract", "argument": "3", "factor": 1.0, "offset": 0.0}
+        elif knob.name == "way":  # a part of its time
+            told = {"kernel": "lead", "argument": "3", "factor": (one - zero) * setup.duration, "offset": 0.0}
         else:  # a height becomes a moment of the way
-            told = {"kernel": "lead", "argument": "3", "factor": one - zero, "offset": zero, **_moments(setup)}
+            told |= {"kernel": "lead", "argument": "3", **_moments(setup)}
         numbers[knob.name] = told
     return kept, numbers
 
@@ -226,7 +248,7 @@ def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
 def _moments(setup: Setup) -> dict[str, Any]:
     """Return at which moment of its way a parcel is how high [m]."""
     moments = np.linspace(0.0, setup.duration, _WAY)
-    around = next(each.environment for each in setup.instruments if isinstance(each, Lift))
+    around = next(each.environment for each in setup.instruments if isinstance(each, Lift | MoistLift))
     heights = [around.height(t * setup.scale.time) for t in moments.tolist()]
     return {"grid": plain(heights), "curves": {"to": plain(moments)}}
 

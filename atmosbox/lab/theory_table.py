@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.errors import SettingError
+from atmosbox.lab.moist_plan import moist_tables
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
@@ -71,7 +72,8 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     -------
     list of dict
         ``along`` the variable that a table goes along, ``grid`` its values, and ``curves`` by name their values at each
-        of them; between two the page takes the straight line.
+        of them; between two the page takes the straight line. ``otherwise`` what curves are while that variable is not
+        known, and ``times`` by what variable a curve is to be multiplied.
 
     Examples
     --------
@@ -83,6 +85,8 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     >>> warmth["along"], warmth["curves"]["air_temperature_theory"] == warmth["grid"]
     ('wall_temperature[z_low]', True)
     """
+    if hasattr(setup.parcel, "vapour"):
+        return moist_tables(prepared, setup, found)
     lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
     if lift is not None:
         return [_way(setup, lift), _adiabat(setup, lift)]

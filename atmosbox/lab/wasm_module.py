@@ -22,6 +22,9 @@ SCENES: dict[str, dict[str, Any]] = {
     "temperature-large": {},
     "diffusion": {"molecules": 4000},
     "attraction": {},
+    "evaporation": {"molecules": 3000, "pool": 600},
+    "condensation": {"molecules": 3000},
+    "lifting-moist": {"molecules": 3000},
 }
 """The shipped scenes that a page can run, with the settings that they need for it, or for a page of 1.5 MB."""
 

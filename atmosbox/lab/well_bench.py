@@ -19,10 +19,8 @@ from atmosbox.scene.instruments import Clusters
 from atmosbox.scene.instruments.condensate import CROWDED
 from atmosbox.scene.setup import Setup
 
-__all__ = ["READINGS", "crowd", "drop_readings", "has_bath", "lists", "well_gas"]
+__all__ = ["crowd", "drop_readings", "has_bath", "lists", "well_gas"]
 
-READINGS = len(DropReading)
-"""How many readings there are beside those of the air."""
 _LONGER = 4
 """How many times as long as at the start there is memory for the lists to become."""
 _POWERS = 4

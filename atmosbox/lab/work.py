@@ -27,13 +27,12 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
         "place": (gas, book, layout),
         "pass_time": (gas, ascent, book, layout, 0.0, 0),
         "begin": (gas, ascent, book, gauges),
-        "sample": (gas, book, gauges),
+        "sample": (gas, ascent, book, gauges),
         "end_frame": (gas, ascent, book, gauges),
         "note_frame": (gas, gauges, box.speeds, box.layers),
         "begin_averages_anew": (box.speeds, box.layers),
         "look": (gas, book, box.sight),
-        "warm_walls": (gas.walls, 1.0),
-    }
+    } | (_knobs(box) if box.modes.phases else {"warm_walls": (gas.walls, 1.0)})
     if box.attracts:
         found |= {
             "begin": (gas, ascent, book, gauges, box.crowd),
@@ -43,3 +42,13 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
             "warm_bath": (gas.bath, 1.0),
         }
     return found
+
+
+def _knobs(box: Bench) -> dict[str, tuple[Any, ...]]:
+    """Return the arguments of what the knobs of a box with liquid call."""
+    gas, book = box.gas, box.book
+    found: dict[str, tuple[Any, ...]] = {
+        "warm_walls": (gas, book, *box.warmed, 1.0),
+        "smooth_walls": (gas, *box.warmed),
+    }
+    return found | ({"cover_pool": (gas, book, 1.0)} if box.modes.pool else {})

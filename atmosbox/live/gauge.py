@@ -9,10 +9,11 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["GAUGES", "readings"]
+__all__ = ["FEW", "GAUGES", "readings"]
 
 _FRAMES = 20
-_FEW = 50  # molecules that would saturate the air: with fewer a hygrometer scatters by more than a seventh
+FEW = 50
+"""With fewer molecules that would saturate the air, a hygrometer scatters by more than a seventh."""
 GAUGES = (
     ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
     ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
@@ -60,7 +61,7 @@ def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
         last = found[known].values[-1 if moving else -_FRAMES :]
         if name == "hygrometer" and "vapor_molecule_count" in found:
             vapour = found["vapor_molecule_count"].values[-last.size :]
-            last = last[vapour >= _FEW * last]
+            last = last[vapour >= FEW * last]
         last = last[np.isfinite(last)]
         if last.size:
             value = float(last.mean()) * factor + offset

@@ -9,13 +9,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["clumps", "layer"]
+__all__ = ["POOL", "RAIN", "SWELLING", "clumps", "layer", "places"]
 
 _A_CLUMP = 12.0  # molecules, once all water has condensed
 _MOST = 40
 _MARGIN = 0.08  # of the box, which clumps leave free
-_SWELLING = 0.55  # radius of a clump of one, over the diameter of a molecule
-_POOL, _RAIN = -1.0, -2.0
+SWELLING = 0.55
+"""Radius of a clump of one molecule, over the diameter with which that is drawn."""
+POOL, RAIN = -1.0, -2.0
+"""What a layer is: it stands in place of a radius."""
 
 Floats = NDArray[np.float64]
 
@@ -47,11 +49,24 @@ def clumps(number: int, water: int, length: Floats, diameter: float) -> Floats:
     """
     if number <= 0:
         return np.zeros((0, 4))
-    count = min(int(np.clip(round(water / _A_CLUMP), 1, _MOST)), number)
-    spread = np.stack([_spread(count, base) for base in (2, 3, 5)], axis=1)
-    place = (_MARGIN + (1.0 - 2.0 * _MARGIN) * spread) * length
-    radius = _SWELLING * diameter * (number / count) ** (1.0 / 3.0)
+    place = places(water)[:number] * length
+    count = len(place)
+    radius = SWELLING * diameter * (number / count) ** (1.0 / 3.0)
     return np.column_stack((place, np.full(count, radius)))
+
+
+def places(water: int) -> Floats:
+    """Return where clumps of so many molecules of water are drawn, as shares of the box.
+
+    If fewer molecules have condensed than there are places, they take the first ones.
+
+    Examples
+    --------
+    >>> places(24).round(2).tolist()
+    [[0.5, 0.36, 0.25], [0.29, 0.64, 0.42]]
+    """
+    count = int(np.clip(round(water / _A_CLUMP), 1, _MOST))
+    return _MARGIN + (1.0 - 2.0 * _MARGIN) * np.stack([_spread(count, base) for base in (2, 3, 5)], axis=1)
 
 
 def layer(number: int, water: int, *, rain: bool = False) -> Floats:
@@ -78,7 +93,7 @@ def layer(number: int, water: int, *, rain: bool = False) -> Floats:
     """
     if number <= 0 or water <= 0:
         return np.zeros((0, 4))
-    return np.array([[0.0, 0.0, min(number / water, 1.0), _RAIN if rain else _POOL]])
+    return np.array([[0.0, 0.0, min(number / water, 1.0), RAIN if rain else POOL]])
 
 
 def _spread(count: int, base: int) -> Floats:

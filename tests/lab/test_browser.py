@@ -9,6 +9,7 @@ import pytest
 
 from atmosbox.lab import bench, save_lab
 from atmosbox.lab.lab_plan import STATE
+from atmosbox.lab.moist_plan import WET_STATE
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import build, prepare
 from atmosbox.simulation.recording import Recording
@@ -21,8 +22,11 @@ SMALL = {
     "temperature-large": ({"molecules": 300}, 20),
     "diffusion": ({"molecules": 2000}, 8),
     "attraction": ({"molecules": 300, "duration": "0.6 ns"}, 40),  # drops grow, and touch each other
+    "evaporation": ({"molecules": 400, "pool": 150}, 60),
+    "condensation": ({"molecules": 300, "humidity": 300}, 40),
+    "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out anew, too
 }
-TOLD = ("adiabat", "environment", "parcel_height")
+TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air")
 """What theory says of a parcel's way begins so."""
 
 
@@ -99,7 +103,11 @@ def state_of(parcel):
         "gas.tallies.heat": parcel._tallies.heat,
         "gas.tallies.random": parcel._tallies.random,
     }
-    return hashlib.sha256(b"".join(parts[name].tobytes() for name in STATE)).hexdigest()
+    names = STATE
+    if hasattr(parcel, "vapour"):
+        names = (*STATE, *WET_STATE)
+        parts |= {name: getattr(parcel._reservoir, name.rpartition(".")[2]) for name in WET_STATE}
+    return hashlib.sha256(b"".join(parts[name].tobytes() for name in names)).hexdigest()
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -116,6 +124,8 @@ def test_the_page_has_the_same_bytes_as_python_and_measures_the_same(lab, scene)
             recording.sample(setup.parcel.snapshot())
         recording.end_frame(setup.parcel.snapshot())
     assert setup.parcel.contacts > 200
+    if hasattr(setup.parcel, "vapour"):
+        assert min(setup.parcel.condensed, setup.parcel.evaporated) > 20
     assert shown.digest() == state_of(setup.parcel)
     _, table = shown.table()
     assert len(table) == frames

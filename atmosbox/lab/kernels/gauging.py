@@ -15,6 +15,8 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
+from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
+from atmosbox.lab.kernels.presence import is_away, number_in_gas
 from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
 __all__ = ["Gauges", "Reading", "gauging"]
@@ -34,7 +36,7 @@ class Gauges(NamedTuple):
 
     ``half : (molecule,)`` 0 for a light disc, 1 for a heavy one, empty where molecules are alike; ``running : (8,)``
     sums of the mean energies of both halves [energy], the frames, the first energy, and the first momentum.
-    ``mixture`` two gases that mix.
+    ``mixture`` two gases that mix; ``water`` vapour and liquid, 0 in a box without.
     """
 
     reading: Any
@@ -50,10 +52,11 @@ class Gauges(NamedTuple):
     half: Any
     running: Any
     mixture: Mixture
+    water: Hygrometer | int
 
 
 class Reading(IntEnum):
-    """Where in ``Gauges.reading`` a number stands; all in reduced units."""
+    """Where in ``Gauges.reading`` a number stands; all in reduced units. Those of water follow: `WaterReading`."""
 
     TIME = 0
     KT = 1
@@ -80,6 +83,7 @@ _TIME, _ENERGY = 6, 7
 def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``begin``, ``sample`` and ``end_frame`` of one set of modes."""
     begin_mixing, end_mixing = mixing(modes)
+    begin_water, sample_water, condensed_energy, end_water = hygrometry(modes)
 
     @kernel
     def ceiling(gas, now):
@@ -92,6 +96,8 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         """Return kinetic, rotational and potential energy [energy], and their sum over the three momenta."""
         kinetic = rotational = potential = px = py = pz = 0.0
         for i in range(gas.molecules.size):
+            if is_away(i, gas, modes):
+                continue
             at = motion_at(i, now, gas, modes)
             mass, _, _ = kind_of(i, gas, modes)
             kinetic += 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
@@ -129,12 +135,14 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 sums[2, layer] += planes * (number - 1.0)
 
     @kernel
-    def sample(gas, book, gauges):
+    def sample(gas, ascent, book, gauges):
         """Read what a frame takes its mean of."""
         now = book.now[0]
         twice = 0.0
         bins = gauges.counts.size
         for i in range(gas.molecules.size):
+            if is_away(i, gas, modes):
+                continue
             at = motion_at(i, now, gas, modes)
             mass, _, _ = kind_of(i, gas, modes)
             square = at.vx * at.vx + at.vy * at.vy + at.vz * at.vz
@@ -145,8 +153,11 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 if low <= speed <= high:
                     gauges.counts[min(int((speed - low) / (high - low) * bins), bins - 1)] += 1.0
         planes = 2.0 if gas.box.planar else 3.0
-        gauges.warmth[0] += twice / (planes * gas.molecules.size)
+        gauges.warmth[0] += twice / (planes * number_in_gas(gas, modes))
         gauges.warmth[1] += 1.0
+        if modes.phases:
+            kinetic, rotational, _, _, _, _ = energies(gas, now)
+            sample_water(gas, ascent, book, kinetic + rotational, ceiling(gas, now), gauges)
         if gauges.sums.shape[1] > 0:
             sample_layers(gas, now, gauges.sums, gauges.scratch)
         return 0
@@ -156,9 +167,10 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         """Return the areas of the walls across x, y and z that centres can reach: see `open_faces`."""
         mean = 0.0
         for i in range(gas.molecules.size):
-            _, radius, _ = kind_of(i, gas, modes)
-            mean += 2.0 * radius
-        mean /= max(gas.molecules.size, 1)
+            if not is_away(i, gas, modes):
+                _, radius, _ = kind_of(i, gas, modes)
+                mean += 2.0 * radius
+        mean /= max(number_in_gas(gas, modes), 1)
         box = gas.box
         x = box.length_x - (mean if box.inverse_x == 0.0 else 0.0)
         y = 1.0 if box.planar else box.length_y - (mean if box.inverse_y == 0.0 else 0.0)
@@ -212,7 +224,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         gauges.reading[Reading.ENERGY_CHANGE] = total / running[3] - 1.0
         gauges.reading[Reading.MOMENTUM] = math.sqrt(gone) / size if size > 0.0 else 0.0
 
-    if modes.ascends:
+    if modes.ascends and not modes.phases:
 
         @kernel
         def end_lift(gas, ascent, book, gauges):
@@ -236,7 +248,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def end_lift(gas, ascent, book, gauges):
-            """Read nothing: this box does not rise."""
+            """Read nothing: this box does not rise, or `end_water` reads how."""
 
     @kernel
     def begin(gas, ascent, book, gauges):
@@ -246,7 +258,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         for wall in range(6):
             gauges.before[wall] = gas.tallies.impulse[wall]
         gauges.before[_TIME] = gas.walls.epoch[0] + now
-        gauges.before[_ENERGY] = kinetic + rotational + potential
+        gauges.before[_ENERGY] = kinetic + rotational + potential + condensed_energy(gas, book)
         gauges.warmth[:] = 0.0
         gauges.counts[:] = 0.0
         gauges.sums[:] = 0.0
@@ -254,6 +266,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
             gauges.sums[3, layer] = gas.tallies.virial[layer]
         gauges.running[:] = 0.0
         begin_mixing(gauges.mixture)
+        begin_water(gas, book, gauges)
         return 0
 
     @kernel
@@ -263,7 +276,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         time = gas.walls.epoch[0] + now
         lasted = time - gauges.before[_TIME]
         kinetic, rotational, potential, px, py, pz = energies(gas, now)
-        total = kinetic + rotational + potential
+        total = kinetic + rotational + potential + condensed_energy(gas, book)
         given = passed = 0.0
         for wall in range(6):
             given += gas.tallies.heat[wall] + gas.tallies.work[wall]
@@ -296,6 +309,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         if gauges.mixture.right.size > 0:
             reading[Reading.AMPLITUDE], reading[Reading.ENTROPY] = end_mixing(gas, now, time, gauges.mixture)
         end_lift(gas, ascent, book, gauges)
+        end_water(gas, ascent, book, time, lasted, gauges)
         gauges.warmth[:] = 0.0
         gauges.counts[:] = 0.0
         return 0

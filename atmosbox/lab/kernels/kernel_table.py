@@ -15,6 +15,7 @@ from atmosbox.lab.kernels.averaging import average, forget
 from atmosbox.lab.kernels.clustering import clustering
 from atmosbox.lab.kernels.gauging import gauging
 from atmosbox.lab.kernels.height_profile import end_profile
+from atmosbox.lab.kernels.moist_passing import moist_knobs
 from atmosbox.lab.kernels.passing import passing
 from atmosbox.lab.kernels.sight import sight
 
@@ -80,5 +81,4 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
         "note_frame": note_frame,
         "begin_averages_anew": begin_averages_anew,
         "look": look,
-        "warm_walls": warm_walls,
-    }
+    } | (moist_knobs(modes) if modes.phases else {"warm_walls": warm_walls})

@@ -122,7 +122,7 @@ def _farthest(edge, axis, k, n):
 
 
 @kernel
-def write_cells(gas, layout):
+def write_cells(gas, layout, modes):
     """Write the tables of the cells that were chosen; all rows, events and the calendar are empty after it."""
     cells, copies, edge = gas.cells, gas.cells.copies, layout.edge
     shape = layout.shape
@@ -139,12 +139,14 @@ def write_cells(gas, layout):
         for k in range(n):
             edge[axis, k] = k * step
         edge[axis, n] = length
-        cells.boundary[0, axis, 0] = layout.radius
+        # where molecules are not all of one kind, walls are each molecule's own business
+        cells.boundary[0, axis, 0] = -math.inf if modes.mixed else layout.radius
         for k in range(1, n):
             cells.boundary[0, axis, 2 * k - 1] = edge[axis, k] - reach
             cells.boundary[0, axis, 2 * k] = edge[axis, k] + reach
         # who gets above all cells leaves them; the other walls are where centres turn
-        cells.boundary[0, axis, 2 * n - 1] = length if axis == 2 else length - layout.radius
+        turn = math.inf if modes.mixed else length - layout.radius
+        cells.boundary[0, axis, 2 * n - 1] = length if axis == 2 else turn
         for k in range(n):
             copies.centre[axis, k] = 0.5 * (edge[axis, k + 1] + edge[axis, k])
             if axis < 2:

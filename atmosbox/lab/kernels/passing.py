@@ -17,30 +17,34 @@ from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.rows import START, STOP, TOP_SPEED
 from atmosbox.engine.exact.turning import Ascent
 from atmosbox.lab.kernels.laying_out import LAST, NUMBER, STRIDE, choose_cells, write_cells
+from atmosbox.lab.kernels.moist_passing import moist_passing
 
 __all__ = ["Book", "Passed", "passing"]
 
 # The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
 _DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
 _ROW_FULL, _EPOCH_OVER = Status.ROW_FULL.value, Status.EPOCH_OVER.value
-_CRUSHED, _TURNED = Status.CRUSHED.value, Status.TURNED.value
+_CRUSHED, _TURNED, _CROWDED = Status.CRUSHED.value, Status.TURNED.value, Status.CROWDED.value
 
 
 class Book(NamedTuple):
     """What a box knows beside its gas.
 
-    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length`` after what time they begin anew [time].
+    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length`` after what time they begin anew [time];
+    ``moisture`` its liquid, 0 if it has none.
     """
 
     now: Any
     epoch_length: float
+    moisture: Any
 
 
 class Passed(IntEnum):
     """How far time has passed.
 
     ``DONE`` the time asked for is reached; ``BUSY`` there is more to do; ``STALLED`` events pile up without progress;
-    ``FULL`` more molecules have come together in a cell than it has memory for; ``CRUSHED`` the piston is too low.
+    ``FULL`` more molecules have come together in a cell than it has memory for; ``CRUSHED`` the piston is too low;
+    ``CROWDED`` a molecule that evaporates finds no free place.
     """
 
     DONE = 0
@@ -48,6 +52,7 @@ class Passed(IntEnum):
     STALLED = 2
     FULL = 3
     CRUSHED = 4
+    CROWDED = 5
 
 
 @kernel
@@ -104,18 +109,19 @@ def _longer_rows(gas, layout, modes):
 @functools.cache
 def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``pass_time`` and ``place`` of one set of modes."""
-    place_all, advance, _, _, refill = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
+    place_all, _, _, _, refill = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
+    advance, soonest, shift, _, wake = moist_passing(modes)
 
     if modes.ascends:
 
         @kernel
-        def proceed(gas, ascent, layout, until, most):
+        def proceed(gas, ascent, book, layout, until, most):
             """Resolve events, and turn the piston as it is due."""
             a = ascent
             here = Ascent(
                 a.lift, a.turns, layout.filled[0], a.lowest, a.start_energy, a.gravity_work, a.freedom, a.diameter
             )
-            return advance(_as_laid_out(gas, layout), here, until, most)
+            return advance(_as_laid_out(gas, layout), here, book, until, most)
 
         @kernel
         def next_turn(gas, ascent):
@@ -125,9 +131,9 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     else:
 
         @kernel
-        def proceed(gas, ascent, layout, until, most):
+        def proceed(gas, ascent, book, layout, until, most):
             """Resolve events."""
-            return advance(_as_laid_out(gas, layout), until, most)
+            return advance(_as_laid_out(gas, layout), ascent, book, until, most)
 
         @kernel
         def next_turn(gas, ascent):
@@ -153,7 +159,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             if not _longer_rows(gas, layout, modes):
                 return False
 
-    if modes.piston and modes.rows and not modes.mixed and not modes.periodic and not modes.gravity:
+    if modes.piston and modes.rows and not modes.periodic and not modes.gravity:
 
         @kernel
         def laid_out(gas, now, layout):
@@ -161,7 +167,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             piston = gas.walls.piston
             if not choose_cells(piston[0] + piston[1] * (now - piston[2]), gas.molecules.size, gas.box, layout):
                 return False
-            write_cells(gas, layout)
+            write_cells(gas, layout, modes)
             return _fits(gas, layout) and placed(gas, now, layout)
 
     else:
@@ -176,17 +182,16 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
         done = 0
         while True:
-            status, some = proceed(gas, ascent, layout, stop, most - done)
+            status, some = proceed(gas, ascent, book, layout, stop, most - done)
             done += some
-            soon = gas.calendar.time[1]
-            book.now[0] = max(book.now[0], min(stop, soon))
+            book.now[0] = max(book.now[0], min(stop, soonest(gas, book)))
             if status == _DONE:
                 book.now[0] = stop
                 return Passed.DONE, done
             if status == _BUSY:
                 return Passed.BUSY, done
             if status == _EPOCH_OVER:
-                if not refilled(gas, soon, layout):
+                if not refilled(gas, gas.calendar.time[1], layout):
                     return Passed.FULL, done
             elif status == _ROW_FULL:
                 if not (_longer_rows(gas, layout, modes) and refilled(gas, book.now[0], layout)):
@@ -195,11 +200,15 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 return Passed.STALLED, done
             elif status == _CRUSHED:
                 return Passed.CRUSHED, done
+            elif status == _CROWDED:
+                return Passed.CROWDED, done
             else:
                 if status == _TURNED:
                     book.now[0] = gas.walls.piston[2]
                 if not laid_out(gas, book.now[0], layout):
                     return Passed.FULL, done
+                if status == _TURNED:
+                    wake(gas, book, 2.0 * abs(gas.walls.piston[1]))
 
     @kernel
     def pass_time(gas, ascent, book, layout, until, most):
@@ -210,10 +219,12 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             goal = local
             shifts = local > book.epoch_length
             if shifts and book.now[0] >= book.epoch_length:
-                ahead = min(gas.calendar.time[1], next_turn(gas, ascent))
+                ahead = min(soonest(gas, book), next_turn(gas, ascent))
                 shifts = not math.isinf(ahead)  # or nothing is left to happen at all
                 if shifts:
-                    _rebase(max(1.0, math.floor(ahead / book.epoch_length)) * book.epoch_length, gas, book)
+                    step = max(1.0, math.floor(ahead / book.epoch_length)) * book.epoch_length
+                    _rebase(step, gas, book)
+                    shift(step, book)
                     continue
             if shifts:
                 goal = book.epoch_length

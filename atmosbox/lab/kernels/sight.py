@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
+from atmosbox.lab.kernels.liquid_sight import liquid_sight
+from atmosbox.lab.kernels.presence import is_away
 
 __all__ = ["Sight", "sight"]
 
@@ -20,6 +22,12 @@ class Sight(NamedTuple):
     ``shown : (shown,)`` which molecules are drawn; ``length : (3,)`` sides of the box now [length]; ``place :
     (shown, 3)`` uint16 and ``colour : (shown,)`` uint8, as `atmosbox.page.frame` says; ``highest`` the speed
     at the top of the scale of colours [velocity].
+
+    ``state : (shown,)`` uint8, 1 for a molecule that is not in the gas; ``drops : (drop, 4)`` float32 what is drawn of
+    the liquid, in the unit of the page, and ``many : (1,)`` how much of that there is now. Of a scene with liquid also:
+    ``unit`` of the page over the length of the engine; ``water`` how many molecules of it there are; ``spread : (clump,
+    axis)`` where a mist is drawn, as shares of the box, and ``clump`` how large, if one molecule makes one; ``layers :
+    (2,)`` what stands in place of the radius of a pool, and of rain.
     """
 
     shown: Any
@@ -27,11 +35,21 @@ class Sight(NamedTuple):
     place: Any
     colour: Any
     highest: float
+    state: Any
+    drops: Any
+    many: Any
+    unit: float
+    water: int
+    clump: float
+    spread: Any
+    layers: Any
 
 
 @functools.cache
 def sight(modes: Modes) -> Callable[..., Any]:
     """Return the kernel ``look`` of one set of modes."""
+
+    look_at_liquid = liquid_sight(modes)
 
     @kernel
     def share(u, length, inverse):
@@ -50,12 +68,19 @@ def sight(modes: Modes) -> Callable[..., Any]:
         sight.length[1] = box.length_y
         sight.length[2] = piston[0] + piston[1] * (now - piston[2])
         for k in range(sight.shown.size):
+            sight.state[k] = 0
+            if is_away(sight.shown[k], gas, modes):
+                sight.place[k, 0] = sight.place[k, 1] = sight.place[k, 2] = 0
+                sight.colour[k] = 0
+                sight.state[k] = 1
+                continue
             at = motion_at(sight.shown[k], now, gas, modes)
             sight.place[k, 0] = int(share(at.x, sight.length[0], box.inverse_x))
             sight.place[k, 1] = int(share(at.y, sight.length[1], box.inverse_y))
             sight.place[k, 2] = int(share(at.z, sight.length[2], box.inverse_z))
             speed = math.sqrt(at.vx * at.vx + at.vy * at.vy + at.vz * at.vz)
             sight.colour[k] = math.floor(min(speed / sight.highest, 1.0) * _FASTEST + 0.5)
+        look_at_liquid(gas, book, sight)
         return 0
 
     return look  # type: ignore[no-any-return]

@@ -67,8 +67,10 @@ class Starts {
   }
 }
 
-// What the curves of a table say at a place of its grid: between two, the straight line.
-function between({ grid, curves }, value) {
+// What the curves of a table say at a place of its grid: between two, the straight line. Where a table goes along what
+// is not known now, it says so itself.
+function between({ grid, curves, otherwise }, value) {
+  if (otherwise && !Number.isFinite(value)) return { ...otherwise };
   let high = grid.findIndex((each) => each >= value);
   if (high < 0) high = grid.length - 1;
   const low = Math.max(high - 1, 0), share = high > low ? Math.min((value - grid[low]) / (grid[high] - grid[low]), 1) : 0;

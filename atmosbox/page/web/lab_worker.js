@@ -13,7 +13,7 @@ const STEP = 0.04; // s of a class that one step shows
 const SLOWEST = 0.25, FASTEST = 16;
 const [DONE, BUSY] = [0, 1];
 const WHY = { 2: "events pile up without end", 3: "more molecules have come together than its cells have room for",
-  4: "the piston would crush the molecules" };
+  4: "the piston would crush the molecules", 5: "a molecule that evaporates finds no free place" };
 
 const say = (message) => postMessage(message);
 const refuse = (text) => say({ type: "note", level: "error", text });
@@ -64,7 +64,7 @@ class Box {
     const rate = pictures.length > 2 ? (pictures.length - 1) / (pictures.at(-1) - pictures[0]) * 1000 : 0;
     return { type: "state", playing: this.playing, pace: this.pace, recording: null, time: this.now * this.plan.time,
       frame: this.frame, seed: this.told.stage.seed, finished: this.finished, ledger: reading[this.plan.ledger],
-      molecules: this.plan.molecules, rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
+      molecules: this.plan.present === null ? this.plan.molecules : reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
       undo: this.past.length > 0 };
   }
 
@@ -78,9 +78,10 @@ class Box {
   gauges() {
     const rows = this.trace.rows.slice(this.plan.ends ? -1 : -FRAMES);
     if (!rows.length) return [];
-    return this.plan.gauges.map(({ name, variable, unit, factor, offset }) => {
-      const mean = rows.reduce((sum, row) => sum + row[variable], 0) / rows.length;
-      return { name, unit, value: Number((mean * factor + offset).toPrecision(4)) };
+    return this.plan.gauges.flatMap(({ name, variable, unit, factor, offset, few }) => {
+      const seen = rows.map((row) => (few && !(row[few[0]] >= few[1] * row[variable]) ? NaN : row[variable])).filter(Number.isFinite);
+      const mean = seen.reduce((sum, value) => sum + value, 0) / seen.length;
+      return seen.length ? [{ name, unit, value: Number((mean * factor + offset).toPrecision(4)) }] : [];
     });
   }
 
@@ -127,8 +128,10 @@ class Box {
     if (this.frame - this.since > plan.settle) machine.call("note_frame");
     const reading = machine.array("gauges.reading"), row = {};
     for (const [name, place, factor] of plan.readings) row[name] = reading[place] * factor;
-    for (const { along, ...table } of plan.tables) {
-      for (const [name, value] of Object.entries(between(table, row[along]))) if (!Array.isArray(value)) row[name] = value;
+    for (const { along, times, ...table } of plan.tables) {
+      for (const [name, value] of Object.entries(between(table, row[along]))) {
+        if (!Array.isArray(value)) row[name] = times?.[name] ? value * row[times[name]] : value;
+      }
     }
     this.trace.add(row);
     if (!plan.ends || this.frame !== plan.frames) return true;
@@ -161,7 +164,8 @@ class Box {
     const { machine, plan } = this;
     machine.call("look");
     const place = machine.array("sight.place"), colour = machine.array("sight.colour"), count = colour.length;
-    const buffer = new ArrayBuffer(32 + 8 * count + 4), view = new DataView(buffer);
+    const drops = machine.array("sight.drops").subarray(0, 4 * Number(machine.array("sight.many")[0]));
+    const buffer = new ArrayBuffer(32 + 8 * count + 4 + 4 * drops.length), view = new DataView(buffer);
     view.setUint32(0, (this.sequence += 1), true);
     view.setFloat64(4, this.now * plan.time, true);
     machine.array("sight.length").forEach((side, axis) => view.setFloat32(12 + 4 * axis, side * plan.length, true));
@@ -169,6 +173,9 @@ class Box {
     view.setFloat32(28, plan.fastest, true);
     new Uint16Array(buffer, 32, 3 * count).set(place);
     new Uint8Array(buffer, 32 + 6 * count, count).set(colour);
+    new Uint8Array(buffer, 32 + 7 * count, count).set(machine.array("sight.state"));
+    view.setUint32(32 + 8 * count, drops.length / 4, true);
+    drops.forEach((each, place) => view.setFloat32(36 + 8 * count + 4 * place, each, true));
     postMessage(buffer, [buffer]);
   }
 
@@ -255,11 +262,15 @@ class Box {
     this.act(control, value);
   }
 
-  act(control, value) {
+  // Let a knob stand at a value, or as it stood before it was first turned.
+  act(control, value, leaves = false) {
     const { name, unit } = control, knob = this.plan.knobs[name];
-    const asked = value * knob.factor + knob.offset;
-    this.machine.set(knob.kernel, knob.argument, knob.grid ? between(knob, asked).to : asked);
-    this.machine.call(knob.kernel);
+    if (leaves && knob.leave) this.machine.call(knob.leave);
+    else {
+      const asked = value * knob.factor + knob.offset;
+      this.machine.set(knob.kernel, knob.argument, knob.grid ? between(knob, asked).to : asked);
+      this.machine.call(knob.kernel);
+    }
     this.machine.call("begin_averages_anew");
     this.since = this.frame + 1;
     this.knobs[name] = value;
@@ -271,7 +282,9 @@ class Box {
 
   undo() {
     const last = this.past.pop();
-    if (last) this.act(this.told.controls.find(({ name }) => name === last.name), last.value);
+    if (!last) return;
+    const isFirst = !this.past.some(({ name }) => name === last.name);
+    this.act(this.told.controls.find(({ name }) => name === last.name), last.value, isFirst);
   }
 
   save() {

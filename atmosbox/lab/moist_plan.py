@@ -1,0 +1,187 @@
+"""What a page must know of the water in its box: readings, knobs, and the curves of theory."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from atmosbox import theory as law
+from atmosbox.lab.bench import Bench
+from atmosbox.lab.kernels.hygrometer import WaterReading
+from atmosbox.lab.moist_bench import bins_of
+from atmosbox.live.trace import plain
+from atmosbox.scene.conversion import to_si
+from atmosbox.scene.instruments import Leaving, MoistLift
+from atmosbox.simulation.preparation import Prepared
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from atmosbox.scene.knob import Knob
+    from atmosbox.scene.setup import Setup
+    from atmosbox.scene.units import Scale
+
+__all__ = [
+    "WET_STATE",
+    "fixed_energies",
+    "leaving_energies",
+    "moist_knob",
+    "moist_tables",
+    "water_readings",
+]
+
+WET_STATE = tuple(
+    f"book.moisture.reservoir.{name}" for name in ("energy", "count", "clock", "bound", "absent", "top", "spectrum")
+)
+"""What makes the liquid of two boxes the same, to the last bit."""
+
+_POINTS = 121
+_WARMEST, _COLDEST, _WARMTHS = 350.0, 240.0, 45
+_WAY = 401
+_WIDER = 1.25
+
+
+def water_readings(box: Bench) -> list[tuple[str, int, float]]:
+    """Return which readings of the water are shown: see `lab_plan`."""
+    scale, kinds = box.setup.scale, [type(each) for each in box.setup.instruments]
+    rate, ratio, warm, force = scale.weight / scale.time, law.WATER_MASS_RATIO, scale.temperature, scale.pressure
+    found: list[tuple[str, int, float]] = [
+        ("water_vapor_partial_pressure", WaterReading.VAPOUR_PRESSURE, force),
+        ("saturation_vapor_pressure", WaterReading.SATURATION, force),
+        ("relative_humidity", WaterReading.HUMIDITY, 1.0),
+        ("gas_temperature", WaterReading.GAS_KT, warm),
+        ("liquid_temperature", WaterReading.LIQUID_KT, warm),
+        ("condensation_rate", WaterReading.CONDENSING, rate),
+        ("evaporation_rate", WaterReading.EVAPORATING, rate),
+        ("humidity_mixing_ratio", WaterReading.VAPOUR_RATIO, ratio),
+        ("cloud_liquid_water_mixing_ratio", WaterReading.LIQUID_RATIO, ratio),
+        ("vapor_molecule_count", WaterReading.VAPOUR, 1.0),
+        ("liquid_molecule_count", WaterReading.LIQUID, 1.0),
+        ("rained_molecule_count", WaterReading.RAINED, 1.0),
+    ]
+    if Leaving in kinds:
+        found += [
+            ("pool_open_share", WaterReading.OPEN, 1.0),
+            ("liquid_saturation_vapor_pressure", WaterReading.LIQUID_SATURATION, force),
+            ("temperature_of_those_that_left", WaterReading.LEFT_KT, warm),
+        ]
+    if MoistLift in kinds:
+        found += [
+            ("parcel_temperature", WaterReading.PARCEL_KT, warm),
+            ("parcel_pressure", WaterReading.PARCEL_PRESSURE, force),
+            ("adiabat_temperature", WaterReading.ADIABAT, warm),
+            ("moment", WaterReading.MIDDLE, 1.0),
+        ]
+    return found
+
+
+def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
+    """Return the histogram of energies with which molecules leave: see `lab_plan._profiles`."""
+    bins = box.gauges.water.width.size
+    factor = 1.0 / box.setup.scale.energy
+    return [("leaving_energy_probability_density", "gauges.water", 0, bins, factor)] if bins else []
+
+
+def fixed_energies(box: Bench) -> dict[str, Any]:
+    """Return the middles of the bins of that histogram [J]."""
+    leaving = _instrument(box.setup, Leaving)
+    return {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
+
+
+def moist_knob(knob: Knob, told: dict[str, float], scale: Scale) -> dict[str, Any]:
+    """Return what a knob of a box with liquid does with its value.
+
+    ``leave`` is what makes the box as it was before the knob was first turned.
+    """
+    if knob.name == "open_pool":
+        return {"kernel": "cover_pool", "argument": "2", **told}
+    unit = scale.temperature
+    found = {"kernel": "warm_walls", "argument": "4", **{name: value / unit for name, value in told.items()}}
+    return found | ({"leave": "smooth_walls"} if knob.leave is not None else {})
+
+
+def moist_tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the curves of theory of a scene with water: see `theory_table.tables`."""
+    lift = _instrument(setup, MoistLift)
+    if lift is not None:
+        return _way(prepared, setup, lift, found)
+    knob = next(knob for knob in setup.knobs if knob.name == "temperature")
+    tables = [_walls(prepared, found, knob)]
+    return tables if _instrument(setup, Leaving) is None else [*tables, _energies(prepared, found)]
+
+
+def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
+    """Return what theory says at each temperature of the walls, and where they have none."""
+    kelvin = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS)
+    here = found.isel(elapsed_time=np.zeros(_POINTS, int))
+
+    def at(warmth: Any) -> dict[str, Any]:
+        walls = (("elapsed_time", "wall"), np.repeat(np.asarray(warmth)[:, None], here.sizes["wall"], axis=1))
+        told = prepared.module.theory(here.assign(wall_temperature=walls), prepared.settings)
+        return {name: values for name, values in told.items() if np.shape(values) == (_POINTS,)}
+
+    of_walls = at(kelvin)
+    if "liquid_saturation_vapor_pressure" in of_walls:  # that of the pool, which is measured
+        del of_walls["liquid_saturation_vapor_pressure"]
+    table = {"along": "wall_temperature[x_low]", "grid": plain(kelvin), "curves": {}}
+    table["curves"] = {name: plain(values) for name, values in of_walls.items()}
+    if knob.leave is not None:
+        smooth = at(np.full(_POINTS, math.nan))
+        table["otherwise"] = {name: plain(smooth[name])[0] for name in of_walls}
+        table["times"] = {"condensation_rate_theory": "pool_open_share"}
+    return table
+
+
+def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
+    """Return the energies of molecules that leave and that stay, by the temperature that the liquid had."""
+    grid = np.linspace(_COLDEST, _WARMEST, _WARMTHS)
+    curves: dict[str, list[Any]] = {}
+    ones = np.ones(found.sizes["elapsed_time"])
+    for kelvin in grid:
+        here = found.assign(
+            liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones)
+        )
+        for name, values in prepared.module.theory(here, prepared.settings).items():
+            if np.shape(values) == found.energy.shape:
+                curves.setdefault(name, []).append(plain(values))
+    return {"along": "temperature_of_those_that_left", "grid": plain(grid), "curves": curves}
+
+
+def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the environment along the way, and what theory says at each pressure that the parcel may come to."""
+    moments = np.linspace(0.0, setup.duration, _WAY)
+    around, seconds = lift.environment, (moments * setup.scale.time).tolist()
+    outside = np.array([around.pressure(t) for t in seconds])
+    curves = {
+        "parcel_height": plain([around.height(t) for t in seconds]),
+        "environment_temperature": plain([around.temperature(t) for t in seconds]),
+        "environment_pressure": plain(outside),
+    }
+    frames = (np.arange(setup.frames) + 0.5) * setup.frame
+    middle = np.array([around.pressure(t) for t in (frames * setup.scale.time).tolist()])
+    spread = {
+        "along": "moment",
+        "grid": plain(frames),
+        "curves": {"parcel_temperature_se": plain(lift._scatter(middle))},
+        "times": {"parcel_temperature_se": "parcel_temperature"},
+    }
+    levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, 2 * _WAY - 1)
+    told = prepared.module.theory(_at(found, parcel_pressure=levels), prepared.settings)
+    pressures = {name: plain(values[::-1]) for name, values in told.items() if np.shape(values) == levels.shape}
+    return [
+        {"along": "moment", "grid": plain(moments), "curves": curves},
+        spread,
+        {"along": "parcel_pressure", "grid": plain(levels[::-1]), "curves": pressures},
+    ]
+
+
+def _at(found: xr.Dataset, **values: Any) -> xr.Dataset:
+    """Return a dataset in which only some series are known, of any length."""
+    rest = found.drop_dims("elapsed_time")
+    return rest.assign({name: ("elapsed_time", each) for name, each in values.items()})
+
+
+def _instrument(setup: Setup, kind: type) -> Any:
+    return next((each for each in setup.instruments if type(each) is kind), None)
