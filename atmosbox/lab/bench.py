@@ -158,7 +158,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         lists(parcel) if attracts else _layout(parcel),
         _gauges(setup),
         *_averages(setup),
-        _sight(parcel, setup.scale, stage)._replace(**{"highest": NEIGHBOURS} if attracts else {}),
+        _sight(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
     )
 
@@ -299,6 +299,8 @@ def _average(number: int, frames: int) -> Average:
 def _sight(parcel: Any, scale: Scale, stage: Stage | None) -> Sight:
     shown = np.arange(min(3, parcel.number)) if stage is None else np.asarray(stage.shown, np.int64)
     highest = 1.0 if stage is None else float(stage.record["speed"]["high"]) / scale.velocity
+    if isinstance(parcel, AttractingParcelSet):
+        highest = NEIGHBOURS
     return Sight(
         shown,
         np.zeros(3),

@@ -228,7 +228,7 @@ def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
     numbers: dict[str, Any] = {}
     for knob in kept:
         zero, one = to_si(0.0, knob.unit), to_si(1.0, knob.unit)
-        told = {"factor": one - zero, "offset": zero}
+        told: dict[str, Any] = {"factor": one - zero, "offset": zero}
         if hasattr(setup.parcel, "vapour") and knob.name in ("temperature", "open_pool"):
             told = moist_knob(knob, told, setup.scale)
         elif knob.name == "temperature":

@@ -79,7 +79,8 @@ def water_readings(box: Bench) -> list[tuple[str, int, float]]:
 
 def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
     """Return the histogram of energies with which molecules leave: see `lab_plan._profiles`."""
-    bins = box.gauges.water.width.size
+    water: Any = box.gauges.water
+    bins = water.width.size
     factor = 1.0 / box.setup.scale.energy
     return [("leaving_energy_probability_density", "gauges.water", 0, bins, factor)] if bins else []
 
@@ -140,9 +141,7 @@ def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
     curves: dict[str, list[Any]] = {}
     ones = np.ones(found.sizes["elapsed_time"])
     for kelvin in grid:
-        here = found.assign(
-            liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones)
-        )
+        here = found.assign(liquid_temperature=("elapsed_time", kelvin * ones), evaporation_rate=("elapsed_time", ones))
         for name, values in prepared.module.theory(here, prepared.settings).items():
             if np.shape(values) == found.energy.shape:
                 curves.setdefault(name, []).append(plain(values))

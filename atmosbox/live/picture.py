@@ -54,7 +54,7 @@ class Picture:
         water = None
         if hasattr(parcel, "vapour"):
             mass[~present] = WATER.molecule_mass  # only water is ever out of the gas
-            diameter[~present] = float(np.nanmean(diameter)) if present.any() else DRY_AIR.diameter
+            diameter[~present] = float(np.nanmax(diameter)) if present.any() else DRY_AIR.diameter
             water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
         self._lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
         module, settings = prepared.module, prepared.settings

@@ -25,6 +25,9 @@ LABS = {
     "temperature-large": {},
     "diffusion": {"molecules": 3000},
     "attraction": {"molecules": 400},
+    "evaporation": {"molecules": 3000, "pool": 600},
+    "condensation": {"molecules": 3000},
+    "lifting-moist": {"molecules": 3000},
 }
 """The settings of the labs: so few molecules that a phone keeps up."""
 

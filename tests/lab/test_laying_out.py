@@ -1,5 +1,6 @@
 """The cells that a page lays out under its piston are those of Python, to the last bit."""
 
+import functools
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.exact.cells import choose_grid
 from atmosbox.engine.exact.rows import copies_of
 from atmosbox.lab.bench import bench
@@ -17,6 +19,17 @@ from atmosbox.simulation.preparation import prepare
 @pytest.fixture(scope="module")
 def box():
     return bench(prepare("lifting-dry", {"molecules": 300}))
+
+
+@functools.cache
+def writer(modes):
+    """Return the kernel for one set of modes: kernels take them as constants."""
+
+    @kernel
+    def write(gas, layout):
+        write_cells(gas, layout, modes)
+
+    return write
 
 
 def roomy(box, most=400):
@@ -34,14 +47,15 @@ def roomy(box, most=400):
     filling=st.floats(0.0005, 0.3),
     stretch=st.floats(0.2, 5.0),
     lean=st.floats(0.5, 2.0),
+    mixed=st.booleans(),
 )
-def test_the_cells_are_those_of_python(box, molecules, filling, stretch, lean):
+def test_the_cells_are_those_of_python(box, molecules, filling, stretch, lean, mixed):
     radius = 0.5
     volume = molecules * math.pi / 6.0 / filling
     side = (volume / stretch) ** (1.0 / 3.0)
     x, y, filled = side * lean + 1.0, side / lean + 1.0, side * stretch + 1.0
     grid = choose_grid(
-        np.array([x, y, 1.75 * filled]), (False, False, False), np.array([radius]), molecules, exact_radius=True,
+        np.array([x, y, 1.75 * filled]), (False, False, False), np.array([radius]), molecules, exact_radius=not mixed,
         planar=False, filled=filled, open_top=True, scale_height=math.inf, rows=True,
     )  # fmt: skip
     gas, layout = roomy(box)
@@ -50,7 +64,7 @@ def test_the_cells_are_those_of_python(box, molecules, filling, stretch, lean):
     assert possible == grid.rows
     if not possible or max(grid.number) >= 390:
         return
-    write_cells(gas, layout)
+    writer(box.modes._replace(mixed=mixed))(gas, layout)
     assert tuple(layout.shape[NUMBER:LAST]) == grid.number
     assert tuple(layout.shape[LAST:]) == grid.last_slot
     for axis in range(3):

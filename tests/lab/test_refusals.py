@@ -10,10 +10,9 @@ from atmosbox.simulation.preparation import prepare
 @pytest.mark.parametrize(
     ("scene", "settings", "engine", "reason"),
     [
-        ("condensation", {"molecules": 500}, None, "liquid water"),
+        ("condensation", {"molecules": 500, "drops": 3}, None, "engine of its own"),
         ("attraction", {"start": "slab", "density": 1.0}, None, "Slab"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
-        ("lifting-moist", {"molecules": 500}, None, "liquid water"),
         ("atmosphere", {"start": "uniform"}, None, "start=equilibrium"),
     ],
 )

@@ -72,13 +72,17 @@ def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any
         pass_time, place = passing(modes)
         begin, sample, end_frame = gauging(modes)
         look = sight(modes)
-    return found | {
-        "place": place,
-        "pass_time": pass_time,
-        "begin": begin,
-        "sample": sample,
-        "end_frame": end_frame,
-        "note_frame": note_frame,
-        "begin_averages_anew": begin_averages_anew,
-        "look": look,
-    } | (moist_knobs(modes) if modes.phases else {"warm_walls": warm_walls})
+    return (
+        found
+        | {
+            "place": place,
+            "pass_time": pass_time,
+            "begin": begin,
+            "sample": sample,
+            "end_frame": end_frame,
+            "note_frame": note_frame,
+            "begin_averages_anew": begin_averages_anew,
+            "look": look,
+        }
+        | (moist_knobs(modes) if modes.phases else {"warm_walls": warm_walls})
+    )

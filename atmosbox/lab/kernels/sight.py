@@ -48,7 +48,6 @@ class Sight(NamedTuple):
 @functools.cache
 def sight(modes: Modes) -> Callable[..., Any]:
     """Return the kernel ``look`` of one set of modes."""
-
     look_at_liquid = liquid_sight(modes)
 
     @kernel
