@@ -16,7 +16,7 @@ from atmosbox.lab.well_bench import drop_readings, has_bath
 from atmosbox.lab.work import arguments
 from atmosbox.live.control import controls
 from atmosbox.live.experiment import Experiment
-from atmosbox.live.gauge import FEW, GAUGES
+from atmosbox.live.gauge import FEW, gauges_of
 from atmosbox.live.lesson import lesson_of
 from atmosbox.live.picture import Picture
 from atmosbox.live.summary import while_it_runs
@@ -112,7 +112,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "ledger": Reading.LEDGER.value,
         "readings": readings,
         # discs of a table have an energy that no thermometer shows
-        "gauges": [] if box.gauges.half.size else _gauges([name for name, _, _ in readings]),
+        "gauges": [] if box.gauges.half.size else _gauges(prepared, [name for name, _, _ in readings]),
         "profiles": _profiles(box),
         "fixed": _fixed(box),
         "tables": [] if box.attracts else tables(prepared, setup, known),
@@ -159,11 +159,11 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
     return [(name, int(place), float(factor)) for name, place, factor in found]
 
 
-def _gauges(names: list[str]) -> list[dict[str, Any]]:
+def _gauges(prepared: Prepared, names: list[str]) -> list[dict[str, Any]]:
     """Return the gauges beside the box: of each what it shows of which variable."""
     return [
         {"name": name, "variable": known, "unit": unit, "factor": factor, "offset": offset, **_few(name)}
-        for name, variables, unit, factor, offset in GAUGES
+        for name, variables, unit, factor, offset in gauges_of(prepared.settings)
         if (known := next((each for each in variables if each in names), None)) is not None
     ]
 

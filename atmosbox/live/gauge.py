@@ -9,7 +9,9 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FEW", "GAUGES", "readings"]
+    from atmosbox.scene import SceneSettings
+
+__all__ = ["FEW", "GAUGES", "gauges_of", "readings"]
 
 _FRAMES = 20
 FEW = 50
@@ -22,7 +24,24 @@ GAUGES = (
 """Of each gauge its name, the variables that it may show, and how it shows them: unit, factor and offset from SI."""
 
 
-def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
+def gauges_of(settings: SceneSettings) -> tuple[tuple[str, tuple[str, ...], str, float, float], ...]:
+    """Return `GAUGES`; the thermometer reads kelvin in a scene whose temperature is set in kelvin.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> gauges_of(prepare("attraction", {}).settings)[0][2]
+    'K'
+    """
+    if ("temperature", "K") not in {(each.name, each.unit) for each in type(settings).describe()}:
+        return GAUGES
+    name, variables, *_ = GAUGES[0]
+    return ((name, variables, "K", 1.0, 0.0), *GAUGES[1:])
+
+
+def readings(
+    found: xr.Dataset, *, moving: bool, gauges: tuple[tuple[str, tuple[str, ...], str, float, float], ...] = GAUGES
+) -> list[dict[str, Any]]:
     """Return what the gauges of a box say.
 
     Parameters
@@ -32,6 +51,8 @@ def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
     moving
         Whether the box is on a way, so that only its last frame tells how it is now; else up to 20 frames are averaged,
         because so few molecules scatter.
+    gauges
+        Those of the scene: see `gauges_of`.
 
     Returns
     -------
@@ -54,7 +75,7 @@ def readings(found: xr.Dataset, *, moving: bool) -> list[dict[str, Any]]:
     if "disc_mass" in found:  # discs of a table, whose energy no thermometer shows
         return []
     made = []
-    for name, variables, unit, factor, offset in GAUGES:
+    for name, variables, unit, factor, offset in gauges:
         known = next((each for each in variables if each in found and found[each].dims == ("elapsed_time",)), None)
         if known is None:
             continue

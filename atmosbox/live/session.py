@@ -14,7 +14,7 @@ from atmosbox.errors import SettingError
 from atmosbox.live import hand
 from atmosbox.live.control import COLLISIONS, Control, in_words, number_between
 from atmosbox.live.experiment import Experiment
-from atmosbox.live.gauge import readings
+from atmosbox.live.gauge import gauges_of, readings
 from atmosbox.live.hand import Hand, begun_anew, with_collisions
 from atmosbox.live.lesson import lesson_of
 from atmosbox.live.picture import Picture
@@ -402,5 +402,6 @@ class Session:
         found = self.experiment.measured(self.changes[-1].frame + 1 if self.changes else 0)
         if found is None:
             return []
-        self._gauges = readings(found, moving=self.setup.ends)
+        gauges = gauges_of(self.prepared.settings)
+        self._gauges = readings(found, moving=self.setup.ends, gauges=gauges)
         return self.report.messages(found)
