@@ -24,6 +24,7 @@ from atmosbox.lab.wasm_module import module_name
 from atmosbox.lab.well_bench import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
 from atmosbox.scene.instruments import (
+    MOMENTS,
     Air,
     Clusters,
     Discs,
@@ -35,6 +36,7 @@ from atmosbox.scene.instruments import (
     Speeds,
     Water,
 )
+from atmosbox.scene.instruments.mixing import expected_share
 from atmosbox.simulation.preparation import Prepared, build
 
 if TYPE_CHECKING:
@@ -260,6 +262,7 @@ def _mixture(setup: Setup) -> Mixture:
     instrument, parcel = _of(setup, Mixing), setup.parcel
     moments = [] if instrument is None else list(instrument._moments.values())
     bins = 0 if instrument is None else instrument._bins
+    known = [] if instrument is None else [expected_share(bins, MOMENTS[name]) for name in instrument._moments]
     radius = 0.5 * float(np.max(parcel.diameter, initial=0.0)) * (not parcel.periodic[0])
     return Mixture(
         right=np.zeros(0, np.int64) if instrument is None else instrument._right.astype(np.int64),
@@ -268,6 +271,8 @@ def _mixture(setup: Setup) -> Mixture:
         moments=np.array(moments, float),
         frame=setup.frame,
         off=np.full(len(moments), math.inf),
+        expected=np.concatenate([np.zeros(0), *(each[0] for each in known)]),
+        scatter=np.concatenate([np.zeros(0), *(each[1] for each in known)]),
         mean=np.full(len(moments) * bins, math.nan),
         error=np.full(len(moments) * bins, math.nan),
         counts=np.zeros((2, bins)),

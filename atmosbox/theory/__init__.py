@@ -16,6 +16,7 @@ disc                the same in two dimensions, and how often discs meet
 collision           how often molecules meet, and how far they fly between
 maxwell             how fast they are, and how much the temperature of few of them scatters
 diffusion           how two gases mix, how fast, and the entropy of that
+unlike_gases        the same of unlike molecules, whose heat goes along
 wall_law            with which energy they leave a wall; the heat between two walls in a very thin gas
 barometric          how a gas thins out with height
 column_temperature  which temperature an isolated column comes to
@@ -61,6 +62,7 @@ from atmosbox.theory.column_temperature import column_temperature
 from atmosbox.theory.diffusion import (
     diffusivity_error,
     mixed_share,
+    mixed_share_scatter,
     mixing_decay_rate,
     mixing_entropy,
     mutual_diffusivity,
@@ -157,6 +159,7 @@ from atmosbox.theory.simple_fluid import (
 )
 from atmosbox.theory.standard_atmosphere import isa_pressure, isa_temperature
 from atmosbox.theory.stirred_column import StirredColumn, stirred_column, thin_gas_conductivity
+from atmosbox.theory.unlike_gases import diffusivity_factor, mixing_wave
 from atmosbox.theory.vapor_number import VaporNumber, isolated_vapor_number, isothermal_vapor_number
 from atmosbox.theory.wall_law import (
     FreeMolecularSlab,
@@ -219,6 +222,7 @@ __all__ = [
     "density_temperature",
     "dewpoint",
     "diffusivity_error",
+    "diffusivity_factor",
     "drop_radius",
     "dry_adiabat_temperature",
     "dry_lapse_rate",
@@ -258,9 +262,11 @@ __all__ = [
     "measured_cloud_base",
     "microcanonical_flux",
     "mixed_share",
+    "mixed_share_scatter",
     "mixing_decay_rate",
     "mixing_entropy",
     "mixing_ratio",
+    "mixing_wave",
     "moist_air_poisson_exponent",
     "mutual_diffusivity",
     "packing_fraction",

@@ -8,17 +8,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray
+from atmosbox.theory.unlike_gases import diffusivity_factor
 
 __all__ = [
     "diffusivity_error",
     "mixed_share",
+    "mixed_share_scatter",
     "mixing_decay_rate",
     "mixing_entropy",
     "mutual_diffusivity",
 ]
 
-_ALIKE = 1.018954  # D of one kind of molecules over the first approximation, to all orders
 _MODES = 400
+_TRACE = 1e-6
 
 
 def mutual_diffusivity(
@@ -28,9 +30,8 @@ def mutual_diffusivity(
 
     .. math:: D = \frac{3}{8 n \sigma^2 g} \sqrt{\frac{kT}{2 \pi \mu}}\, f, \qquad \mu = \frac{m_1 m_2}{m_1 + m_2}
 
-    with the second approximation of Chapman and Enskog for f [1]_, and Enskog's contact value g for spheres that
-    exclude volume. Of molecules that differ by a label alone it is self-diffusion, where f is known to all orders,
-    1.018954 [2]_.
+    with the whole series of Chapman and Enskog for f, `diffusivity_factor`, and Enskog's contact value g for spheres
+    that exclude volume. Of molecules that differ by a label alone it is self-diffusion.
 
     Parameters
     ----------
@@ -52,52 +53,34 @@ def mutual_diffusivity(
 
     References
     ----------
-    .. [1] Marrero, T. R., Mason, E. A. (1972), doi:10.1063/1.3253094, for rigid spheres.
-    .. [2] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases.
+    .. [1] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases.
 
     Examples
     --------
-    >>> round(mutual_diffusivity(1.0, 1.0, (1.0, 1.0), 1.0), 6)
-    0.215581
+    >>> round(mutual_diffusivity(1.0, 1.0, (1.0, 1.0), 1.0), 5)
+    0.21558
     """
     first, second = mass
     reduced = first * second / (first + second)
-    factor = _ALIKE if first == second else _second_approximation(first, second)
-    return 0.375 / (number_density * diameter**2 * contact) * math.sqrt(kT / (2.0 * math.pi * reduced)) * factor
+    thin = 0.375 / (number_density * diameter**2) * math.sqrt(kT / (2.0 * math.pi * reduced))
+    return thin / contact * diffusivity_factor(mass)
 
 
 def diffusivity_error(mass: tuple[float, float]) -> float:
-    """Return by what share `mutual_diffusivity` may be off, for it ends with the second approximation.
+    """Return by what share `mutual_diffusivity` may be off where the gases differ from half and half.
 
-    All that would follow adds less than the second adds to the first. Of molecules alike it is known to all orders.
+    The coefficient of unlike gases changes from a trace of the one to a trace of the other. Across a box in which each
+    has its side it is as much larger on the one as it is smaller on the other, all but this.
 
     Examples
     --------
     >>> diffusivity_error((1.0, 1.0)), round(diffusivity_error((1.0, 10.0)), 3)
-    (0.0, 0.053)
-
-    Of masses that are almost alike the second approximation is 59/58 of the first:
-
-    >>> round(diffusivity_error((1.0, 1.0 + 1e-9)) * 58.0, 6)
-    1.0
+    (0.0, 0.008)
     """
-    return 0.0 if mass[0] == mass[1] else _second_approximation(*mass) - 1.0
-
-
-def _second_approximation(first: float, second: float) -> float:
-    """Return D over its first approximation, for half of each gas and spheres of one size."""
-    total = first + second
-
-    def own(one: float, other: float) -> tuple[float, float]:
-        wide = math.sqrt(2.0 * other / total)
-        numerator = 2.0 * one**2 / (other * total) * wide
-        return numerator, 2.0 / (other * total) * wide * (1.3 * one**2 + 3.0 * other**2 + 1.6 * one * other)
-
-    unlike, product = ((first - second) / total) ** 2, 4.0 * first * second / total**2
-    (p1, q1), (p2, q2) = own(first, second), own(second, first)
-    p12 = 15.0 * unlike + 2.0 * product
-    q12 = 13.0 * unlike + 8.6 * product + 1.6 * total / math.sqrt(first * second)
-    return 1.0 / (1.0 - 0.1 * (p1 + p2 + p12) / (q1 + q2 + q12))
+    if mass[0] == mass[1]:
+        return 0.0
+    traces = 0.5 * sum(diffusivity_factor(mass, share) for share in (_TRACE, 1.0 - _TRACE))
+    return abs(traces / diffusivity_factor(mass) - 1.0)
 
 
 def mixing_decay_rate(diffusivity: float, length: float) -> float:
@@ -148,6 +131,69 @@ def mixed_share(edges: ArrayLike, passed: ArrayLike) -> FloatArray:
     waves = np.diff(np.sin(math.pi * odd[:, None] * bounds), axis=1) / (math.pi * odd[:, None] * np.diff(bounds))
     share = 0.5 + (np.exp(-np.outer(time, odd**2)) * height) @ waves
     return np.asarray(np.clip(share if np.ndim(passed) else share[0], 0.0, 1.0))
+
+
+def mixed_share_scatter(bins: int, passed: float) -> FloatArray:
+    r"""Return by what the scatter of the share in a bin differs from that of as many independent draws.
+
+    Of n molecules drawn at random a share c would have the variance :math:`c (1 - c) / n`. Three things change it. All
+    molecules are exactly half of each gas. Those of one bin come from the same neighbourhood, and of two that now
+    are near each other one cannot have been where the other was. And sound moves both gases to and fro as
+    one, by which the whole profile is shifted. With the diffusion equation that chance drives, along the molecules
+    counted from the left, :math:`\partial_t c = D c'' + \nabla \cdot \sqrt{2 D c (1 - c) / n}\, \xi`,
+
+    .. math:: N\, \overline{\delta c^2} = \overline{c (1 - c)}\, b + \overline{c' c' K}
+              - 2 D \int_0^t \int c'^2(z, s)\, G_b^2(z, t - s)\, dz\, ds
+
+    in one of b bins; :math:`K = \min(z, z') - z z'` is the scatter of the number of molecules up to z, G the spread of
+    a molecule that started at z.
+
+    Parameters
+    ----------
+    bins
+        Into how many equal parts the box is divided.
+    passed
+        Time times the decay rate of the slowest mode.
+
+    Returns
+    -------
+    array (bin,)
+        The variance over that of independent draws.
+
+    Examples
+    --------
+    In the middle the profile is shifted; of gases that are mixed half of each is left, in one bin less the others more:
+
+    >>> mixed_share_scatter(20, 0.1)[[0, 9]].round(2).tolist(), mixed_share_scatter(20, 9.0)[[0, 9]].round(2).tolist()
+    ([1.0, 1.18], [0.95, 0.95])
+    """
+    inside = 40
+    z = (np.arange(inside * bins) + 0.5) / (inside * bins)
+    wave = np.arange(1, 3 * bins)
+    edges = np.sin(math.pi * np.outer(np.arange(bins + 1) / bins, wave)) * bins / (math.pi * wave)
+    held, cosines = np.diff(edges, axis=0), np.cos(math.pi * np.outer(wave, z))
+    images = np.arange(-6, 7)
+    apart, sign = z[:, None] - 0.5 - images, np.where(images % 2 == 0, -1.0, 1.0)
+
+    def steepness(time: float) -> FloatArray:
+        width = 2.0 * time / math.pi**2
+        return np.asarray((np.exp(-0.5 * apart**2 / width) / math.sqrt(2.0 * math.pi * width)) @ sign)
+
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    lost = np.zeros(bins)
+    for u, weight in zip(0.5 * (nodes + 1.0), 0.5 * weights, strict=True):
+        time, step = passed * u * u * (3.0 - 2.0 * u), passed * 6.0 * u * (1.0 - u) * weight  # both ends are steep
+        spread = 1.0 + 2.0 * (held * np.exp(-(wave**2) * (passed - time))) @ cosines
+        lost += 2.0 / math.pi**2 * step * (spread**2 @ steepness(time) ** 2) / z.size
+    share = mixed_share(np.linspace(0.0, 1.0, z.size + 1), passed).reshape(bins, inside)
+    slope = steepness(passed).reshape(bins, inside)
+    inner = z.reshape(bins, inside)
+    walk = np.minimum(inner[:, :, None], inner[:, None, :]) - inner[:, :, None] * inner[:, None, :]
+    shifted = np.einsum("bi,bj,bij->b", slope, slope, walk) / inside**2
+    mean = share.mean(axis=1)
+    alone = mean * (1.0 - mean) * bins
+    found = (share * (1.0 - share)).mean(axis=1) * bins + shifted - lost
+    return np.asarray(np.where(alone > 1e-9, found / np.maximum(alone, 1e-9), 1.0))
 
 
 def mixing_entropy(share: ArrayLike) -> FloatArray:

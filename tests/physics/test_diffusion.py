@@ -10,6 +10,7 @@ from atmosbox import theory as law
 from atmosbox.errors import SettingError
 from atmosbox.scene.instruments.mixing import entropy_of_counts
 from atmosbox.simulation.preparation import prepare
+from atmosbox.theory import unlike_gases
 
 
 def test_the_share_solves_the_diffusion_equation_and_keeps_half_of_each_gas():
@@ -47,6 +48,48 @@ def test_gases_alike_mix_as_fast_as_chapman_and_enskog_say_and_make_k_ln_2():
     assert end == pytest.approx(float(runs[0].mixing_entropy_theory[-1]), abs=0.005)
     assert float(runs[0].mixing_entropy[0]) < 0.3
     assert max(float(run.ledger_residual.max()) for run in runs) < 1e-12
+
+
+def test_the_boltzmann_equation_has_the_known_coefficients_of_hard_spheres():
+    # self-diffusion, conduction of heat and viscosity to all orders of Chapman and Enskog; both waves of sound lose
+    # half of 4/3 eta + 2/5 (5/3 - 1) lambda / k
+    diffuse, conduct, viscous = 0.215581, 0.677833, 0.179136
+    assert law.mutual_diffusivity(1.0, 1.0, (1.0, 1.0), 1.0) == pytest.approx(diffuse, rel=2e-5)
+    collide, stream, norm = unlike_gases._equation(1.0)
+    k, scale = 1e-3, 1.0 / np.sqrt(norm)
+    rates = -np.linalg.eigvals(-(1j * k * stream + collide) * np.outer(scale, scale)) / k**2
+    slow = rates[np.argsort(rates.real)[:4]]
+    sound = 0.5 * (4.0 / 3.0 * viscous + 4.0 / 15.0 * conduct)
+    assert np.sort(slow.real) == pytest.approx(sorted([diffuse, 0.4 * conduct, sound, sound]), rel=1e-4)
+    assert np.abs(slow.imag).max() * k == pytest.approx(math.sqrt(5.0 / 3.0), rel=1e-5)
+
+
+def test_the_second_approximation_is_that_of_chapman_and_cowling(monkeypatch):
+    # as Marrero and Mason (1972, doi:10.1063/1.3253094) write it, for rigid spheres
+    monkeypatch.setattr(unlike_gases, "_ORDER", 2)
+    first, second = 1.0, 10.0
+    total, product = first + second, 4.0 * first * second / (first + second) ** 2
+    numerator = 15.0 * (1.0 - product) + 2.0 * product
+    denominator = 19.5 * (1.0 - product) + 8.6 * product + 1.6 * total / math.sqrt(first * second)
+    for one, other in ((first, second), (second, first)):
+        wide = 2.0 / (other * total) * math.sqrt(2.0 * other / total)
+        numerator += wide * one**2
+        denominator += wide * (1.3 * one**2 + 3.0 * other**2 + 1.6 * one * other)
+    expected = 1.0 / (1.0 - 0.1 * numerator / denominator)
+    assert law.diffusivity_factor((first, second)) == pytest.approx(expected, rel=1e-12)
+
+
+def test_unlike_gases_mix_as_the_boltzmann_equation_says():
+    settings = {"mass_ratio": 10.0, "diameter": "0.8 nm", "molecules": 2000, "duration": 1.5}
+    runs = [atmosbox.run("diffusion", seed=seed, **settings) for seed in range(8)]
+    amplitude = np.array([run.mixing_amplitude.values for run in runs])
+    apart = amplitude - runs[0].mixing_amplitude_theory.values
+    error = apart.std(axis=0, ddof=1) / math.sqrt(8.0)
+    halfway = slice(20, None, 20)
+    # 13 mean free paths long: the decay by D alone is 0.1 lower, this one 0.01 off: D is not the same all over
+    assert (np.abs(apart.mean(axis=0)) <= 5.0 * error + 0.01)[halfway].all()  # eight runs know their error by a quarter
+    alone = np.exp(-1.5 * np.arange(1, 121) / 120.0)
+    assert (amplitude.mean(axis=0) - alone > 8.0 * error)[halfway].sum() >= 4
 
 
 def test_heavy_molecules_mix_more_slowly():

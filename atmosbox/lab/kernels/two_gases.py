@@ -9,6 +9,7 @@ from atmosbox.engine.core.elementary import circle, log
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.encounter import motion_at
+from atmosbox.scene.instruments.mixing import PRIOR
 
 __all__ = ["Mixture", "mixing"]
 
@@ -18,8 +19,10 @@ class Mixture(NamedTuple):
 
     ``right : (molecule,)`` 1 for those that began on the right, else 0. ``low`` and ``width`` [length]: from where on,
     and how far, centres reach along x. ``moments : (moment,)`` when to look [time], ``off : (moment,)`` how far the end
-    of a frame was from it, half a ``frame`` at most [time]; ``mean, error : (moment * bin,)`` the share of the left gas
-    then, and its standard error. ``counts : (2, bin)`` molecules of both gases at the end of the last frame.
+    of a frame was from it, half a ``frame`` at most [time]; ``expected, scatter : (moment * bin,)`` the share of the
+    left gas that theory has then, and its variance over that of independent draws; ``mean, error : (moment * bin,)``
+    the share that is found, and its standard error. ``counts : (2, bin)`` molecules of both gases at the end of the
+    last frame.
     """
 
     right: Any
@@ -28,6 +31,8 @@ class Mixture(NamedTuple):
     moments: Any
     frame: float
     off: Any
+    expected: Any
+    scatter: Any
     mean: Any
     error: Any
     counts: Any
@@ -80,10 +85,12 @@ def mixing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 mixture.off[m] = off
                 for b in range(bins):
                     both = counts[0, b] + counts[1, b]
-                    # Laplace's estimate in the error, so that a bin of one gas alone has one too
-                    guess = (counts[0, b] + 1.0) / (both + 2.0)
-                    mixture.mean[m * bins + b] = counts[0, b] / both if both > 0.0 else math.nan
-                    mixture.error[m * bins + b] = math.sqrt(guess * (1.0 - guess) / (both + 2.0))
+                    place = m * bins + b
+                    # as in `Mixing`: two molecules where they are expected
+                    guess = (counts[0, b] + PRIOR * mixture.expected[place]) / (both + PRIOR)
+                    counted = max(both, 1.0) * (1.0 - both / ((both + PRIOR) * (both + PRIOR)))
+                    mixture.mean[place] = counts[0, b] / both if both > 0.0 else math.nan
+                    mixture.error[place] = math.sqrt(mixture.scatter[place] * guess * (1.0 - guess) / counted)
         return 0.5 * math.pi * amplitude / gas.molecules.size, entropy(counts) / log(2.0)
 
     return begin, end_frame

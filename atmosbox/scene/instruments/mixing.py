@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox import theory as law
 from atmosbox.engine import Parcel, Snapshot
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 
-__all__ = ["MOMENTS", "Mixing"]
+__all__ = ["MOMENTS", "PRIOR", "Mixing", "expected_share"]
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.integer]
 
 MOMENTS = {"early": 0.1, "middle": 0.5, "late": 2.0}
 """When the share of one gas is drawn across the box, in mixing times."""
+PRIOR = 2.0
+"""How many molecules, where theory expects them, are added to those of a bin for the error of its share."""
 
 
 class Mixing:
@@ -28,7 +32,8 @@ class Mixing:
     right : (molecule,)
         Which molecules began on the right.
     moments
-        When to look where the gases are, by name [reduced time]: at the end of the frame that comes nearest.
+        When to look where the gases are, by the names of `MOMENTS` [reduced time]: at the end of the frame that comes
+        nearest.
     bins
         Into how many equal parts the box is divided along x.
 
@@ -86,12 +91,20 @@ class Mixing:
             distance_bnds=np.stack([edges[:-1], edges[1:]], axis=1),
         )
         for name, (_, left, both) in self._shares.items():
-            share = left / np.where(both > 0.0, both, math.nan)
-            # Laplace's estimate in the error, so that a bin of one gas alone has one too
-            guess = (left + 1.0) / (both + 2.0)
-            found[f"left_gas_share_{name}"] = share
-            found[f"left_gas_share_{name}_se"] = np.sqrt(guess * (1.0 - guess) / (both + 2.0))
+            expected, scatter = expected_share(self._bins, MOMENTS[name])
+            found[f"left_gas_share_{name}"] = left / np.where(both > 0.0, both, math.nan)
+            # two molecules where they are expected, so that a bin of one gas alone has an error, too, but not too large
+            # a one; what they take from the scatter of the others is given back
+            guess = (left + PRIOR * expected) / (both + PRIOR)
+            counted = np.maximum(both, 1.0) * (1.0 - both / (both + PRIOR) ** 2)
+            found[f"left_gas_share_{name}_se"] = np.sqrt(scatter * guess * (1.0 - guess) / counted)
         return found
+
+
+@functools.cache
+def expected_share(bins: int, passed: float) -> tuple[Array, Array]:
+    """Return the share of the left gas after so many mixing times, and its scatter over that of independent draws."""
+    return law.mixed_share(np.linspace(0.0, 1.0, bins + 1), passed), law.mixed_share_scatter(bins, passed)
 
 
 def entropy_of_counts(left: Counts, right: Counts) -> float:

@@ -1,0 +1,195 @@
+"""Two gases of unlike molecules that mix: their linear Boltzmann equation, solved."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import ArrayLike
+
+from atmosbox.theory._array import FloatArray, as_floats
+
+__all__ = ["diffusivity_factor", "mixing_wave"]
+
+_ORDER = 6
+"""How many polynomials of the energy: the sixth changes D by less than 1e-4 of it."""
+_SHAPES = 8
+"""Up to which spherical harmonic of the direction."""
+
+
+def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
+    r"""Return the mutual diffusion coefficient of thin gases of hard spheres over its first approximation.
+
+    The first approximation of Chapman and Enskog does not depend on the composition; the whole series does.
+
+    Parameters
+    ----------
+    mass
+        Of a molecule of each gas [mass].
+    share
+        Which share of the molecules is of the first gas, above 0 and below 1.
+
+    References
+    ----------
+    .. [1] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases, chapters 8 and 9.
+
+    Examples
+    --------
+    Of molecules alike 1.0190; a trace of light ones among heavy ones comes to 1.132, or :math:`32 / 9 \pi` [1]_, of
+    which a hundredth is missing here, a trace of heavy ones among light ones to 1:
+
+    >>> round(diffusivity_factor((1.0, 1.0)), 4), round(diffusivity_factor((1e-4, 1.0), 1e-6), 3)
+    (1.019, 1.124)
+    """
+    collide = _collisions(mass, share, 1)
+    push = np.zeros(2 * _ORDER)
+    push[0], push[_ORDER] = 1.0 / mass[0], -1.0 / mass[1]
+    drift = np.linalg.lstsq(collide, push, rcond=1e-13)[0]
+    found = (drift[0] / mass[0] - drift[_ORDER] / mass[1]) * share * (1.0 - share)
+    reduced = mass[0] * mass[1] / (mass[0] + mass[1])
+    return float(found / (0.375 * math.sqrt(1.0 / (2.0 * math.pi * reduced))))
+
+
+def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike) -> FloatArray:
+    r"""Return how a wave decays in which two gases, half of each, take turns, from 1 on.
+
+    Both densities oppose each other as :math:`\cos kx`, at one pressure and temperature. Of molecules alike the wave
+    decays as :math:`e^{-D k^2 t}`. Of unlike ones heat flows along with them (Dufour's effect), so that the wave is the
+    sum of two, of which the one decays more slowly than D alone would have it; and as the light molecules are faster
+    the gas starts to oscillate. All this is in the linear Boltzmann equation
+
+    .. math:: \partial_t \varphi + i k c_z \varphi = -C \varphi
+
+    which is solved here in polynomials of the energy and spherical harmonics of the direction.
+
+    Parameters
+    ----------
+    mass
+        Of a molecule of each gas [mass of the first].
+    wave_number
+        The wave number k [:math:`n \sigma^2`].
+    times : (time,)
+        Since the beginning [:math:`\sqrt{m / kT} / n \sigma^2`].
+
+    Returns
+    -------
+    array (time,)
+        The height of the wave.
+
+    Notes
+    -----
+    A gas that is not thin has g times as many collisions; take g n for n.
+
+    References
+    ----------
+    .. [1] Chapman, S., Cowling, T. G. (1970), The Mathematical Theory of Non-uniform Gases, section 8.41.
+
+    Examples
+    --------
+    Half of a wave of molecules alike is left when theory's D says so, and more of unlike ones:
+
+    >>> k = 0.1
+    >>> half = math.log(2.0) / (0.215581 * k**2)
+    >>> mixing_wave((1.0, 1.0), k, [0.0, half]).round(3).tolist()
+    [1.0, 0.5]
+    >>> slower = 0.375 * diffusivity_factor((1.0, 10.0)) * math.sqrt(1.1 / (2.0 * math.pi)) * k**2
+    >>> mixing_wave((1.0, 10.0), k, [math.log(2.0) / slower]).round(3).tolist()
+    [0.505]
+    """
+    collide, stream, norm = _equation(float(mass[1] / mass[0]))
+    scale = 1.0 / np.sqrt(norm)
+    rates, modes = np.linalg.eig(-(1j * wave_number * stream + collide) * np.outer(scale, scale))
+    opposed = np.zeros(len(norm), np.complex128)
+    opposed[0], opposed[_ORDER] = 1.0 / scale[0], -1.0 / scale[_ORDER]
+    height = (opposed @ modes) * np.linalg.solve(modes, opposed)
+    return np.asarray((np.exp(np.multiply.outer(as_floats(times), rates)) @ height).real)
+
+
+@functools.lru_cache(maxsize=4)
+def _equation(mass_ratio: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    r"""Return :math:`C`, :math:`c_z` and the squares of the polynomials, harmonic by harmonic, gas by gas.
+
+    The polynomials are :math:`c^l P_l(\cos\vartheta) L_p^{(l + 1/2)}(m c^2 / 2)`, products are means over both gases.
+    """
+    from scipy import special  # loads slowly
+
+    mass, share, size = (1.0, mass_ratio), 0.5, 2 * _ORDER
+    whole = (_SHAPES + 1) * size
+    collide, stream, norm = np.zeros((whole, whole)), np.zeros((whole, whole)), np.zeros(whole)
+    energy, chance = special.roots_genlaguerre(_ORDER + _SHAPES + 2, 0.5)
+    chance = chance / chance.sum()
+    order = np.arange(_ORDER)
+    for harmonic in range(_SHAPES + 1):
+        block = slice(harmonic * size, (harmonic + 1) * size)
+        collide[block, block] = _collisions(mass, share, harmonic)
+        for gas, one in enumerate(mass):
+            here = slice(harmonic * size + gas * _ORDER, harmonic * size + (gas + 1) * _ORDER)
+            powers = special.gamma(order + harmonic + 1.5) / special.gamma(order + 1.0) / special.gamma(1.5)
+            norm[here] = share * (2.0 / one) ** harmonic * powers / (2 * harmonic + 1)
+            if harmonic > 0:
+                below = slice(here.start - size, here.stop - size)
+                above, under = (
+                    np.array([special.eval_genlaguerre(p, shape + 0.5, energy) for p in order])
+                    for shape in (harmonic, harmonic - 1)
+                )
+                angle = share * harmonic / ((2.0 * harmonic - 1.0) * (2.0 * harmonic + 1.0))
+                stream[here, below] = angle * (above * (chance * (2.0 * energy / one) ** harmonic)) @ under.T
+                stream[below, here] = stream[here, below].T
+    return collide, stream, norm
+
+
+def _collisions(mass: tuple[float, float], share: float, harmonic: int) -> FloatArray:
+    """Return what collisions do to the polynomials of one harmonic, the rate at which they forget each other."""
+    shares = share, 1.0 - share
+    found = shares[0] * shares[1] * _of_pairs(mass, harmonic)
+    for gas, one in enumerate(mass):
+        pairs = _of_pairs((one, one), harmonic)
+        both = pairs[:_ORDER, :_ORDER] + pairs[:_ORDER, _ORDER:] + pairs[_ORDER:, :_ORDER] + pairs[_ORDER:, _ORDER:]
+        here = slice(gas * _ORDER, (gas + 1) * _ORDER)
+        found[here, here] += 0.5 * shares[gas] ** 2 * both
+    return found
+
+
+def _of_pairs(mass: tuple[float, float], harmonic: int) -> FloatArray:
+    r"""Return :math:`\langle \pi g (X Y - \bar X \bar Y) \rangle` for polynomials X, Y of either molecule of a pair.
+
+    Hard spheres part in any direction with the same chance, in the system of their centre of mass. So of each
+    polynomial the mean over that direction is left, :math:`\bar X`, which points along the velocity of the centre.
+    """
+    from scipy import special  # loads slowly
+
+    total = mass[0] + mass[1]
+    reduced = mass[0] * mass[1] / total
+    points = harmonic + 2 * _ORDER  # then all integrals are exact
+    nodes, of_centre = special.roots_genlaguerre(points, 0.5)
+    centre = np.sqrt(2.0 * nodes / total)[:, None, None]
+    nodes, of_speed = special.roots_genlaguerre(points, 1.0)
+    speed = np.sqrt(2.0 * nodes / reduced)[None, :, None]
+    cosine, of_angle = leggauss(points)
+    weight = np.multiply.outer(of_centre / of_centre.sum(), of_speed / of_speed.sum())
+    of_angle = 0.5 * of_angle
+
+    def parts(sign: float, other: float) -> tuple[FloatArray, FloatArray]:
+        """Return the velocity of one molecule across and along that of the centre."""
+        own = sign * other / total * speed
+        return own * np.sqrt(1.0 - cosine**2), centre + own * cosine
+
+    velocities = parts(1.0, mass[1]), parts(-1.0, mass[0])
+    sizes = [np.hypot(*velocity) for velocity in velocities]
+    polynomials, means = [], []
+    for (_, along), size, one in zip(velocities, sizes, mass, strict=True):
+        turned = special.eval_legendre(harmonic, along / size)
+        each = [
+            size**harmonic * special.eval_genlaguerre(p, harmonic + 0.5, 0.5 * one * size**2) for p in range(_ORDER)
+        ]
+        polynomials.append(np.array(each).reshape(_ORDER, -1))
+        means.append(np.array([(x * turned) @ of_angle for x in each]).reshape(_ORDER, -1))
+    between = (velocities[0][0] * velocities[1][0] + velocities[0][1] * velocities[1][1]) / (sizes[0] * sizes[1])
+    chance = np.multiply.outer(weight, of_angle).ravel()
+    turned = special.eval_legendre(harmonic, between).ravel() * chance
+    rows = [[(polynomials[a] * (chance if a == b else turned)) @ polynomials[b].T for b in range(2)] for a in range(2)]
+    mean = np.concatenate(means)
+    rate = math.pi * math.sqrt(8.0 / (math.pi * reduced))
+    return np.asarray(rate / (2 * harmonic + 1) * (np.block(rows) - (mean * weight.ravel()) @ mean.T))
