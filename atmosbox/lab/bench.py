@@ -18,8 +18,10 @@ from atmosbox.lab.kernels.gauging import Gauges
 from atmosbox.lab.kernels.laying_out import Layout
 from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
+from atmosbox.lab.kernels.starting import Start
 from atmosbox.lab.kernels.two_gases import Mixture
 from atmosbox.lab.moist_bench import hygrometer, liquid_sight, moisture
+from atmosbox.lab.start_recipe import no_start, start_of, watched
 from atmosbox.lab.wasm_module import module_name
 from atmosbox.lab.well_bench import crowd, lists, well_gas
 from atmosbox.page import NEIGHBOURS
@@ -61,7 +63,8 @@ class Bench(NamedTuple):
 
     ``layers`` is the average of the profiles of three quantities, one after the other, ``speeds`` that of the shares of
     molecules by speed; both are empty in a scene that shows neither. Where molecules attract each other, ``gas`` and
-    ``layout`` are those of `well_bench`, and ``crowd`` is what is kept of drops; else it is 0.
+    ``layout`` are those of `well_bench`, and ``crowd`` is what is kept of drops; else it is 0. ``start`` is how
+    molecules are placed with another seed, if ``seeded``.
     """
 
     prepared: Prepared
@@ -75,6 +78,8 @@ class Bench(NamedTuple):
     layers: Average
     sight: Sight
     crowd: Any
+    start: Start | None
+    seeded: bool
 
     @property
     def modes(self) -> Modes:
@@ -146,22 +151,26 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
     >>> bench(prepare("temperature", {"molecules": 20})).gauges.counts.size
     36
     """
-    setup = build(prepared)
+    with watched(prepared) as seen:
+        setup = build(prepared)
     refuse(prepared, setup)
     parcel: Any = setup.parcel
     stage = None if picture is None else picture(setup)
     attracts = type(parcel) is AttractingParcelSet
+    start = start_of(prepared, setup, seen)
     return Bench(
         prepared,
         setup,
         well_gas(parcel) if attracts else _gas(parcel),
         _ascent(parcel),
-        Book(np.array([parcel._now]), parcel._epoch_length, moisture(parcel)),
+        Book(np.array([parcel._now]), np.array([parcel._epoch_length]), moisture(parcel)),
         lists(parcel) if attracts else _layout(parcel),
         _gauges(setup),
         *_averages(setup),
         _sight(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
+        start or no_start(setup),
+        start is not None,
     )
 
 

@@ -11,6 +11,7 @@ from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.memory_image import BASE, Image, image
 from atmosbox.lab.moist_plan import WET_STATE, fixed_energies, leaving_energies, moist_knob, water_readings
+from atmosbox.lab.seeding import is_the_seed_all, without_molecules
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.well_bench import drop_readings, has_bath
 from atmosbox.lab.work import arguments
@@ -68,6 +69,9 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
 
     box = bench(prepared, look)
     setup, stage = box.setup, pictures[0].stage
+    is_seeded = is_the_seed_all(box)
+    if is_seeded:
+        box = without_molecules(box)
     named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
     named["book"] = box.book
     memory = image(arguments(box), named)
@@ -118,6 +122,8 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "tables": [] if box.attracts else tables(prepared, setup, known),
         "knobs": numbers,
         "command": _command(prepared),
+        "seeded": is_seeded,
+        "seed": prepared.settings.seed,
     }
     return plan, memory, box
 
@@ -254,7 +260,7 @@ def _moments(setup: Setup) -> dict[str, Any]:
 
 
 def _command(prepared: Prepared) -> str:
-    """Return the command that begins the same run."""
+    """Return the command that begins the same run, the seed at its end."""
     changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
     sets = "".join(f" --set {name}={value}" for name, value in changed.items())
     return f"atmosbox run {prepared.scene}{sets} --seed {prepared.settings.seed}"

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BASE", "Image", "image"]
+__all__ = ["BASE", "Image", "image", "parts"]
 
 BASE = 0x20000
 _LINE = 64
@@ -55,7 +55,7 @@ class Image(NamedTuple):
     arrays: dict[str, tuple[int, int, str]]
 
 
-def _parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
+def parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
     """Return what numba passes of an argument, in order: kind, value, and the path of its name."""
     if isinstance(value, np.ndarray):
         yield "word", 0, name
@@ -67,7 +67,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
             yield "word", number, name
     elif isinstance(value, tuple):
         for field, part in zip(getattr(value, "_fields", range(len(value))), value, strict=True):
-            yield from _parts(part, f"{name}.{field}" if name else str(field))
+            yield from parts(part, f"{name}.{field}" if name else str(field))
     elif isinstance(value, float | np.floating):
         yield "number", float(value), name
     else:
@@ -106,8 +106,8 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
     >>> made.blocks["double"] % 64, made.slots["double"]
     (0, {'1': 131512})
     """
-    arrays = [part for given in works.values() for kind, part, _ in _parts(given, "") if kind == "array"]
-    known = [(name, part) for kind, part, name in _parts(tuple(named.values()), "") if kind == "array"]
+    arrays = [part for given in works.values() for kind, part, _ in parts(given, "") if kind == "array"]
+    known = [(name, part) for kind, part, name in parts(tuple(named.values()), "") if kind == "array"]
     titles = list(named)
     held = _pieces_of_memory([*arrays, *(part for _, part in known)])
     place: dict[tuple[int, int], int] = {}
@@ -135,7 +135,7 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
         at = -(-at // _LINE) * _LINE
         blocks[name], slots[name] = at, {}
         words = bytearray(_HEAD)
-        for kind, part, path in _parts(given, ""):
+        for kind, part, path in parts(given, ""):
             if kind != "array" and path.isdigit() and not isinstance(given[int(path)], np.ndarray):
                 slots[name][path] = at + len(words)
             number = np.float64(part) if kind == "number" else np.int64(where(part) if kind == "array" else part)

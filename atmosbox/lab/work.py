@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from atmosbox.lab.bench import Bench
+from atmosbox.lab.kernels.starting import can_start
 
 __all__ = ["arguments"]
 
@@ -22,7 +23,11 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
     True
     """
     gas, ascent, book, layout, gauges = box.gas, box.ascent, box.book, box.layout, box.gauges
-    found: dict[str, tuple[Any, ...]] = {"lead": (gas, ascent, book, 0.0)} if box.modes.ascends else {}
+    found: dict[str, tuple[Any, ...]] = {}
+    if box.modes.ascends:
+        found["lead"] = (gas, ascent, book, 0.0)
+    if can_start(box.modes):
+        found["start"] = (gas, book, box.start, 0)
     found |= {
         "place": (gas, book, layout),
         "pass_time": (gas, ascent, book, layout, 0.0, 0),

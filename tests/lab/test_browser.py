@@ -287,6 +287,38 @@ def test_another_number_of_molecules_begins_the_run_that_python_begins_with_it(l
     assert shown.digest() == first
 
 
+@pytest.mark.parametrize(
+    ("scene", "settings"),
+    [
+        ("temperature", {"molecules": 150}),
+        ("attraction", {"molecules": 150}),
+        pytest.param("temperature", {"molecules": 61, "start": "equal"}, marks=pytest.mark.validate),
+        pytest.param("diffusion", {"molecules": 1001}, marks=pytest.mark.validate),
+    ],
+)
+def test_another_seed_begins_the_run_that_python_begins_with_it(lab, scene, settings):
+    shown = lab(scene, settings)
+    first = shown.digest()
+    for seed in (7, 2**53 - 1):
+        shown.page.fill("#seed", str(seed))
+        shown.page.click("#reset")
+        shown.until(lambda seed=seed: f"seed {seed}" in shown.page.locator("#caption").text_content())
+        shown.ask(type="frames", value=4)
+        setup = build(prepare(scene, settings | {"seed": seed}))
+        for frame in range(4):
+            for sample in range(1, setup.samples + 1):
+                setup.parcel.advance(setup.moment(frame, sample))
+        assert shown.digest() == state_of(setup.parcel)
+    about, _ = shown.table()
+    assert about[0].endswith(f"--seed {seed}")
+    shown.page.fill("#seed", str(2**53))
+    shown.page.click("#reset")
+    assert "9007199254740991" in shown.note()
+    shown.page.fill("#seed", "1")
+    shown.page.click("#reset")
+    assert shown.digest() == first
+
+
 def test_undo_takes_the_knob_back_and_reset_begins_the_same_run(lab):
     shown = lab("temperature", {"molecules": 50})
     shown.ask(type="frames", value=20)

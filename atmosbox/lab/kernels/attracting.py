@@ -135,15 +135,16 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
         while True:
             local = until - gas.walls.epoch[0]
             goal = local
-            shifts = local > book.epoch_length
-            if shifts and book.now[0] >= book.epoch_length:
+            shifts = local > book.epoch_length[0]
+            if shifts and book.now[0] >= book.epoch_length[0]:
                 ahead = _next_time(gas)
                 shifts = not math.isinf(ahead)  # or nothing is left to happen at all
                 if shifts:
-                    _rebase(max(1.0, math.floor(ahead / book.epoch_length)) * book.epoch_length, gas, book)
+                    length = book.epoch_length[0]
+                    _rebase(max(1.0, math.floor(ahead / length)) * length, gas, book)
                     continue
             if shifts:
-                goal = book.epoch_length
+                goal = book.epoch_length[0]
             status, some = resolve(gas, book, lists, goal, most - done)
             done += some
             if status != Passed.DONE or not shifts:
@@ -151,13 +152,14 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def place(gas, book, lists):
-        """List the neighbours of all molecules at the start; when the bath acts first has been drawn already."""
+        """List the neighbours of all molecules at the start; when the bath acts first may have been drawn already."""
         state, clock = gas.tallies.random[0], gas.bath.clock[0]
         placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
         while not placed and _longer_lists(gas, lists):
             placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
-        gas.tallies.random[0] = state
-        gas.bath.clock[0] = clock
+        if not math.isinf(clock):
+            gas.tallies.random[0] = state
+            gas.bath.clock[0] = clock
         return Passed.DONE.value if placed else Passed.FULL.value
 
     @kernel

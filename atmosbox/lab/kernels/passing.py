@@ -30,12 +30,12 @@ _CRUSHED, _TURNED, _CROWDED = Status.CRUSHED.value, Status.TURNED.value, Status.
 class Book(NamedTuple):
     """What a box knows beside its gas.
 
-    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length`` after what time they begin anew [time];
+    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length : (1,)`` after what time they begin anew [time];
     ``moisture`` its liquid, 0 if it has none.
     """
 
     now: Any
-    epoch_length: float
+    epoch_length: Any
     moisture: Any
 
 
@@ -217,17 +217,17 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         while True:
             local = until - gas.walls.epoch[0]
             goal = local
-            shifts = local > book.epoch_length
-            if shifts and book.now[0] >= book.epoch_length:
+            shifts = local > book.epoch_length[0]
+            if shifts and book.now[0] >= book.epoch_length[0]:
                 ahead = min(soonest(gas, book), next_turn(gas, ascent))
                 shifts = not math.isinf(ahead)  # or nothing is left to happen at all
                 if shifts:
-                    step = max(1.0, math.floor(ahead / book.epoch_length)) * book.epoch_length
+                    step = max(1.0, math.floor(ahead / book.epoch_length[0])) * book.epoch_length[0]
                     _rebase(step, gas, book)
                     shift(step, book)
                     continue
             if shifts:
-                goal = book.epoch_length
+                goal = book.epoch_length[0]
             status, some = resolve(gas, ascent, book, layout, goal, most - done)
             done += some
             if status != Passed.DONE or not shifts:

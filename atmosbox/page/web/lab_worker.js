@@ -20,7 +20,7 @@ const refuse = (text) => say({ type: "note", level: "error", text });
 
 class Box {
   constructor(starts, machine) {
-    Object.assign(this, { starts, playing: false, pace: 1, watched: true, turned: [] });
+    Object.assign(this, { starts, playing: false, pace: 1, watched: true, turned: [], seed: machine.plan.seed });
     this.take(machine);
     this.begin();
     this.greet();
@@ -41,6 +41,10 @@ class Box {
   begin() {
     const { machine } = this;
     machine.restore();
+    if (this.plan.seeded) {
+      machine.set("start", "3", BigInt(this.seed));
+      if (machine.call("start") !== DONE) throw new Error("the molecules find no room");
+    }
     if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
     machine.call("begin");
     machine.call("begin_averages_anew");
@@ -50,7 +54,9 @@ class Box {
   }
 
   greet() {
-    say({ type: "stage", ...this.told, controls: this.controls(), state: this.state() });
+    const { stage } = this.told, { seed } = this;
+    const settings = stage.settings.map(([name, text]) => [name, name === "seed" ? String(seed) : text]);
+    say({ type: "stage", ...this.told, stage: { ...stage, seed, settings }, controls: this.controls(), state: this.state() });
     this.look();
     say(this.state());
   }
@@ -63,7 +69,7 @@ class Box {
     const reading = this.machine.array("gauges.reading"), { pictures } = this;
     const rate = pictures.length > 2 ? (pictures.length - 1) / (pictures.at(-1) - pictures[0]) * 1000 : 0;
     return { type: "state", playing: this.playing, pace: this.pace, recording: null, time: this.now * this.plan.time,
-      frame: this.frame, seed: this.told.stage.seed, finished: this.finished, ledger: reading[this.plan.ledger],
+      frame: this.frame, seed: this.seed, seeded: this.plan.seeded, finished: this.finished, ledger: reading[this.plan.ledger],
       molecules: this.plan.present === null ? this.plan.molecules : reading[this.plan.present], rate: Math.round(rate * 10) / 10, busy: null, walls: this.walls(), gauges: this.gauges(),
       undo: this.past.length > 0 };
   }
@@ -218,7 +224,7 @@ class Box {
       this.pass(this.now + STEP * this.plan.rate * this.pace, Infinity);
       this.look();
       this.tell();
-    } else if (type === "reset") this.again();
+    } else if (type === "reset") this.reseed(message.seed ?? this.seed);
     else if (type === "pace") this.pace = Math.min(Math.max(Number(value) || 1, SLOWEST), FASTEST);
     else if (type === "set") this.turn(name, value);
     else if (type === "undo") this.undo();
@@ -239,6 +245,16 @@ class Box {
       return;
     }
     this.take(await this.starts.machine(molecules));
+    this.again();
+  }
+
+  // Begin anew, with the same seed or with another one.
+  reseed(seed) {
+    if (this.plan.seeded && !(Number.isSafeInteger(seed) && seed >= 0)) {
+      refuse(`seed = ${seed} is no whole number from 0 to ${Number.MAX_SAFE_INTEGER}: give one of these.`);
+      return;
+    }
+    if (this.plan.seeded) this.seed = seed;
     this.again();
   }
 
@@ -287,8 +303,13 @@ class Box {
     this.act(this.told.controls.find(({ name }) => name === last.name), last.value, isFirst);
   }
 
+  // The command that begins the same run; the seed stands at its end.
+  command() {
+    return this.plan.seeded ? this.plan.command.replace(/\d+$/, this.seed) : this.plan.command;
+  }
+
   save() {
-    const { rows, every } = this.trace, { command } = this.plan, names = Object.keys(rows[0] ?? {});
+    const { rows, every } = this.trace, command = this.command(), names = Object.keys(rows[0] ?? {});
     const about = this.turned.length ? [`# ${command}`, "# begins like this run, in which then by hand", ...this.turned]
       : [`# ${command}`, "# repeats this run"];
     if (every > 1) about.push(`# every ${every}th frame`);

@@ -21,7 +21,7 @@ export class Pulse {
       <span class="group"><input type="text" id="file" aria-label="${word("file")}" spellcheck="false"><button type="button" id="record"></button></span>`;
     this.part = (name) => parent.querySelector(`#${name}`);
     if (saves) {
-      parent.querySelector(".seed").hidden = this.part("file").hidden = true;
+      this.part("file").hidden = true;
       this.part("record").title = word("save_title");
     }
     this.part("play").onclick = () => this.toggle();
@@ -66,7 +66,8 @@ export class Pulse {
   // What the box says of itself.
   show(told) {
     Object.assign(this.state, told);
-    const { playing, pace, recording, time, rate, ledger, molecules, seed, finished, busy } = this.state;
+    const { playing, pace, recording, time, rate, ledger, molecules, seed, seeded, finished, busy } = this.state;
+    this.part("seed").parentElement.hidden = this.saves && !seeded;
     this.part("play").innerHTML = icon(playing ? "pause" : "play");
     this.part("play").setAttribute("aria-label", word(playing ? "pause" : "play"));
     this.part("pace").textContent = pace < 1 ? `1/${Math.round(1 / pace)}×` : `${pace}×`;

@@ -1,0 +1,78 @@
+"""A box that a page can begin with any seed: the memory without molecules, and the proof that nothing else differs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from atmosbox.engine.core.state import MOLECULE, aligned_records
+from atmosbox.lab.bench import Bench, bench
+from atmosbox.lab.memory_image import parts
+from atmosbox.lab.work import arguments
+from atmosbox.simulation.preparation import prepare
+
+__all__ = ["is_the_seed_all", "without_molecules"]
+
+_PLACES = ("x", "y", "z", "vx", "vy", "vz")
+
+
+def without_molecules(box: Bench) -> Bench:
+    """Return a box without all that the kernel ``start`` writes.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> empty = without_molecules(bench(prepare("temperature", {"molecules": 20})))
+    >>> float(abs(empty.gas.molecules["x"]).max())
+    0.0
+    """
+    gas = box.gas
+    molecules = aligned_records(gas.molecules.size, MOLECULE)
+    molecules[:] = gas.molecules
+    for name in _PLACES:
+        molecules[name] = 0.0
+    blank: dict[str, Any] = {"molecules": molecules, "tallies": gas.tallies._replace(random=np.zeros(1, np.uint64))}
+    if box.attracts:
+        blank["bath"] = gas.bath._replace(clock=np.full(1, math.inf))
+        blank["wells"] = gas.wells._replace(number=np.zeros_like(gas.wells.number))
+    else:
+        copies = gas.cells.copies._replace(epoch=np.zeros_like(gas.cells.copies.epoch))
+        blank["cells"] = gas.cells._replace(copies=copies)
+    return box._replace(gas=gas._replace(**blank), book=box.book._replace(epoch_length=np.zeros(1)))
+
+
+def is_the_seed_all(box: Bench) -> bool:
+    """Tell whether a page can begin a box with another seed: the box of one differs in its molecules alone.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> is_the_seed_all(bench(prepare("temperature", {"molecules": 20})))
+    True
+
+    The masses of discs are drawn, and more than their places depends on that:
+
+    >>> is_the_seed_all(bench(prepare("elastic-collisions", {})))
+    False
+    """
+    prepared = box.prepared
+    if not box.seeded:
+        return False
+    other = prepare(prepared.scene, prepared.settings.changed() | {"seed": int(prepared.settings.seed) + 1})
+    second = bench(other)._replace(sight=box.sight)
+    return second.seeded and _content(box) == _content(second)
+
+
+def _content(box: Bench) -> list[Any]:
+    """Return all that the kernels of a box are given; what tells a pile-up of events is of any seed."""
+    empty = without_molecules(box)
+    # the calendar is empty, and as long as its place in memory makes it
+    gas = empty.gas._replace(box=empty.gas.box._replace(stall=0.0), calendar=0)
+    given = arguments(empty._replace(gas=gas))
+    return [
+        value.tobytes() if isinstance(value, np.ndarray) else value
+        for name in given
+        for _, value, _ in parts(given[name], "")
+    ]
