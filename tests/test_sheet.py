@@ -511,3 +511,47 @@ def test_a_run_that_disagrees_with_theory_is_named(monkeypatch):
     sheet = sheets.worksheet("elastic-collisions", answers=True)
     assert "Run A disagrees with theory: largest change of the energy." in sheet.disagreements
     assert "Run A disagrees with theory: largest change of the energy." in sheet.text
+
+
+@pytest.mark.parametrize("scene", ["attraction", "elastic-collisions", "lifting-dry"])
+def test_a_sheet_for_pages_names_pages_and_graphs_and_nothing_that_is_typed(scene):
+    made = sheets.worksheet(scene, SMALL[scene] | ({"ascent": 50} if scene == "lifting-dry" else {}), lab=True)
+    assert "--" not in re.sub(r"-{3,}", "", made.text)
+    assert "atmosbox" not in made.text
+    assert "```sh" not in made.text
+    assert [run.page for run in made.runs] == re.findall(r"open `(.+\.html)`", made.text)
+    assert ("until it stops" in made.text) == (scene == "lifting-dry")
+    panels = made.runs[0].prepared.module.panels
+    titles = {panel.title for panel in (panels(made.runs[0].prepared.settings) if callable(panels) else panels)}
+    rows = re.findall(r"^\| ([^|]*) \| ([^|]+) \| A \|", made.text, re.MULTILINE)
+    assert len(rows) >= 2
+    assert {graph for graph, _ in rows if graph} <= titles
+
+
+def test_the_answers_of_a_sheet_for_pages_are_what_its_graphs_come_to():
+    made = sheets.worksheet("elastic-collisions", {"duration": "2 s"}, lab=True, answers=True)
+    (row,) = re.findall(r"\| light half, at the end \[J\] \| A \| (\S+) \|", made.text)
+    found = made.runs[0].outcome.dataset.running_energy_light.values[-20:].mean()
+    assert float(row) == pytest.approx(found, rel=0.005)
+
+
+def test_pages_are_written_beside_their_sheet_or_nothing_is(tmp_path):
+    out = tmp_path / "sheet.md"
+    asked = ["sheet", "elastic-collisions", "--lab", "--set", "molecules=20", "--out", str(out)]
+    (tmp_path / "elastic-collisions-B.html").touch()
+    assert CliRunner().invoke(app, asked).exit_code != 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["elastic-collisions-B.html"]
+    told = CliRunner().invoke(app, [*asked, "--force"])
+    assert told.exit_code == 0, told.output
+    pages = [tmp_path / f"elastic-collisions-{letter}.html" for letter in "ABC"]
+    assert told.stdout.split() == [str(path) for path in (out, *pages)]
+    assert "mass_ratio=1000.0 --seed 1" in pages[1].read_text(encoding="utf-8")
+
+
+def test_a_sheet_for_pages_is_refused_where_its_runs_have_none(tmp_path):
+    out = tmp_path / "sheet.md"
+    asked = ["sheet", "temperature", "--lab", "--set", "molecules=20", "--engine", "dsmc", "--out", str(out)]
+    told = CliRunner().invoke(app, asked)
+    assert told.exit_code == 2
+    assert "exact engine" in told.output
+    assert not list(tmp_path.iterdir())

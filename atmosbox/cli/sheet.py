@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +14,9 @@ from atmosbox.cli.output_name import for_scene
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import guarded, prints_to_stderr, say, tell
 from atmosbox.text.progress import progress
+
+if TYPE_CHECKING:
+    from atmosbox.sheet.worksheet import Worksheet
 
 
 class SheetFormat(StrEnum):
@@ -35,6 +38,7 @@ class Paper(StrEnum):
         "atmosbox sheet lifting-dry",
         "atmosbox sheet lifting-dry --seed 7 --answers",
         "atmosbox sheet temperature --set temperature=20degC --paper letter --out class.pdf",
+        "atmosbox sheet temperature --lab",
         "atmosbox sheet ./my_scene.py --format md",
     )
 )
@@ -43,6 +47,9 @@ def sheet(
     scene: Annotated[str, SceneName],
     answers: Annotated[
         bool, typer.Option("--answers", help="Make its runs, fill in the table and answer the questions.")
+    ] = False,
+    lab: Annotated[
+        bool, typer.Option("--lab", help="Without commands: write a page for each run, and name its buttons.")
     ] = False,
     values: ValuesOfAll = None,
     seed: Seed = None,
@@ -70,8 +77,25 @@ def sheet(
     path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{kind}") if out is None else Path(out)
     path = sheets.check(path, format and format.value, paper=paper.value, force=force)
     with prints_to_stderr(), progress(scene, quiet=quiet) as show:
-        made = sheets.worksheet(asked.scene, asked.settings, engine=asked.engine, answers=answers, progress=show)
+        made = sheets.worksheet(
+            asked.scene, asked.settings, engine=asked.engine, answers=answers, lab=lab, progress=show
+        )
+        pages = _pages(made, path.parent, force) if lab else []
     if not quiet:
         for sentence in made.disagreements:
             tell(f"warning: {sentence}")
     say(str(sheets.save(made, path, paper=paper.value, force=force)))
+    for page in pages:
+        say(str(page))
+
+
+def _pages(made: Worksheet, folder: Path, force: bool) -> list[Path]:
+    """Write the page of each run beside the sheet; all are refused before the first is written."""
+    from atmosbox.file.output_path import check_writable, write_whole
+    from atmosbox.lab.lab_file import lab_text
+
+    paths = [check_writable(folder / run.page, force) for run in made.runs]
+    texts = [lab_text(run.prepared, others=False) for run in made.runs]
+    for path, text in zip(paths, texts, strict=True):
+        write_whole(path, text.encode("utf-8"))
+    return paths

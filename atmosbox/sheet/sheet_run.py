@@ -81,6 +81,17 @@ class Trial:
         return f"atmosbox plot {shlex.quote(self.file)}"
 
     @property
+    def page(self) -> str:
+        """The page in which it runs, for a sheet that is done without Python.
+
+        Examples
+        --------
+        >>> Trial("B", "", runner.prepare("lifting-dry", {})).page
+        'lifting-dry-B.html'
+        """
+        return f"{self.file.removesuffix('.nc')}.html"
+
+    @property
     def headlines(self) -> Mapping[str, Headline]:
         """The numbers that it has found, by name."""
         return {} if self.outcome is None else {each.name: each for each in self.outcome.headlines}

@@ -51,11 +51,12 @@ class Sketch(_Entry):
 
 
 class Question(_Entry):
-    """A question with empty lines below it, or with its answer."""
+    """A question with empty lines below it, or with its answer; ``lab`` whether pages that run can answer it."""
 
     ask: Needed
     answer: Text = ""
     lines: Lines | None = None
+    lab: bool = True
 
 
 class Prediction(Question):

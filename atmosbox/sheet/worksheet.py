@@ -15,15 +15,24 @@ from atmosbox.errors import ConfigError
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.headline import AS_STATED
 from atmosbox.sheet.generic import WORDS, AnyScene, left_out
+from atmosbox.sheet.graph_row import graph_rows, until
 from atmosbox.sheet.number_text import bare, fixed, measured, spelled, theoretical
 from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Facts, filled
 from atmosbox.sheet.text import SECTIONS, Change, SheetText, read, text_of
 from atmosbox.simulation import runner
+from atmosbox.simulation.preparation import build
 from atmosbox.version import __version__
 
 __all__ = ["Worksheet", "worksheet"]
 
+_COMMAND = "`--"
+"""What only those can do who type commands begins so."""
+_KNOBS = {
+    "ask": "Begin A anew, and turn a knob above its graphs while it plays. Write down first what each graph will do.",
+    "answer": "",
+    "lines": 4,
+}
 _NOT_HERE = "*Written for the scene as it comes; with these settings its numbers are not there.*"
 _WITH_CARE = (
     "The numbers are of these runs, but the words of the answers are for the scene as it comes: read them with care."
@@ -46,6 +55,8 @@ class Worksheet:
         Whether it is the lecturer's.
     disagreements
         What of its runs disagrees with theory, a sentence each.
+    runs
+        Its runs, of which a sheet for pages needs a page each.
     """
 
     scene: str
@@ -54,6 +65,7 @@ class Worksheet:
     text: str
     answers: bool
     disagreements: tuple[str, ...] = ()
+    runs: tuple[Trial, ...] = ()
 
 
 def worksheet(
@@ -62,6 +74,7 @@ def worksheet(
     *,
     engine: str | None = None,
     answers: bool = False,
+    lab: bool = False,
     progress: Callable[[float, str], None] | None = None,
 ) -> Worksheet:
     """Return the sheet of a scene, for students or with the answers.
@@ -77,6 +90,9 @@ def worksheet(
     answers
         Whether its runs are made and its answers given. A scene whose sheet names no rows of the table is run once for
         the blank sheet, too: only a run tells which numbers it reports.
+    lab
+        Whether the sheet is done with a page for each run, see `atmosbox.lab`: it names buttons in place of commands,
+        and asks for what is read off graphs in place of what a run reports.
     progress
         Called with the share that is done and a word on what goes on.
 
@@ -106,9 +122,9 @@ def worksheet(
         _Filling(path, runs).sheet(words)  # a slip is refused before a run is spent on it
     if answers:
         runs = execute(runs, progress)
-    elif not words.row:
+    elif not words.row and not lab:
         runs = (*execute(runs[:1], progress), *runs[1:])
-    return _written(path, words, runs, answers)
+    return _written(path, words, runs, answers, lab)
 
 
 class _Filling:
@@ -158,13 +174,20 @@ class _Filling:
         return value
 
 
-def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool) -> Worksheet:
+def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool, lab: bool) -> Worksheet:
     """Return the sheet."""
     first = runs[0].prepared
     differs = bool(first.settings.changed().keys() - {"seed"}) or str(first.engine) != "exact"
     content = _Filling(path, runs, answers=answers, differs=differs).sheet(words)
     content["leaves_out"] = content["leaves_out"] or left_out(first.module.__doc__ or "").replace("<", "&lt;")
-    if not words.row:
+    for name in ("predict", *SECTIONS) if lab else ():
+        content[name] = [each for each in content[name] if each["lab"] and _COMMAND not in each["ask"]]
+    if lab and build(first).knobs:
+        content["try"] = [*content["try"], _KNOBS]
+    content |= {"lab": lab, "graphs": graph_rows(runs) if lab else []}
+    if lab:
+        content["row"] = []
+    elif not words.row:
         found = runs[0].headlines.values()
         content["row"] = [
             {"headline": h.name, "label": h.label, "unit": h.display_unit, "theory": "", "runs": "ABCD"} for h in found
@@ -173,12 +196,16 @@ def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool)
         unit = spelled(row["unit"])
         row["label"] += f" [{unit}]" if unit else ""
         row["lines"] = [_line(run, row["headline"], answers) for run in runs if run.letter in row["runs"]]
-    disagreements = [
-        f"Run {run.letter} disagrees with theory: {each.label}."
-        for run in runs
-        for each in run.headlines.values()
-        if each.agrees is False
-    ]
+    disagreements = (
+        []
+        if lab
+        else [
+            f"Run {run.letter} disagrees with theory: {each.label}."
+            for run in runs
+            for each in run.headlines.values()
+            if each.agrees is False
+        ]
+    )
     remarks = [*_excuses(runs, {row["headline"] for row in content["row"]}), *disagreements]
     title, about = getattr(first.module, "title", first.scene), _about(first, answers)
     template = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined).from_string(
@@ -187,10 +214,11 @@ def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool)
     text = template.render(
         content, scene=first.scene, title=title, about=about, answers=answers, runs=runs,
         sections=SECTIONS, questions={name: content[name] for name in SECTIONS},
+        until=until(runs[0].prepared) if lab else "",
         remarks=[*remarks, *([_WITH_CARE] if differs else [])] if answers else [], ticked=answers and not differs,
     )  # fmt: skip
     text = re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
-    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements))
+    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements), tuple(runs))
 
 
 def _about(first: runner.Prepared, answers: bool) -> str:

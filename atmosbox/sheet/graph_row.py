@@ -1,0 +1,129 @@
+"""What is read off the graphs of a page that runs: the table of a sheet that is done without commands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from atmosbox.file.variables import variable
+from atmosbox.scene.conversion import from_si
+from atmosbox.scene.panels import Line, Panel
+from atmosbox.sheet.number_text import bare, spelled
+from atmosbox.sheet.sheet_run import Trial
+from atmosbox.simulation.preparation import Prepared, build
+
+__all__ = ["graph_rows", "until"]
+
+_TIME = "elapsed_time"
+_FRAMES = 20
+"""What scatters is read as the mean of its last frames, of so many as the gauges of a page take."""
+_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
+_FIGURES = 3
+
+
+def until(prepared: Prepared) -> str:
+    """Return the sentence that says for how long a run plays.
+
+    Examples
+    --------
+    >>> from atmosbox.simulation.preparation import prepare
+    >>> until(prepare("temperature", {"molecules": 20}))
+    'Let each play to 20 ns, and pause.'
+    """
+    setup = build(prepared)
+    if setup.ends:
+        return "Let each play until it stops."
+    time = setup.duration * setup.scale.time / _SECONDS[setup.time_unit]
+    return f"Let each play to {time:.3g} {setup.time_unit}, and pause."
+
+
+def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
+    """Return the rows of the table: for each curve that is measured its graph, its name, and a line for each run.
+
+    Parameters
+    ----------
+    runs
+        The runs; of those that were made the numbers are filled in.
+
+    Returns
+    -------
+    list of dict
+        ``graph``, blank where it is that of the row before, ``curve`` with its unit, and ``lines``: of each run its
+        letter, what is read off, what theory says, and the difference.
+    """
+    prepared = runs[0].prepared
+    panels = prepared.module.panels
+    found = []
+    before = None
+    for panel in panels(prepared.settings) if callable(panels) else panels:
+        for line in panel.lines if panel.kind in ("line", "profile", "histogram") else ():
+            if line.role != "data" or not _known(line.y):
+                continue
+            unit = spelled((panel.y_unit if panel.kind != "profile" else panel.x_unit) or _si_unit(panel, line))
+            curve = f"{line.label}{_where(panel, line)}{f' [{unit}]' if unit else ''}"
+            theory = _theory(panel, line)
+            lines = [_line(run, panel, line, theory) for run in runs]
+            found.append({"graph": "" if panel is before else panel.title, "curve": curve, "lines": lines})
+            before = panel
+    return found
+
+
+def _known(name: str) -> bool:
+    try:
+        return bool(variable(name))
+    except KeyError:
+        return False
+
+
+def _si_unit(panel: Panel, line: Line) -> str:
+    unit = variable(line.x if panel.kind == "profile" else line.y).units
+    return "" if unit == "1" else unit or ""
+
+
+def _where(panel: Panel, line: Line) -> str:
+    """Return where a curve is read."""
+    if panel.kind == "line" and line.x == _TIME:
+        return ", at the end"
+    if panel.kind == "histogram":
+        return ", at its peak"
+    if line.y == "height":
+        return ", at half the height"
+    return ", at the top" if panel.kind == "profile" else ", in the middle"
+
+
+def _theory(panel: Panel, line: Line) -> str | None:
+    """Return the variable that theory draws for a curve, None if it draws none."""
+    name = line.x if panel.kind == "profile" else line.y
+    told = [each.x if panel.kind == "profile" else each.y for each in panel.lines if each.role == "theory"]
+    data = {each.x if panel.kind == "profile" else each.y for each in panel.lines if each.role == "data"}
+    if f"{name}_theory" in told:
+        return f"{name}_theory"
+    alone = len(told) == 1 and told[0].removesuffix("_theory") not in data
+    return told[0] if alone or (told and len(data) == 1) else None
+
+
+def _line(run: Trial, panel: Panel, line: Line, theory: str | None) -> tuple[str, str, str, str]:
+    """Return what a run says of a curve."""
+    blank = "" if theory else "–"
+    if run.outcome is None:
+        return run.letter, "", blank, blank
+    measured = _last(run, panel, line.y) if panel.kind == "line" and line.x == _TIME else None
+    told = _last(run, panel, theory) if theory and measured is not None else None
+    if measured is None:
+        return run.letter, "see the graph", blank, blank
+    if told is None:
+        return run.letter, bare(measured, _FIGURES), "–", "–"
+    return run.letter, bare(measured, _FIGURES), bare(told, _FIGURES), bare(measured - told, 2)
+
+
+def _last(run: Trial, panel: Panel, name: str) -> float | None:
+    """Return what a series comes to at the end, in the unit of its graph."""
+    dataset = run.outcome.dataset if run.outcome is not None else {}
+    if name not in dataset:
+        return None
+    values = np.asarray(dataset[name].values[-_FRAMES:], np.float64)
+    values = values[np.isfinite(values)]
+    unit = panel.y_unit or dataset[name].attrs.get("units", "1")
+    return float(from_si(float(values.mean()), unit)) if values.size else None
