@@ -53,12 +53,18 @@ Empty boxes, pistons and unlike molecules are tried elsewhere, too: test_extreme
 physics/test_piston, physics/test_column.
 """
 
+SECONDS = {
+    *("drop-of-pure-water", "drop-of-salt", "drop-in-tenfold-vapour"),
+    *("wells-of-no-depth", "narrow-wells", "wide-wells", "hot-wells"),
+}
+"""What takes the exact engine seconds; tests/physics asks the same of wells and curved drops in smaller boxes."""
+
 
 def cases():
     for name in engines.names():
         for each in EXTREMES.values():
             slow = each.long or (name in ("stepped", "classic") and each.name in SLOW)
-            slow |= name == "exact" and each.name in OWN_KERNELS
+            slow |= name == "exact" and each.name in SECONDS | OWN_KERNELS
             slow |= name == "dsmc" and each.name in ("one-molecule-of-water", "drying-pool")
             yield pytest.param(name, each, id=f"{name}-{each.name}", marks=[pytest.mark.validate] if slow else [])
 

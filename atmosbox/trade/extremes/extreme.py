@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from atmosbox import theory
-from atmosbox.engine import Drops, HeatBath, Mist, Piston, Pool
+from atmosbox.engine import Drops, HeatBath, Mist, Piston, Pool, RandomBath, SquareWell
 from atmosbox.engine import lattice_positions as sites
-from atmosbox.trade.extremes.extreme_box import BATHS, OPEN, SMOOTH, Box, at, crystal, gas, moist
+from atmosbox.trade.extremes.extreme_box import BATHS, CURVED, OPEN, SMOOTH, Box, at, crystal, gas, moist, orbit
 from atmosbox.trade.extremes.guarded_run import GuardedRun
 from atmosbox.trade.extremes.probe import (
     Probe,
@@ -21,6 +21,7 @@ from atmosbox.trade.extremes.probe import (
     comes_to,
     contacts,
     cooled,
+    curved,
     emptiness,
     energy,
     force,
@@ -33,6 +34,7 @@ from atmosbox.trade.extremes.probe import (
     swept,
     vapour,
     weight,
+    wells,
 )
 from atmosbox.trade.extremes.verdict import Reading
 
@@ -142,8 +144,22 @@ PLACES = np.array([[2.0, 5, 5], [5, 5, 5], [8, 5, 5]])
 ORDERS = [list(order) for order in itertools.permutations(range(3))]
 GRID = (1.0 + 2.0 * np.stack(np.meshgrid(*[np.arange(4.0)] * 3), axis=-1).reshape(-1, 3)).astype("f4")
 SPEEDS = RNG.standard_normal(GRID.shape).astype("f4")
+ORBIT = orbit(1.5, 0.1)
 COLD, DOWN = HeatBath(1e-300), (*SMOOTH[:5],)
 MIXED: dict[str, Any] = {"seed": 8, "diameter": 0.7, "walls": (HeatBath(1.2), HeatBath(0.8, 0.5), *SMOOTH[:4])}
+
+
+def drawn(range: float, warmth: float) -> Probe:
+    """Return the pressure of a thin gas of molecules that attract each other, by its virial coefficients."""
+    density = 6.0 / math.pi * 0.01
+    well: dict[str, Any] = {"well": SquareWell(range, 1.0 / warmth), "bath": RandomBath(1.0, 1.0)}
+    factor = float(theory.square_well_compressibility(density, warmth, range))
+    return pressure(gas(256, side_of(0.01), walls=OPEN, **well), factor, 50.0, 50.0)
+
+
+def one_drop(waters: int, vapour: int = 0, **liquid: Any) -> Box:
+    """Return a drop that feels its curvature, in a box that holds 40 molecules of saturated vapour at 95 degC."""
+    return moist(Drops, 95.0, 40.0, waters, vapour=vapour, drops=1, **CURVED | liquid)
 
 
 def few(number: int) -> Box:
@@ -337,6 +353,33 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
             "Cut a run into pieces and take samples: it is the same to the last bit.",
             alike(gas(100, 8.0, gravity=0.1, **MIXED), gas(100, 8.0, gravity=0.1, **MIXED), 20.0, cuts=100)),
     ),
+    "attraction": (
+        Extreme("wells-of-no-depth", "depth 0",
+            "Let molecules attract each other by nothing: they meet as often as hard spheres.",
+            contacts(gas(256, side_of(0.01), walls=OPEN, well=SquareWell(1.5, 0.0)), 100.0, 2000.0, slack=0.005)),
+        Extreme("wells-of-a-million", "depth 10⁶ kT",
+            "Let molecules fall into wells a million times as deep as they are warm: energy is kept.",
+            energy(gas(108, 10.0, walls=OPEN, seed=2, well=SquareWell(1.5, 1e6)), 0.1, pieces=3, events=1000)),
+        Extreme("narrow-wells", "range 1.01 σ, T* = 0.3",
+            "Let the wells end a hundredth of a diameter from contact: the gas presses as its virial coefficients say.",
+            drawn(1.01, 0.3)),
+        Extreme("wide-wells", "range 2 σ, T* = 2",
+            "Let the wells reach twice as far as the molecules: the gas presses as its virial coefficients say.",
+            drawn(2.0, 2.0)),
+        Extreme("hot-wells", "T* = 100",
+            "Let molecules be far too fast for their wells: they press as its virial coefficients say.",
+            drawn(1.5, 100.0)),
+        Extreme("cold-wells", "T* = 0.3",
+            "Cool a gas far below the temperature at which it condenses: it warms itself, and energy is kept.",
+            energy(gas(200, 12.0, kT=0.3, walls=OPEN, well=SquareWell()), 60.0, pieces=3, events=1000)),
+        Extreme("orbit-in-a-well", "two in a well, 10³ rounds",
+            "Let two molecules circle in their well on a square: after a thousand rounds they are where they were.",
+            comes_to([at(*ORBIT, well=SquareWell(1.5, 1.0))], 1e4, position=[ORBIT[0]], velocity=[ORBIT[1]],
+                     tolerance=1e-9)),
+        Extreme("crystal-of-wells", "a crystal of wells",
+            "Start a crystal whose wells reach the nearest neighbours alone: each molecule stays in twelve of them.",
+            wells(crystal(256, side_of(0.68), well=SquareWell(1.25, 4.0)), 20.0, 12.0)),
+    ),
     "water": (
         Extreme("one-molecule-of-water", "one molecule of water alone",
             "Keep one molecule of water in a mist without air: it is vapour nine tenths of the time.",
@@ -359,6 +402,18 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
         Extreme("supersaturation-10", "supersaturation 10",
             "Start with ten times as much vapour as saturated air has: nine tenths condense.",
             vapour(moist(Mist, 20.0, 40.0, 400, vapour=400), 20.0, 400, 2000.0)),
+        Extreme("drop-of-pure-water", "one drop, no salt",
+            "Let a drop feel its curvature: the vapour beside it has the right number, by counting states.",
+            curved(one_drop(220), 40.0, 0.0, 20_000.0)),
+        Extreme("drop-of-salt", "one drop, 10⁹ ions",
+            "Give a drop a million ions for each molecule of water: it takes all vapour.",
+            curved(one_drop(220, vapour=100, dissolved=(1e9,)), 40.0, 1e9, 20_000.0)),
+        Extreme("drop-in-tenfold-vapour", "one drop, supersaturation 10",
+            "Start with ten times as much vapour as a flat surface leaves: the drop leaves as many as counting says.",
+            curved(one_drop(460, vapour=400), 40.0, 0.0, 20_000.0)),
+        Extreme("surface-beyond-binding", "a surface that costs more than it binds",
+            "Give a drop so large a tension that its first molecule is not bound: it is refused.",
+            refused([(one_drop(220, surface_tension=100.0), "surface_tension")])),
     ),
 }  # fmt: skip
 """The extremes by what they are about."""

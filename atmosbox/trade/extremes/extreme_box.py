@@ -26,11 +26,13 @@ from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 from atmosbox.trade.extremes.guarded_run import GuardedRun
 
-__all__ = ["BATHS", "OPEN", "SMOOTH", "Box", "at", "crystal", "gas", "moist"]
+__all__ = ["BATHS", "CURVED", "OPEN", "SMOOTH", "Box", "at", "crystal", "gas", "moist", "orbit"]
 
 Box = Callable[[GuardedRun], Parcel]
 STEADY = 1e7
 """Heat capacity of nuclei [k] that keeps the liquid at its temperature, as a small one would not."""
+CURVED = {"nucleus": 2.0, "molecule_radius": 0.5, "surface_tension": 1.5}
+"""What a drop is given that feels its curvature: at kT = 1, 150 molecules need 1.7 times as much vapour as a pool."""
 AT_REST = "at rest"
 OPEN, SMOOTH, BATHS = (Periodic(),) * 6, (Specular(),) * 6, (HeatBath(1.0),) * 6
 
@@ -68,16 +70,35 @@ def gas(
     return build
 
 
-def crystal(number: int, side: float) -> Box:
+def crystal(number: int, side: float, **box: Any) -> Box:
     """Return a periodic cube of molecules on a lattice with Maxwell's velocities."""
     sites = lattice_positions((side,) * 3, np.ones(number), periodic=(True,) * 3)
-    return at(
-        sites, maxwell_velocities(1.0, np.ones(number), np.random.default_rng(2), exact=True), (side,) * 3, walls=OPEN
-    )
+    speeds = maxwell_velocities(1.0, np.ones(number), np.random.default_rng(2), exact=True)
+    return at(sites, speeds, (side,) * 3, walls=OPEN, **box)
+
+
+def orbit(range: float, rate: float) -> tuple[Any, Any]:
+    """Return places and velocities of two molecules that circle in a well, so many times in a unit of time.
+
+    Seen from one, the other goes along a square whose corners are on the edge of the well. It starts in the middle of
+    a side.
+    """
+    half = range * np.sqrt(0.5)
+    speed = 8.0 * half * rate
+    places = [[5.0, 5.0 - 0.5 * half, 5.0], [5.0, 5.0 + 0.5 * half, 5.0]]
+    return places, [[-0.5 * speed, 0.0, 0.0], [0.5 * speed, 0.0, 0.0]]
 
 
 def moist(
-    kind: type[Liquid], celsius: float, saturated: float, waters: int, *, vapour: int = 0, air: int = 20, **liquid: Any
+    kind: type[Liquid],
+    celsius: float,
+    saturated: float,
+    waters: int,
+    *,
+    vapour: int = 0,
+    air: int = 20,
+    drops: int = 2,
+    **liquid: Any,
 ) -> Box:
     """Return a box with real water between heat baths of its temperature.
 
@@ -91,6 +112,8 @@ def moist(
         How many molecules of vapour are in balance with the liquid: the box is as large as they need.
     waters, vapour, air
         How many molecules of water there are, how many of them are vapour at the start, and how many of air.
+    drops
+        Two drops that touch, or 1 in the middle.
     liquid
         What else the liquid is given.
     """
@@ -98,10 +121,11 @@ def moist(
     substance, held = water(scale), waters - vapour
     side = 1.0 + (saturated / substance.saturation_pressure(1.0)) ** (1.0 / 3.0)
     middle, reach = 0.5 * side, (8.0 + 0.125 * 0.5 * held) ** (1.0 / 3.0)
+    beside = (-reach, reach) if drops == 2 else (0.0,)
     shapes: dict[type[Liquid], dict[str, Any]] = {
         Mist: {"area": 6.0 * side**2},
         Pool: {},
-        Drops: {"position": ((middle - reach, middle, middle), (middle + reach, middle, middle)), "nucleus": 2.0},
+        Drops: {"position": tuple((middle + away, middle, middle) for away in beside), "nucleus": 2.0},
     }
     walls = (*BATHS[:4], Specular() if kind is Pool else BATHS[4], BATHS[5])
 

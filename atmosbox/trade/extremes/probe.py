@@ -18,7 +18,7 @@ from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.engine.core.measure import layer_sample, temperature
 from atmosbox.scene.statistics import block_average
 from atmosbox.theory.constants import DRY_AIR
-from atmosbox.trade.extremes.extreme_box import Box
+from atmosbox.trade.extremes.extreme_box import CURVED, Box
 from atmosbox.trade.extremes.guarded_run import GuardedRun, UnlawfulError, deepest_overlap, step_of
 from atmosbox.trade.extremes.verdict import Reading
 
@@ -370,5 +370,44 @@ def vapour(new: Box, celsius: float, waters: int, crossings: float) -> Probe:
         expected = theory.isothermal_vapor_number(waters, celsius + 273.15, volume).mean
         what = f"molecules of vapour; {box.condensed} condensed, {box.evaporated} evaporated"
         return Reading(what, mean, expected, 4.0 * error + 0.01 * expected)
+
+    return read
+
+
+def curved(new: Box, saturated: float, salt: float, crossings: float) -> Probe:
+    """Compare the mean number of molecules of vapour beside one drop that feels its curvature with that of all states.
+
+    A drop of n molecules gains one as often, with the vapour that it has then, as one of n + 1 loses one.
+    """
+
+    def read(run: GuardedRun) -> Reading:
+        box: Any = new(run)
+        side, seen = float(box.length[0]), []
+        run.advance(box, 0.2 * crossings * side)
+        for _ in range(100 * BLOCKS):
+            run.advance(box, box.time + 0.01 * crossings / BLOCKS * side)
+            seen.append(box.vapour)
+        mean, error = (float(each) for each in block_average(seen, BLOCKS))
+        held = np.arange(1.0, box.vapour + box.liquid + 1.0)
+        ball, core = (4.0 / 3.0 * math.pi * CURVED[name] ** 3 for name in ("molecule_radius", "nucleus"))
+        over = theory.humidity_over_drop(held, CURVED["surface_tension"], ball, 1.0, particles=salt, core=core)
+        chance = np.cumsum(np.log((len(held) + 1.0 - held) / (saturated * over)))
+        chance = np.exp(np.append(0.0, chance) - max(float(chance.max()), 0.0))
+        expected = float(chance @ np.arange(len(held), -1.0, -1.0) / chance.sum())
+        what = f"molecules of vapour; {box.condensed} condensed, {box.evaporated} evaporated"
+        return Reading(what, mean, expected if expected > 1e-3 else 0.0, 4.0 * error + max(0.01 * expected, 1e-3))
+
+    return read
+
+
+def wells(new: Box, until: float, expected: float) -> Probe:
+    """Compare in how many wells each molecule is at the end, half of which are its own, with a number of neighbours."""
+
+    def read(run: GuardedRun) -> Reading:
+        box: Any = new(run)
+        run.advance(box, until)
+        if box.contacts < 20 * box.number:
+            raise UnlawfulError(f"only {box.contacts} contacts")
+        return Reading("wells for each molecule", 2.0 * box.number_of_wells / box.number, expected)
 
     return read
