@@ -270,13 +270,14 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             continue
         place = int(np.abs(passed - moment).argmin())
         mean, spread, steep = _entropy_spread(float(_aged(amplitude[place])), settings.molecules)
+        alone, _, _ = _entropy_spread(float(passed[place]), settings.molecules)
         found.append(
             Headline(
                 name,
                 float(dataset.mixing_entropy.values[place]),
                 spread,
                 mean,
-                known * steep,
+                known * steep + 0.5 * abs(alone - mean),  # heat and sound of a wave that is not small
                 reason,
                 "1",
                 "1",
@@ -322,9 +323,9 @@ def _known(settings: Settings, *, ideal: bool) -> float:
     density, side = _box(settings)
     diffusivity, rate = _diffusivity(settings, ideal=ideal), _rate(settings, ideal=ideal)
     lighter = min(_masses(settings))
-    forgotten = rate * diffusivity * max(lighter, 1.0)  # how much decays while a molecule forgets its way
+    forgotten = rate * diffusivity * lighter  # how much decays while a molecule forgets its way
     dense = 0.0 if ideal else CORRELATED * float(law.packing_fraction(density, 1.0))
-    narrow = 0.0 if ideal else IMAGES / (6.0 * math.pi * VISCOSITY * side * diffusivity)
+    narrow = 0.0 if ideal else IMAGES / (6.0 * math.pi * VISCOSITY * math.sqrt(lighter) * side * diffusivity)
     return dense + forgotten + narrow + law.diffusivity_error(_masses(settings))
 
 
