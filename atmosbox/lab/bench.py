@@ -11,6 +11,7 @@ from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.rows import MOST, row_stride
+from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.errors import SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
@@ -35,6 +36,7 @@ from atmosbox.scene.instruments import (
     Lift,
     Mixing,
     MoistLift,
+    Nuclei,
     Speeds,
     Water,
 )
@@ -53,8 +55,8 @@ __all__ = ["Bench", "bench", "refuse"]
 _CORNERS = 4
 _SPARE = 1.5
 _PLACES = 32
-_INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Speeds, Water)
-_BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet)
+_INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
+_BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _READINGS = 64
 
 
@@ -165,7 +167,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         _ascent(parcel),
         Book(np.array([parcel._now]), np.array([parcel._epoch_length]), moisture(parcel)),
         lists(parcel) if attracts else _layout(parcel),
-        _gauges(setup),
+        _gauges(prepared, setup),
         *_averages(setup),
         _sight(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
@@ -238,7 +240,7 @@ def _of(setup: Setup, kind: type) -> Any:
     return next((each for each in setup.instruments if type(each) is kind), None)
 
 
-def _gauges(setup: Setup) -> Gauges:
+def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
     """Return what the instruments keep at their start, with room for some more readings."""
     air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
     edges = np.zeros(1) if speeds is None else speeds._edges
@@ -262,7 +264,7 @@ def _gauges(setup: Setup) -> Gauges:
         half=half,
         running=np.zeros(8),
         mixture=_mixture(setup),
-        water=hygrometer(setup),
+        water=hygrometer(prepared, setup),
     )
 
 

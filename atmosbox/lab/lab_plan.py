@@ -10,7 +10,7 @@ from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.memory_image import BASE, Image, image
-from atmosbox.lab.moist_plan import WET_STATE, fixed_energies, leaving_energies, moist_knob, water_readings
+from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE, fixed_axes, leaving_energies, moist_knob, water_readings
 from atmosbox.lab.seeding import is_the_seed_all, without_molecules
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.well_bench import drop_readings, has_bath
@@ -75,7 +75,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     named = {"gas": box.gas, "gauges": box.gauges, "sight": box.sight, "speeds": box.speeds, "layers": box.layers}
     named["book"] = box.book
     memory = image(arguments(box), named)
-    state = (*STATE, *(WET_STATE if box.modes.phases else ()))
+    state = (*STATE, *(WET_STATE if box.modes.phases else ()), *(DROP_STATE if box.modes.drops else ()))
     wanted = {"gauges.reading", "speeds.mean", "speeds.error", "layers.mean", "layers.error", *state}
     wanted |= {"gauges.mixture.mean", "gauges.mixture.error", "sight.place", "sight.colour", "sight.length"}
     wanted |= {"sight.state", "sight.drops", "sight.many"}
@@ -108,7 +108,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "samples": setup.samples,
         "settle": 0 if setup.ends else setup.settle,
         "ends": setup.ends,
-        "whole": setup.ends,
+        "whole": setup.ends or _against_each_other(panels[-1], {name for name, _, _ in readings}),
         "rate": Experiment(prepared, lambda: 0.0).rate,
         "time": setup.scale.time / _SECONDS[setup.time_unit],
         "length": setup.scale.length * stage.record["metre"],
@@ -126,6 +126,12 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "seed": prepared.settings.seed,
     }
     return plan, memory, box
+
+
+def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
+    """Tell whether a graph draws one series against another: see `live.summary.Report`."""
+    times = readings - {"elapsed_time"}
+    return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
 
 
 def _readings(box: Bench) -> list[tuple[str, int, float]]:
@@ -224,7 +230,7 @@ def _fixed(box: Bench) -> dict[str, Any]:
     if across:
         edges = np.linspace(0.0, mixture.width, across + 1) * box.setup.scale.length
         found["distance"] = plain(0.5 * (edges[1:] + edges[:-1]))
-    return found | (fixed_energies(box) if box.modes.phases else {})
+    return found | (fixed_axes(box) if box.modes.phases else {})
 
 
 def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from atmosbox import theory as law
 from atmosbox.engine.liquid.substance import Substance
 from atmosbox.lab.kernels.hygrometer import Hygrometer, Sampled
 from atmosbox.lab.kernels.moist_passing import Moisture
@@ -19,13 +20,16 @@ if TYPE_CHECKING:
     from atmosbox.page import Stage
     from atmosbox.scene.setup import Setup
     from atmosbox.scene.units import Scale
+    from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["bins_of", "hygrometer", "liquid_sight", "moisture"]
+__all__ = ["bins_of", "hygrometer", "liquid_sight", "moisture", "theory_at"]
 
 _WAY = 801
 """Values of the table of the adiabat of a parcel."""
 _WIDER = 0.25
 """How much further than its planned way that table reaches at both ends."""
+_FARTHEST, _OFFSETS = 0.16, 41
+"""How far the logarithm of the pressure may be from that planned, where it rains, and how many values that has."""
 
 
 def moisture(parcel: Any) -> Any:
@@ -37,26 +41,41 @@ def moisture(parcel: Any) -> Any:
     return Moisture(reservoir, cover, parcel._vapours, parcel._rotations, getattr(parcel, "_drops", 0))
 
 
-def hygrometer(setup: Setup) -> Any:
+def hygrometer(prepared: Prepared, setup: Setup) -> Any:
     """Return what measures the water of a box, 0 if it has none."""
     parcel: Any = setup.parcel
     if not hasattr(parcel, "vapour"):
         return 0
     substance: Substance = parcel._liquid.substance
+    scale, binding = setup.scale, float(substance.binding_energy)
     lift = next((each for each in setup.instruments if type(each) is MoistLift), None)
-    log_pressure, adiabat = (np.zeros(0), np.zeros(0)) if lift is None else _adiabat(setup, lift)
+    none = np.zeros(0)
+    moment, planned, log_pressure, adiabat = none, none, none, np.zeros((0, 0))
+    level, around = none, none
+    if lift is not None:
+        rains = parcel._reservoir.rain > 0.0
+        moment, planned, log_pressure, adiabat = (
+            _adiabat_with_rain(prepared, setup, lift) if rains else _adiabat(setup, lift)
+        )
+        level, around = _environment(prepared, setup, lift)
     width, empty, merged = _leaving(setup)
     return Hygrometer(
         sums=np.zeros(len(Sampled)),
         before=np.zeros(2),
         met=np.zeros(4),
         contact=np.array(_CONTACT_SERIES.coef),
-        volatility=float(substance.volatility),
+        # that of the substance is rounded to nine figures or so
+        volatility=float(law.saturation_vapor_pressure(scale.temperature)) / scale.pressure * math.exp(binding),
         power=float(substance.vapour_heat_capacity - substance.heat_capacity),
-        binding=float(substance.binding_energy),
-        critical=_CRITICAL / setup.scale.temperature,
+        binding=binding,
+        critical=_CRITICAL / scale.temperature,
+        moment=moment,
+        planned=planned,
         log_pressure=log_pressure,
         adiabat=adiabat,
+        level=level,
+        around=around,
+        mass=float(substance.mass),
         width=width,
         mean=np.full(width.size, math.nan),
         error=np.full(width.size, math.nan),
@@ -65,13 +84,68 @@ def hygrometer(setup: Setup) -> Any:
     )
 
 
-def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any]:
-    """Return the adiabat of a parcel: its temperature at logarithms of pressure, both in the units of the engine."""
+def _levels(setup: Setup, lift: MoistLift) -> Any:
+    """Return logarithms of pressure [Pa], falling, that hold all that a parcel may come to."""
     seconds = np.linspace(0.0, setup.duration * setup.scale.time, _WAY)
     ends = np.log([lift.environment.pressure(t) for t in seconds])
-    levels = np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
+    return np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
+
+
+def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
+    """Return the adiabat of a parcel that keeps its water, which depends on the pressure alone: see `Hygrometer`."""
+    levels = _levels(setup, lift)
     kelvin = lift._curve(np.exp(levels))
-    return levels[::-1] - math.log(setup.scale.pressure), kelvin[::-1] / setup.scale.temperature
+    unit = np.array([math.log(setup.scale.pressure)])
+    return np.zeros(1), unit * 0.0, levels[::-1] - unit, kelvin[None, ::-1] / setup.scale.temperature
+
+
+def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
+    """Return the adiabat of a parcel whose water rains out, by the moment and the pressure over that planned.
+
+    How much water is left depends on the way, and is here as planned; at another pressure it has the same entropy.
+    """
+    parcel: Any = setup.parcel
+    number = setup.frames * setup.samples
+    shares = np.arange(1, number + 1) / number
+    around = np.array([lift.environment.pressure(t) for t in (shares * setup.duration * setup.scale.time).tolist()])
+    # theory tells how much water is left in the middle of each frame
+    middle = slice(setup.samples // 2 - 1, None, setup.samples)
+    kelvin, pressure = lift._curve(around)[middle], around[middle]
+    told = theory_at(prepared, pressure, rains=True)
+    water = told["humidity_mixing_ratio_theory"] + told["cloud_liquid_water_mixing_ratio_theory"]
+    heat = float(parcel._reservoir.nuclei) / (parcel.number - parcel.vapour)
+    offsets = np.linspace(-_FARTHEST, _FARTHEST, _OFFSETS)
+    rows = [
+        law.parcel_path(p * np.exp(offsets), p, t, w, nuclei_heat=heat).temperature
+        for p, t, w in zip(pressure, kelvin, water, strict=True)
+    ]
+    planned = np.log(pressure / setup.scale.pressure)
+    return shares[middle] * setup.duration, planned, offsets, np.array(rows) / setup.scale.temperature
+
+
+def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any]:
+    """Return the virtual temperature of the environment by its pressure, where the scene's theory knows it."""
+    levels, name = _levels(setup, lift), "environment_virtual_temperature"
+    if name not in theory_at(prepared, np.exp(levels[:2])):  # where it rains, theory takes its time
+        return np.zeros(0), np.zeros(0)
+    around = theory_at(prepared, np.exp(levels))[name]
+    return levels[::-1] - math.log(setup.scale.pressure), around[::-1] / setup.scale.temperature
+
+
+def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict[str, Any]:
+    """Return what theory says where a parcel and its environment have these pressures [Pa]; it is told nothing else.
+
+    What it makes of the parcel's own temperature and water, of which it is given any, means nothing.
+    """
+    import xarray as xr  # loads slowly
+
+    ones = np.ones(pressure.size)
+    series = {"parcel_pressure": pressure, "environment_pressure": pressure, "parcel_temperature": 280.0 * ones}
+    series |= {"humidity_mixing_ratio": 0.0 * ones, "cloud_liquid_water_mixing_ratio": 0.0 * ones}
+    series |= {"rain_mixing_ratio": 0.0 * ones} if rains else {}
+    asked = xr.Dataset({name: ("elapsed_time", values) for name, values in series.items()})
+    told = prepared.module.theory(asked, prepared.settings)
+    return {name: values for name, values in told.items() if np.shape(values) == pressure.shape}
 
 
 def _leaving(setup: Setup) -> tuple[Any, int, int]:

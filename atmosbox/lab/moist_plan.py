@@ -10,11 +10,12 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.lab.bench import Bench
 from atmosbox.lab.kernels.hygrometer import WaterReading
-from atmosbox.lab.moist_bench import bins_of
+from atmosbox.lab.moist_bench import bins_of, theory_at
 from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
-from atmosbox.scene.instruments import Leaving, MoistLift
+from atmosbox.scene.instruments import Leaving, MoistLift, Nuclei
 from atmosbox.simulation.preparation import Prepared
+from atmosbox.theory.constants import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
     from atmosbox.scene.units import Scale
 
 __all__ = [
+    "DROP_STATE",
     "WET_STATE",
-    "fixed_energies",
+    "fixed_axes",
     "leaving_energies",
     "moist_knob",
     "moist_tables",
@@ -36,6 +38,11 @@ WET_STATE = tuple(
     f"book.moisture.reservoir.{name}" for name in ("energy", "count", "clock", "bound", "absent", "top", "spectrum")
 )
 """What makes the liquid of two boxes the same, to the last bit."""
+DROP_STATE = (
+    "gas.kinds.table",
+    *(f"book.moisture.drops.{name}" for name in ("held", "cube", "core", "alive", "solute")),
+)
+"""What makes the drops in it the same."""
 
 _POINTS = 121
 _WARMEST, _COLDEST, _WARMTHS = 350.0, 240.0, 45
@@ -74,6 +81,18 @@ def water_readings(box: Bench) -> list[tuple[str, int, float]]:
             ("adiabat_temperature", WaterReading.ADIABAT, warm),
             ("moment", WaterReading.MIDDLE, 1.0),
         ]
+        if box.setup.parcel._reservoir.rain > 0.0:  # type: ignore[attr-defined]
+            found.append(("rain_mixing_ratio", WaterReading.RAIN_RATIO, ratio))
+        water: Any = box.gauges.water
+        if water.level.size:
+            found.append(("parcel_buoyancy", WaterReading.BUOYANCY, STANDARD_GRAVITY))
+    nuclei = _instrument(box.setup, Nuclei)
+    if nuclei is not None:
+        solute = box.book.moisture.drops.solute
+        real = scale.length / nuclei._width
+        found.append(("saturation_ratio", WaterReading.SATURATION_RATIO, 1.0))
+        found += [("salted_drop_radius", WaterReading.SALTED_RADIUS, real)] if (solute > 0.0).any() else []
+        found += [("pure_drop_radius", WaterReading.PURE_RADIUS, real)] if (solute == 0.0).any() else []
     return found
 
 
@@ -85,10 +104,11 @@ def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
     return [("leaving_energy_probability_density", "gauges.water", 0, bins, factor)] if bins else []
 
 
-def fixed_energies(box: Bench) -> dict[str, Any]:
-    """Return the middles of the bins of that histogram [J]."""
-    leaving = _instrument(box.setup, Leaving)
-    return {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
+def fixed_axes(box: Bench) -> dict[str, Any]:
+    """Return the middles of the bins of that histogram [J], and at which radii of drops theory is drawn [m]."""
+    leaving, nuclei = _instrument(box.setup, Leaving), _instrument(box.setup, Nuclei)
+    found = {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
+    return found if nuclei is None else found | {"radius": plain(nuclei._radius)}
 
 
 def moist_knob(knob: Knob, told: dict[str, float], scale: Scale) -> dict[str, Any]:
@@ -150,36 +170,39 @@ def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
 
 def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -> list[dict[str, Any]]:
     """Return the environment along the way, and what theory says at each pressure that the parcel may come to."""
-    moments = np.linspace(0.0, setup.duration, _WAY)
-    around, seconds = lift.environment, (moments * setup.scale.time).tolist()
+    frames = (np.arange(setup.frames) + 0.5) * setup.frame
+    moments = np.union1d(np.linspace(0.0, setup.duration, _WAY), frames)
+    around, unit = lift.environment, setup.scale.time
+    seconds = (moments * unit).tolist()
     outside = np.array([around.pressure(t) for t in seconds])
     curves = {
         "parcel_height": plain([around.height(t) for t in seconds]),
         "environment_temperature": plain([around.temperature(t) for t in seconds]),
         "environment_pressure": plain(outside),
     }
-    frames = (np.arange(setup.frames) + 0.5) * setup.frame
-    middle = np.array([around.pressure(t) for t in (frames * setup.scale.time).tolist()])
+    middle = np.array([around.pressure(t) for t in (frames * unit).tolist()])
     spread = {
         "along": "moment",
         "grid": plain(frames),
         "curves": {"parcel_temperature_se": plain(lift._scatter(middle))},
         "times": {"parcel_temperature_se": "parcel_temperature"},
     }
-    levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, 2 * _WAY - 1)
-    told = prepared.module.theory(_at(found, parcel_pressure=levels), prepared.settings)
-    pressures = {name: plain(values[::-1]) for name, values in told.items() if np.shape(values) == levels.shape}
-    return [
-        {"along": "moment", "grid": plain(moments), "curves": curves},
-        spread,
-        {"along": "parcel_pressure", "grid": plain(levels[::-1]), "curves": pressures},
-    ]
-
-
-def _at(found: xr.Dataset, **values: Any) -> xr.Dataset:
-    """Return a dataset in which only some series are known, of any length."""
-    rest = found.drop_dims("elapsed_time")
-    return rest.assign({name: ("elapsed_time", each) for name, each in values.items()})
+    rains = "rain_mixing_ratio" in found
+    # where it rains, theory takes its time, and by the pressure alone there is only a straight curve
+    levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, _WAY // 2 if rains else 2 * _WAY - 1)
+    by_pressure = theory_at(prepared, levels)
+    if any(name.startswith("environment_") for name in by_pressure):
+        told = theory_at(prepared, outside)
+        curves |= {name: plain(values) for name, values in told.items() if name.startswith("environment_")}
+    known = [name for name in by_pressure if not name.startswith(("environment_", "parcel_", "relative_humidity"))]
+    tables = [{"along": "moment", "grid": plain(moments), "curves": curves}, spread]
+    if rains:  # how much has rained out, and what is left, depends on the way
+        planned = theory_at(prepared, middle, rains=True)
+        along = {name: plain(values) for name, values in planned.items() if "mixing_ratio" in name}
+        tables.append({"along": "moment", "grid": plain(frames), "curves": along})
+        known = ["dry_air_adiabat_temperature"]
+    falling = {name: plain(by_pressure[name][::-1]) for name in known}
+    return [*tables, {"along": "parcel_pressure", "grid": plain(levels[::-1]), "curves": falling}]
 
 
 def _instrument(setup: Setup, kind: type) -> Any:

@@ -51,8 +51,8 @@ def short_run(prepared: Prepared) -> xr.Dataset:
             "scene",
             prepared.scene,
             "crowds so many molecules together that the page runs out of room for them",
-            f"let it run with atmosbox live {prepared.scene}, or begin it where it comes to rest, as atmosphere with "
-            "--set start=equilibrium",
+            f"let it run with atmosbox live {prepared.scene}, give it fewer molecules, or begin it where it comes to "
+            "rest, as atmosphere with --set start=equilibrium",
         )
     found, _ = gauge.dataset("lab", settle=0, judged=False)
     return found
@@ -85,7 +85,7 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
     >>> warmth["along"], warmth["curves"]["air_temperature_theory"] == warmth["grid"]
     ('wall_temperature[z_low]', True)
     """
-    if hasattr(setup.parcel, "vapour"):
+    if hasattr(setup.parcel, "vapour") and not hasattr(setup.parcel, "drops"):
         return moist_tables(prepared, setup, found)
     lift = next((each for each in setup.instruments if isinstance(each, Lift)), None)
     if lift is not None:

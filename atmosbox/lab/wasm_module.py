@@ -25,6 +25,9 @@ SCENES: dict[str, dict[str, Any]] = {
     "evaporation": {"molecules": 3000, "pool": 600},
     "condensation": {"molecules": 3000},
     "lifting-moist": {"molecules": 3000},
+    "lifting-sounding": {"molecules": 3000},
+    "mountains": {"molecules": 3000},
+    "nuclei": {"molecules": 1500},
 }
 """The shipped scenes that a page can run, with the settings that they need for it, or for a page of 1.5 MB."""
 

@@ -28,6 +28,9 @@ LABS = {
     "evaporation": {"molecules": 3000, "pool": 600},
     "condensation": {"molecules": 3000},
     "lifting-moist": {"molecules": 3000},
+    "lifting-sounding": {"molecules": 3000},
+    "mountains": {"molecules": 3000},
+    "nuclei": {"molecules": 1500},
 }
 """The settings of the labs: so few molecules that a phone keeps up."""
 

@@ -9,7 +9,7 @@ import pytest
 
 from atmosbox.lab import bench, save_lab
 from atmosbox.lab.lab_plan import STATE
-from atmosbox.lab.moist_plan import WET_STATE
+from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.live.picture import Picture
 from atmosbox.simulation.preparation import build, prepare
@@ -26,6 +26,9 @@ SMALL = {
     "evaporation": ({"molecules": 400, "pool": 150}, 60),
     "condensation": ({"molecules": 300, "humidity": 300}, 40),
     "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out anew, too
+    "lifting-sounding": ({"molecules": 300, "ascent": 40}, 80),
+    "mountains": ({"molecules": 400, "travel": 60}, 96),  # up and down again, and it rains
+    "nuclei": ({"molecules": 1000}, 12),
 }
 TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat")
 """What theory says of a parcel's way begins so."""
@@ -131,8 +134,12 @@ def state_of(parcel):
     }
     names = STATE
     if hasattr(parcel, "vapour"):
-        names = (*STATE, *WET_STATE)
+        names = (*names, *WET_STATE)
         parts |= {name: getattr(parcel._reservoir, name.rpartition(".")[2]) for name in WET_STATE}
+    if hasattr(parcel, "drops"):
+        names = (*names, *DROP_STATE)
+        parts |= {name: getattr(parcel._drops, name.rpartition(".")[2], None) for name in DROP_STATE}
+        parts["gas.kinds.table"] = parcel._kinds.table
     return hashlib.sha256(b"".join(parts[name].tobytes() for name in names)).hexdigest()
 
 
@@ -143,7 +150,7 @@ def test_the_page_has_the_same_bytes_as_python_and_measures_the_same(lab, scene)
     shown.ask(type="frames", value=frames)
     prepared = prepare(scene, SCENES[scene] | settings)
     setup = build(prepared)
-    recording = Recording(prepared, setup, {})
+    recording, picture = Recording(prepared, setup, {}), Picture(prepared, setup, ())
     for frame in range(frames):
         for sample in range(1, setup.samples + 1):
             setup.parcel.advance(setup.moment(frame, sample))
@@ -153,7 +160,7 @@ def test_the_page_has_the_same_bytes_as_python_and_measures_the_same(lab, scene)
     if hasattr(setup.parcel, "vapour"):
         assert min(setup.parcel.condensed, setup.parcel.evaporated) > 20
     assert shown.digest() == state_of(setup.parcel)
-    for seen, expected in zip(shown.frame(), parts_of(Picture(prepared, setup, ()).frame(0)), strict=True):
+    for seen, expected in zip(shown.frame(), parts_of(picture.frame(0)), strict=True):
         # a place is rounded to a step of its own, and where that is a half, up or down
         np.testing.assert_allclose(seen, expected, rtol=1e-6, atol=int(seen.dtype == int))
     _, table = shown.table()
@@ -166,6 +173,14 @@ def test_the_page_has_the_same_bytes_as_python_and_measures_the_same(lab, scene)
             told = name.endswith(("_theory", "_noise")) or name.startswith(TOLD)
             expected = np.asarray(found[name].values, np.float64)
             width, off = (5e-6, 5e-6 * np.nanmax(np.abs(expected))) if told else (1e-9, 0.0)
+            if hasattr(setup.parcel, "drops"):  # the ledger holds 1e8 kT in nuclei, and e_s(T) magnifies its rounding
+                width = max(width, 1e-8)
+            if name == "adiabat_temperature" and "rain_mixing_ratio" in found:
+                # what has rained out is here as planned, and in a file that of the pressures measured, which scatter
+                assert (np.abs(table[name] - expected) < 0.25 * found.parcel_temperature_se.values).all()
+                continue
+            if name == "parcel_buoyancy":  # g (T' / T - 1), of which T is from a table
+                off = 5e-6 * 9.80665
             np.testing.assert_allclose(table[name], expected, rtol=width, atol=off, err_msg=name)
             compared += 1
     assert compared > 3

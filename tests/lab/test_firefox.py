@@ -8,7 +8,11 @@ from atmosbox.simulation.preparation import build, prepare
 from tests.lab.firefox import Firefox, firefox_command
 from tests.lab.test_browser import state_of
 
-SMALL = {"temperature": ({"molecules": 150}, 20), "lifting-dry": ({"molecules": 300, "ascent": 30}, 40)}
+SMALL = {
+    "temperature": ({"molecules": 150}, 20),
+    "lifting-dry": ({"molecules": 300, "ascent": 30}, 40),
+    "evaporation": ({"molecules": 200, "pool": 60}, 20),
+}
 WHEN_IT_IS = "new Promise(done => {{ const look = () => {0} ? done({0}) : setTimeout(look, 50); look(); }})"
 ASK = "document.dispatchEvent(new CustomEvent('ask', {{detail: {0}}}))"
 

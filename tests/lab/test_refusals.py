@@ -10,7 +10,7 @@ from atmosbox.simulation.preparation import prepare
 @pytest.mark.parametrize(
     ("scene", "settings", "engine", "reason"),
     [
-        ("condensation", {"molecules": 500, "drops": 3}, None, "engine of its own"),
+        ("condensation", {"molecules": 500, "drops": 3}, None, "DropSizes"),
         ("attraction", {"start": "slab", "density": 1.0}, None, "Slab"),
         ("temperature", {"molecules": 50}, "dsmc", "exact engine"),
         ("atmosphere", {"start": "uniform"}, None, "start=equilibrium"),

@@ -1,4 +1,4 @@
-"""What is read off the water in a box, as kernels: the sums of the instruments `Water`, `Leaving` and `MoistLift`."""
+"""What is read off the water in a box, as kernels: the sums of `Water`, `Leaving`, `MoistLift` and `Nuclei`."""
 
 import functools
 import math
@@ -28,17 +28,21 @@ __all__ = ["Hygrometer", "WaterReading", "hygrometry"]
 class Hygrometer(NamedTuple):
     """What is kept of the water of a box.
 
-    ``sums : (9,)`` over the samples of a frame, see `Sampled`; ``before : (2,)`` how many had condensed and evaporated
+    ``sums : (10,)`` over the samples of a frame, see `Sampled`; ``before : (2,)`` how many had condensed and evaporated
     at the end of the last frame; ``met : (4,)`` sums over all frames of rate times temperature of the liquid and of the
     gas, of the rate, and how many frames had no liquid.
 
     ``contact : (term,)`` the series of the contact value g in phi / (1 - phi), with which Z = 1 + 4 phi g;
     ``volatility``, ``power``, ``binding`` the law of the vapour pressure, see `Substance`, up to ``critical`` [energy].
 
-    ``log_pressure``, ``adiabat : (place,)`` the temperature of a parcel at a pressure, by theory [energy]; both are
-    empty in a box that does not rise. ``width : (bin,)`` [energy], ``mean``, ``error : (bin,)`` [1/energy] the
-    energies of molecules that left, of which the first ``empty`` lie below the binding energy, and ``merged`` of the
-    engine make one; empty where nobody asks.
+    ``moment``, ``planned : (row,)`` and ``log_pressure : (place,)`` say for which moments of the way, and for which
+    logarithms of the pressure over the planned one, ``adiabat : (row, place)`` gives the temperature of a parcel by
+    theory [energy]; where that depends on the pressure alone, there is one row, and nothing is planned. ``level``,
+    ``around : (place,)`` the virtual temperature of the environment [energy] by the logarithm of its pressure, and
+    ``mass`` of a molecule of water over one of air. All are empty where nobody asks.
+
+    ``width : (bin,)`` [energy], ``mean``, ``error : (bin,)`` [1/energy] the energies of molecules that left, of which
+    the first ``empty`` lie below the binding energy, and ``merged`` of the engine make one; empty where nobody asks.
     """
 
     sums: Any
@@ -49,8 +53,13 @@ class Hygrometer(NamedTuple):
     power: float
     binding: float
     critical: float
+    moment: Any
+    planned: Any
     log_pressure: Any
     adiabat: Any
+    level: Any
+    around: Any
+    mass: float
     width: Any
     mean: Any
     error: Any
@@ -69,7 +78,8 @@ class Sampled(IntEnum):
     RAIN = 5
     PARCEL_LOG_PRESSURE = 6
     ADIABAT = 7
-    NUMBER = 8
+    ROOM_PRESSURE = 8
+    NUMBER = 9
 
 
 class WaterReading(IntEnum):
@@ -96,6 +106,10 @@ class WaterReading(IntEnum):
     ADIABAT = 50
     MIDDLE = 51
     MOLECULES = 52
+    SATURATION_RATIO = 53
+    SALTED_RADIUS = 54
+    PURE_RADIUS = 55
+    BUOYANCY = 56
 
 
 @kernel
@@ -130,6 +144,39 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         return reservoir.energy[THERMAL] / capacity if capacity > 0.0 else math.nan
 
     @kernel
+    def adiabat(time, logarithm, lift, water):
+        """Return the temperature that theory expects of a parcel at a pressure, given by its logarithm [energy]."""
+        moment = interpolate(time, lift.course_time, lift.course_moment)
+        row = 0
+        while row < water.moment.size - 2 and water.moment[row + 1] < moment:
+            row += 1
+        here = interpolate(logarithm - water.planned[row], water.log_pressure, water.adiabat[row])
+        if water.moment.size < 2:
+            return here
+        then = interpolate(logarithm - water.planned[row + 1], water.log_pressure, water.adiabat[row + 1])
+        return here + (then - here) * (moment - water.moment[row]) / (water.moment[row + 1] - water.moment[row])
+
+    @kernel
+    def room(gas, drops, volume):
+        """Return the share of the volume of a box that drops leave to the centres of molecules."""
+        taken = 0.0
+        for k in range(drops.record.size):
+            if drops.alive[k] == 1:
+                reach = gas.kinds.table[modes.drops + k].radius + drops.molecule_radius
+                taken += reach * reach * reach
+        return 1.0 - 4.0 / 3.0 * math.pi * taken / volume
+
+    @kernel
+    def mean_radius(gas, drops, salted):
+        """Return the mean radius of the drops with salt in them, or of those without [length]."""
+        total = number = 0.0
+        for k in range(drops.record.size):
+            if drops.alive[k] == 1 and (drops.solute[k] > 0.0) == salted:
+                total += gas.kinds.table[modes.drops + k].radius
+                number += 1.0
+        return total / number if number > 0.0 else math.nan
+
+    @kernel
     def sample(gas, ascent, book, energy, height, gauges):
         """Read vapour pressure and temperatures, and how much of the water is what."""
         wet, water, box = book.moisture, gauges.water, gas.box
@@ -156,7 +203,10 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
             logarithm = log(density * kT * (1.0 + ascent.lift.measured[0] * density))
             sums[Sampled.PARCEL_LOG_PRESSURE] += logarithm
             if water.adiabat.size > 0:
-                sums[Sampled.ADIABAT] += interpolate(logarithm, water.log_pressure, water.adiabat)
+                sums[Sampled.ADIABAT] += adiabat(gas.walls.epoch[0] + book.now[0], logarithm, ascent.lift, water)
+        if modes.drops > 0:
+            volume = box.length_x * box.length_y * height
+            sums[Sampled.ROOM_PRESSURE] += pressure / room(gas, wet.drops, volume)
 
     @kernel
     def condensed_energy(gas, book):
@@ -246,6 +296,15 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
             reading[WaterReading.PARCEL_PRESSURE] = exp(sums[Sampled.PARCEL_LOG_PRESSURE])
             reading[WaterReading.ADIABAT] = sums[Sampled.ADIABAT]
             reading[WaterReading.MIDDLE] = interpolate(time - 0.5 * lasted, lift.course_time, lift.course_moment)
+            if water.level.size > 0:
+                vapour, held = sums[Sampled.VAPOUR], sums[Sampled.LIQUID]
+                dense = kT * (1.0 + vapour) / (1.0 + water.mass * (vapour + held))
+                beside = interpolate(sums[Sampled.PARCEL_LOG_PRESSURE], water.level, water.around)
+                reading[WaterReading.BUOYANCY] = dense / beside - 1.0
+        if modes.drops > 0:
+            reading[WaterReading.SATURATION_RATIO] = sums[Sampled.ROOM_PRESSURE] / saturation_pressure(liquid, water)
+            reading[WaterReading.SALTED_RADIUS] = mean_radius(gas, wet.drops, True)
+            reading[WaterReading.PURE_RADIUS] = mean_radius(gas, wet.drops, False)
         water.before[0], water.before[1] = count[CONDENSED], count[EVAPORATED]
         sums[:] = 0.0
 

@@ -74,7 +74,10 @@ function between({ grid, curves, otherwise }, value) {
   let high = grid.findIndex((each) => each >= value);
   if (high < 0) high = grid.length - 1;
   const low = Math.max(high - 1, 0), share = high > low ? Math.min((value - grid[low]) / (grid[high] - grid[low]), 1) : 0;
-  const mix = (a, b) => (Array.isArray(a) ? a.map((each, place) => mix(each, b[place])) : a + share * (b - a));
+  const mix = (a, b) => {
+    if (Array.isArray(a)) return a.map((each, place) => mix(each, b[place]));
+    return a === null || b === null ? null : a + share * (b - a);
+  };
   return Object.fromEntries(Object.entries(curves).map(([name, values]) => [name, mix(values[low], values[high])]));
 }
 
