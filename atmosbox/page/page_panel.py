@@ -12,6 +12,9 @@ from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 
 __all__ = ["Meaning", "declared", "names", "panel_record"]
 
+_ALONG = (*ATMOSPHERE_VARIABLES, "liquid_molecule_count")
+"""What the picture of a parcel on its way is made of; a few molecules of liquid are no cloud."""
+
 
 class Meaning(NamedTuple):
     """What a variable is: its unit in the file, and its words."""
@@ -71,7 +74,7 @@ def names(panels: Iterable[Panel]) -> tuple[str, ...]:
     graphs = [panel for panel in panels if panel.kind != "discs"]
     wanted = [name for panel in graphs for name in panel.variables]
     if any(panel.kind == "atmosphere" for panel in graphs):
-        wanted += ATMOSPHERE_VARIABLES
+        wanted += _ALONG
     return tuple(dict.fromkeys(wanted))
 
 
@@ -131,7 +134,7 @@ def panel_record(
         "note": panel.note,
         "across": panel.measured_across,
         "averages": panel.averages,
-        **({"along": ATMOSPHERE_VARIABLES} if panel.kind == "atmosphere" else {}),
+        **({"along": _ALONG} if panel.kind == "atmosphere" else {}),
         "sentences": list(sentences),
         "marks": marks or {},
         **{

@@ -4,6 +4,7 @@ import { curveColour, look, theme } from "./colour.js";
 import { word } from "./words.js";
 
 const CLOUD = 2e-4; // liquid per dry air [kg/kg] of a thin cumulus, from which on a cloud is drawn
+const CLUSTER = 4; // so few molecules of liquid, or fewer, are no cloud: in air of 80 % of humidity there are as many by chance
 const GAP = 0.07; // how high above the mountains the parcel is drawn, in heights of the picture
 const PUFFS = 9; // how many puffs a cloud is wide
 const COLOURS = {
@@ -18,10 +19,10 @@ const FEW = 50;
 export function wayOf(panel, numbers) {
   const time = numbers.get("elapsed_time"), height = numbers.get("parcel_height");
   if (!time?.length || !height?.length) return [];
-  const [temperature, pressure, liquid, rain, humid, base, vapour] = panel.along.map((name) => numbers.get(name) ?? []);
+  const [temperature, pressure, liquid, rain, humid, base, vapour, condensed] = panel.along.map((name) => numbers.get(name) ?? []);
   const humidity = humid.map((share, frame) => (vapour[frame] < FEW * share ? NaN : share));
   const y = height.map((value) => (value === null ? NaN : value / 1000));
-  return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, rain, humidity, base: base[0] ?? Infinity } }];
+  return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, rain, humidity, condensed, base: base[0] ?? Infinity } }];
 }
 
 // Draw the ways of all runs up to a time into a box of the canvas; `up` turns a height into a pixel.
@@ -51,7 +52,7 @@ function placed({ x, y, way }, number, runs, time, box) {
   const across = (place) => (crosses
     ? box.left + box.width * (0.05 + 0.9 * (x[place] - x[0]) / span) : box.left + wide * (number + 0.3));
   // below the measured base there is no cloud, but single clusters of molecules
-  const cloudy = (place) => (way.liquid[place] ?? 0) > CLOUD && !(way.pressure[place] > way.base);
+  const cloudy = (place) => (way.liquid[place] ?? 0) > CLOUD && !(way.condensed[place] <= CLUSTER) && !(way.pressure[place] > way.base);
   return { y, ...way, crosses, across, cloudy, now, wide };
 }
 
