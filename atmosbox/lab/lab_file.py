@@ -15,8 +15,8 @@ from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["lab_text", "save_lab"]
 
-_MOST_BYTES = 185_000
-"""How much memory of boxes at their start a page carries, compressed: with it it stays below 1.5 MB."""
+_MOST_BYTES = 310_000
+"""How much a page carries of its module, its plan, and boxes at their start: with it it stays below 1.5 MB."""
 
 
 def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto", others: bool = True) -> str:

@@ -8,21 +8,31 @@ from __future__ import annotations
 
 import gzip
 import json
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from atmosbox.errors import AtmosboxError
 from atmosbox.lab.lab_plan import lab_plan
+from atmosbox.lab.wasm_module import module_bytes
+from atmosbox.live.lesson import lesson_of
 from atmosbox.simulation.preparation import Prepared, prepare
 
-__all__ = ["Start", "lab_starts"]
+__all__ = ["AS_WRITTEN", "Start", "lab_starts"]
 
+AS_WRITTEN = "as the page was written"
+"""What leads back from a preset."""
 _TIMES = (0.5, 2.0, 0.25, 4.0)
 """The other numbers of molecules, over that of the page; those that find no room are left out."""
 
 
 class Start(NamedTuple):
-    """A box at its start: its plan, and its memory."""
+    """A box at its start: what the page calls it, its plan, and its memory.
 
+    ``key`` is the number of molecules, or the title of a preset; ``is_chosen`` is true of the one for which the page is
+    written.
+    """
+
+    key: str
     plan: dict[str, Any]
     memory: bytes
     is_chosen: bool
@@ -31,9 +41,9 @@ class Start(NamedTuple):
         """Return what is compressed: of the start for which the page is written, the plan stands in the page itself."""
         return self.memory if self.is_chosen else self._text() + self.memory
 
-    def size(self) -> list[int]:
-        """Return the number of molecules, and how many bytes plan and memory have."""
-        return [int(self.plan["molecules"]), len(self._text()), len(self.memory)]
+    def size(self) -> list[Any]:
+        """Return what the page calls it, and how many bytes plan and memory have."""
+        return [self.key, len(self._text()), len(self.memory)]
 
     def _text(self) -> bytes:
         return json.dumps(self.plan, separators=(",", ":")).encode("utf-8")
@@ -42,15 +52,15 @@ class Start(NamedTuple):
 def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
     """Return the starts of the page of a scene, that of its own settings first, and the name of the module of all.
 
-    The others have half as many molecules, twice as many, and so on, and only those are offered whose box runs with the
-    same kernels.
+    The others are the presets of the scene, then half as many molecules, twice as many, and so on. Only those are
+    offered whose box runs with the same kernels.
 
     Parameters
     ----------
     prepared
         The scene.
     most
-        How many bytes all starts may take together, compressed; the first is there in any case, and alone if it is 0.
+        How many bytes module and starts may take; the first start is there in any case, and alone if this is 0.
 
     Raises
     ------
@@ -59,43 +69,61 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
 
     Examples
     --------
-    >>> [start.plan["molecules"] for start in lab_starts(prepare("temperature", {"molecules": 20}), 60_000)[0]]
-    [20, 10, 40]
+    >>> found, _ = lab_starts(prepare("temperature", {"molecules": 20}), 105_000)
+    >>> [start.key for start in found]
+    ['20', 'Desert at noon']
     """
     plan, memory, box = lab_plan(prepared)
-    made = [Start(plan, _content(memory), True)]
+    made = [Start(str(plan["molecules"]), plan, _content(memory), True)]
     settings = prepared.settings
-    room = most - len(gzip.compress(made[0].stored(), 9))
-    number = getattr(settings, "molecules", 0)
-    for times in _TIMES if most and number else ():
-        changed = {"seed": settings.seed, "molecules": round(times * number)}
+    room = most - len(module_bytes(box.module, prepared.scene)) - len(gzip.compress(made[0].stored(), 9))
+    room -= 3 * made[0].size()[1] // 4  # its plan stands in the page as it is, and four letters there are three bytes
+    presets: list[str] = []
+    for title, values in _others(prepared) if most else ():
         try:
-            other = prepare(prepared.scene, settings.changed() | changed)
-            plan, memory, its_box = lab_plan(other)
+            plan, memory, its_box = lab_plan(prepare(prepared.scene, settings.changed() | values))
         except AtmosboxError:  # not every scene can have every number
             continue
-        start = Start(plan, _content(memory), False)
+        start = Start(title or str(plan["molecules"]), plan, _content(memory), False)
         size = len(gzip.compress(start.stored(), 9))
         if its_box.module == box.module and size <= room:
             room -= size
             made.append(start)
-    offered = sorted(start.plan["molecules"] for start in made)
-    if len(made) > 1:
-        for start in made:
-            particles = f"{start.plan['told']['stage']['particle']}s"
-            start.plan["told"]["controls"].append(
+            presets += [title] if title else []
+    _offer(made, presets)
+    return made, box.module
+
+
+def _others(prepared: Prepared) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield title and settings of what else a page may offer; a number of molecules has no title."""
+    seed = prepared.settings.seed
+    for preset in lesson_of(prepared.module).presets:
+        yield preset.title, {"seed": seed, **preset.values}
+    number = getattr(prepared.settings, "molecules", 0)
+    for times in _TIMES if number else ():
+        yield "", {"seed": seed, "molecules": round(times * number)}
+
+
+def _offer(made: list[Start], presets: list[str]) -> None:
+    """Tell all starts which others there are."""
+    numbers = sorted(int(start.key) for start in made if start.key not in presets)
+    for start in made:
+        told = start.plan["told"]
+        told["lesson"]["presets"] = [AS_WRITTEN, *presets] if presets else []
+        if len(numbers) > 1:
+            particles = f"{told['stage']['particle']}s"
+            told["controls"].append(
                 {
                     "name": "molecules",
                     "label": f"number of {particles}",
                     "unit": "",
                     "kind": "choice",
-                    "choices": [str(number) for number in offered],
+                    "choices": [str(number) for number in numbers],
                     "value": str(start.plan["molecules"]),
                     "restarts": True,
                     "help": f"{particles}: the box begins anew with so many",
                 }
             )
-    return made, box.module
 
 
 def _content(memory: Any) -> bytes:

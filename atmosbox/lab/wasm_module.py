@@ -11,7 +11,7 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import code_of
 from atmosbox.errors import EngineError
 
-__all__ = ["FOLDER", "SCENES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
+__all__ = ["FOLDER", "SCENES", "WORKSHEETS", "module_bytes", "module_name", "source_stamp", "stamp_of"]
 
 FOLDER = Path(__file__).parent / "modules"
 SCENES: dict[str, dict[str, Any]] = {
@@ -30,6 +30,11 @@ SCENES: dict[str, dict[str, Any]] = {
     "nuclei": {"molecules": 1500},
 }
 """The shipped scenes that a page can run, with the settings that they need for it, or for a page of 1.5 MB."""
+WORKSHEETS: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("lifting-dry", {"rotation": False}),
+    ("diffusion", {"molecules": 4000, "mass_ratio": 10}),
+)
+"""What worksheets ask for beside these, and needs kernels of its own."""
 
 
 def module_name(modes: Any, *, wells: bool = False) -> str:

@@ -50,13 +50,12 @@ def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        ``graph``, blank where it is that of the row before, ``curve`` with its unit, and ``lines``: of each run its
-        letter, what is read off, what theory says, and the difference.
+        ``graph``, ``curve`` with its unit, and ``lines``: of each run its letter, what is read off, what theory says,
+        and the difference.
     """
     prepared = runs[0].prepared
     panels = prepared.module.panels
     found = []
-    before = None
     for panel in panels(prepared.settings) if callable(panels) else panels:
         for line in panel.lines if panel.kind in ("line", "profile", "histogram") else ():
             if line.role != "data" or not _known(line.y):
@@ -65,8 +64,7 @@ def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
             curve = f"{line.label}{_where(panel, line)}{f' [{unit}]' if unit else ''}"
             theory = _theory(panel, line)
             lines = [_line(run, panel, line, theory) for run in runs]
-            found.append({"graph": "" if panel is before else panel.title, "curve": curve, "lines": lines})
-            before = panel
+            found.append({"graph": panel.title, "curve": curve, "lines": lines})
     return found
 
 

@@ -222,7 +222,7 @@ class _Layout:
             [("VALIGN", (0, 0), (-1, -1), "BOTTOM"), ("LEFTPADDING", (0, 0), (0, 0), 0.0),
              ("RIGHTPADDING", (-1, 0), (-1, 0), 0.0), ("LINEBELOW", (0, 0), (-1, -1), 0.8, (0, 0, 0))],
         )  # fmt: skip
-        about = self.marked(f"`atmosbox run {sheet.scene}` · {sheet.about}", self.small)
+        about = self.marked(f"`{'' if sheet.lab else 'atmosbox run '}{sheet.scene}` · {sheet.about}", self.small)
         parts: list[list[Flowable]] = []
         headed = False
         for kind, flowable in self.blocks(PARSER.parse(sheet.text)):
@@ -286,8 +286,9 @@ class _Layout:
         from reportlab.platypus import Paragraph
 
         texts = [as_paragraph(cell.children or (), self.cell.fontSize) for cell in cells]
-        (_, _, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
-        rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in ("quantity, with its formula", *names)]]
+        (what, below_it, *names), *lines = [texts[first : first + 6] for first in range(0, len(texts), 6)]
+        headed = "quantity, with its formula" if what == "quantity" else f"{what}, and which {below_it}"
+        rows = [[Paragraph(f"<b>{name}</b>", self.cell) for name in (headed, *names)]]
         style: list[Any] = [
             ("GRID", (0, 0), (-1, -1), 0.4, (GREY,) * 3), ("VALIGN", (0, 0), (-1, -1), "MIDDLE"),
             ("TOPPADDING", (0, 0), (-1, -1), 1.5), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.0),

@@ -57,6 +57,8 @@ class Worksheet:
         What of its runs disagrees with theory, a sentence each.
     runs
         Its runs, of which a sheet for pages needs a page each.
+    lab
+        Whether it is a sheet for pages.
     """
 
     scene: str
@@ -66,6 +68,7 @@ class Worksheet:
     answers: bool
     disagreements: tuple[str, ...] = ()
     runs: tuple[Trial, ...] = ()
+    lab: bool = False
 
 
 def worksheet(
@@ -218,7 +221,7 @@ def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool,
         remarks=[*remarks, *([_WITH_CARE] if differs else [])] if answers else [], ticked=answers and not differs,
     )  # fmt: skip
     text = re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
-    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements), tuple(runs))
+    return Worksheet(first.scene, title, about, text, answers, tuple(disagreements), tuple(runs), lab)
 
 
 def _about(first: runner.Prepared, answers: bool) -> str:

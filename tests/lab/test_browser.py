@@ -287,24 +287,30 @@ def test_walls_that_are_warmed_become_smooth_again_when_that_is_taken_back(lab):
     assert (told[10:] < 300.0).all()  # what a pool cools to that nobody warms
 
 
-def test_another_number_of_molecules_begins_the_run_that_python_begins_with_it(lab):
-    shown = lab("temperature", {"molecules": 100, "seed": 3}, others=True)
+def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begins_with_them(lab):
+    shown = lab("elastic-collisions", {"molecules": 40, "seed": 3}, others=True)
     first = shown.digest()
-    shown.page.click("details summary:has-text('settings')")
-    shown.page.locator("select", has=shown.page.locator("option[value='400']")).select_option("400")
-    shown.ask(type="frames", value=10)
-    setup = build(prepare("temperature", {"molecules": 400, "seed": 3}))
-    for frame in range(10):
-        for sample in range(1, setup.samples + 1):
-            setup.parcel.advance(setup.moment(frame, sample))
-    assert setup.parcel.contacts > 50
-    assert shown.digest() == state_of(setup.parcel)
-    about, table = shown.table()
-    assert len(table) == 10
-    assert any("molecules=400" in line for line in about)
+
+    def runs_as_python_with(**settings):
+        shown.ask(type="frames", value=10)
+        setup = build(prepare("elastic-collisions", {"seed": 3, **settings}))
+        for frame in range(10):
+            for sample in range(1, setup.samples + 1):
+                setup.parcel.advance(setup.moment(frame, sample))
+        assert setup.parcel.contacts > 5
+        assert shown.digest() == state_of(setup.parcel)
+        about, table = shown.table()
+        assert len(table) == 10
+        return about[0]
+
+    shown.page.locator("select", has=shown.page.locator("option[value='160']")).select_option("160")
+    assert "molecules=160" in runs_as_python_with(molecules=160)
     shown.ask(type="set", name="molecules", value="123")
-    assert "25, 50, 100, 200, 400" in shown.note()
-    shown.ask(type="set", name="molecules", value="100")
+    assert "10, 20, 40, 80, 160" in shown.note()
+    presets = shown.page.locator("#presets")
+    presets.select_option(label="Boulders among pebbles")
+    assert "mass_ratio=1000" in runs_as_python_with(molecules=40, mass_ratio=1000)
+    presets.select_option(label="as the page was written")
     assert shown.digest() == first
 
 

@@ -47,23 +47,23 @@ class Machine {
   }
 }
 
-// The starts of a page, by number of molecules: the plan of each, and what its memory holds.
+// The starts of a page, by number of molecules or by title: the plan of each, and what its memory holds.
 class Starts {
   static async of({ plan, module, image }) {
     const stored = await inflated(bytesOf(image)), found = new Map();
     let at = plan.pieces.reduce((sum, [, length]) => sum + length, 0);
     found.set(String(plan.molecules), () => ({ plan, stored }));
-    for (const [molecules, said, held] of plan.others) {
+    for (const [key, said, held] of plan.others) {
       const from = at;
-      found.set(String(molecules), () => ({ plan: JSON.parse(new TextDecoder().decode(stored.subarray(from, from + said))),
+      found.set(key, () => ({ plan: JSON.parse(new TextDecoder().decode(stored.subarray(from, from + said))),
         stored: stored.subarray(from + said, from + said + held) }));
       at += said + held;
     }
-    return Object.assign(new Starts(), { found, module: await WebAssembly.compile(await inflated(bytesOf(module))) });
+    return Object.assign(new Starts(), { found, first: String(plan.molecules), module: await WebAssembly.compile(await inflated(bytesOf(module))) });
   }
 
-  async machine(molecules) {
-    return Machine.of(this.module, this.found.get(String(molecules))());
+  async machine(key) {
+    return Machine.of(this.module, this.found.get(String(key))());
   }
 }
 

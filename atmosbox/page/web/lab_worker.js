@@ -214,6 +214,7 @@ class Box {
   async obey(message) {
     const { type, value, name } = message;
     if (type === "set" && name === "molecules") await this.choose(value);
+    else if (type === "preset") await this.try(message.number);
     else if (type === "play") {
       if (this.failed) this.again();
       this.finished = false;
@@ -240,11 +241,20 @@ class Box {
 
   // Begin anew with another number of molecules, which is another box.
   async choose(molecules) {
-    if (!this.starts.found.has(String(molecules))) {
-      refuse(`molecules = ${molecules} is none of ${[...this.starts.found.keys()].sort((a, b) => a - b).join(", ")}: give one of these.`);
+    const { choices = [] } = this.told.controls.find(({ name }) => name === "molecules") ?? {};
+    if (!choices.includes(String(molecules))) {
+      refuse(`molecules = ${molecules} is none of ${choices.join(", ")}: give one of these.`);
       return;
     }
     this.take(await this.starts.machine(molecules));
+    this.again();
+  }
+
+  // Begin a preset, or, by the first of the list, what the page was written for.
+  async try(number) {
+    const titles = this.told.lesson.presets;
+    if (!(number in titles)) return;
+    this.take(await this.starts.machine(number === 0 ? this.starts.first : titles[number]));
     this.again();
   }
 
