@@ -10,7 +10,15 @@ from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
 from atmosbox.lab.memory_image import BASE, Image, image
-from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE, fixed_axes, leaving_energies, moist_knob, water_readings
+from atmosbox.lab.moist_plan import (
+    DROP_STATE,
+    WET_STATE,
+    fixed_axes,
+    leaving_energies,
+    moist_knob,
+    planned_alone,
+    water_readings,
+)
 from atmosbox.lab.seeding import is_the_seed_all, without_molecules
 from atmosbox.lab.theory_table import short_run, tables
 from atmosbox.lab.well_bench import drop_readings, has_bath
@@ -120,6 +128,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "profiles": _profiles(box),
         "fixed": _fixed(box),
         "tables": [] if box.attracts else tables(prepared, setup, known),
+        "planned": planned_alone(box),
         "knobs": numbers,
         "command": _command(prepared),
         "seeded": is_seeded,

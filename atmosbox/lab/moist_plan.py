@@ -31,6 +31,7 @@ __all__ = [
     "leaving_energies",
     "moist_knob",
     "moist_tables",
+    "planned_alone",
     "water_readings",
 ]
 
@@ -109,6 +110,15 @@ def fixed_axes(box: Bench) -> dict[str, Any]:
     leaving, nuclei = _instrument(box.setup, Leaving), _instrument(box.setup, Nuclei)
     found = {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
     return found if nuclei is None else found | {"radius": plain(nuclei._radius)}
+
+
+def planned_alone(box: Bench) -> list[str]:
+    """Return which curves of theory hold for a parcel on its planned way alone: where it rains, what has been lost."""
+    parcel: Any = box.setup.parcel
+    if not box.modes.phases or _instrument(box.setup, MoistLift) is None or not parcel._reservoir.rain > 0.0:
+        return []
+    mixing = [f"{name}_mixing_ratio_theory" for name in ("humidity", "cloud_liquid_water", "rain")]
+    return ["adiabat_temperature", *mixing]
 
 
 def moist_knob(knob: Knob, told: dict[str, float], scale: Scale) -> dict[str, Any]:

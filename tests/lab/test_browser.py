@@ -232,6 +232,20 @@ def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab)
     assert table["parcel_temperature"][-1] == pytest.approx(278.4, abs=15.0)
 
 
+def test_theory_of_rain_ends_where_a_parcel_is_led_by_hand(lab):
+    shown = lab("mountains", {"molecules": 200, "travel": 20})
+    shown.ask(type="frames", value=40)
+    shown.ask(type="set", name="way", value=5.0)
+    shown.ask(type="frames", value=80)
+    shown.digest()  # answers when the frames are through
+    _, table = shown.table()
+    assert table["parcel_height"][-1] < 0.2 * table["parcel_height"][:40].max()
+    for name in ("adiabat_temperature", "rain_mixing_ratio_theory"):
+        assert np.isfinite(table[name][:40]).all()
+        assert np.isnan(table[name][40:]).all()
+    assert np.isfinite(table["dry_air_adiabat_temperature"]).all()
+
+
 def test_the_temperature_of_the_walls_acts_and_the_saved_table_says_so(lab):
     shown = lab("temperature", {"molecules": 250})
     shown.ask(type="frames", value=60)

@@ -48,7 +48,7 @@ class Box {
     if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
     machine.call("begin");
     machine.call("begin_averages_anew");
-    Object.assign(this, { now: 0, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],
+    Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],
       trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
     this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
   }
@@ -139,6 +139,7 @@ class Box {
         if (!Array.isArray(value)) row[name] = times?.[name] ? value * row[times[name]] : value;
       }
     }
+    if (this.led) for (const name of plan.planned) row[name] = NaN;
     this.trace.add(row);
     if (!plan.ends || this.frame !== plan.frames) return true;
     Object.assign(this, { playing: false, finished: true });
@@ -299,6 +300,7 @@ class Box {
     }
     this.machine.call("begin_averages_anew");
     this.since = this.frame + 1;
+    this.led ||= knob.kernel === "lead";
     this.knobs[name] = value;
     if (this.finished) Object.assign(this, { playing: true, finished: false }); // it rests only because its way was at an end
     this.turned.push(`# at time ${this.now * this.plan.time}: ${name} = ${value} ${unit}`);
