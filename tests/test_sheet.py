@@ -1,5 +1,7 @@
 """Sheets: every scene has one that fills two pages, with commands that run, units, and answers from its own runs."""
 
+import base64
+import gzip
 import io
 import os
 import re
@@ -545,7 +547,8 @@ def test_pages_are_written_beside_their_sheet_or_nothing_is(tmp_path):
     assert told.exit_code == 0, told.output
     pages = [tmp_path / f"elastic-collisions-{letter}.html" for letter in "ABC"]
     assert told.stdout.split() == [str(path) for path in (out, *pages)]
-    assert "mass_ratio=1000.0 --seed 1" in pages[1].read_text(encoding="utf-8")
+    stored = re.search(r'id="stored"[^>]*>([^<]+)<', pages[1].read_text(encoding="utf-8"))[1]
+    assert b"mass_ratio=1000.0 --seed 1" in gzip.decompress(base64.b64decode(stored))
 
 
 def test_a_sheet_for_pages_is_refused_where_its_runs_have_none(tmp_path):

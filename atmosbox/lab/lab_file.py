@@ -16,7 +16,7 @@ from atmosbox.simulation.preparation import Prepared
 __all__ = ["lab_text", "save_lab"]
 
 _MOST_BYTES = 310_000
-"""How much a page carries of its module, its plan, and boxes at their start: with it it stays below 1.5 MB."""
+"""How much a page carries of its module and of boxes at their start, compressed: with it it stays below 1.5 MB."""
 
 
 def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto", others: bool = True) -> str:
@@ -37,8 +37,8 @@ def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto",
     module = module_bytes(needed, prepared.scene)
     stored = gzip.compress(b"".join(each.stored() for each in starts), 9, mtime=0)
     packed = (base64.b64encode(each).decode("ascii") for each in (module, stored))
-    plan = starts[0].plan | {"others": [each.size() for each in starts[1:]]}
-    return lab_page(plan, *packed, theme=theme, language=language)
+    title = str(starts[0].plan["told"]["stage"]["title"])
+    return lab_page(title, [each.size() for each in starts], *packed, theme=theme, language=language)
 
 
 def save_lab(

@@ -26,20 +26,15 @@ _TIMES = (0.5, 2.0, 0.25, 4.0)
 
 
 class Start(NamedTuple):
-    """A box at its start: what the page calls it, its plan, and its memory.
-
-    ``key`` is the number of molecules, or the title of a preset; ``is_chosen`` is true of the one for which the page is
-    written.
-    """
+    """A box at its start: what the page calls it, its number of molecules or the title of a preset; plan and memory."""
 
     key: str
     plan: dict[str, Any]
     memory: bytes
-    is_chosen: bool
 
     def stored(self) -> bytes:
-        """Return what is compressed: of the start for which the page is written, the plan stands in the page itself."""
-        return self.memory if self.is_chosen else self._text() + self.memory
+        """Return what is compressed: plan and memory."""
+        return self._text() + self.memory
 
     def size(self) -> list[Any]:
         """Return what the page calls it, and how many bytes plan and memory have."""
@@ -69,22 +64,21 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
 
     Examples
     --------
-    >>> found, _ = lab_starts(prepare("temperature", {"molecules": 20}), 105_000)
+    >>> found, _ = lab_starts(prepare("temperature", {"molecules": 20}), 80_000)
     >>> [start.key for start in found]
     ['20', 'Desert at noon']
     """
     plan, memory, box = lab_plan(prepared)
-    made = [Start(str(plan["molecules"]), plan, _content(memory), True)]
+    made = [Start(str(plan["molecules"]), plan, _content(memory))]
     settings = prepared.settings
     room = most - len(module_bytes(box.module, prepared.scene)) - len(gzip.compress(made[0].stored(), 9))
-    room -= 3 * made[0].size()[1] // 4  # its plan stands in the page as it is, and four letters there are three bytes
     presets: list[str] = []
     for title, values in _others(prepared) if most else ():
         try:
             plan, memory, its_box = lab_plan(prepare(prepared.scene, settings.changed() | values))
         except AtmosboxError:  # not every scene can have every number
             continue
-        start = Start(title or str(plan["molecules"]), plan, _content(memory), False)
+        start = Start(title or str(plan["molecules"]), plan, _content(memory))
         size = len(gzip.compress(start.stored(), 9))
         if its_box.module == box.module and size <= room:
             room -= size

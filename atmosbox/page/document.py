@@ -105,15 +105,19 @@ def live_page(*, theme: str = "auto", language: str = "auto") -> str:
     return _document("live", "atmosbox live", theme, language, [])
 
 
-def lab_page(plan: Mapping[str, Any], module: str, image: str, *, theme: str = "auto", language: str = "auto") -> str:
+def lab_page(
+    title: str, starts: Sequence[Any], module: str, stored: str, *, theme: str = "auto", language: str = "auto"
+) -> str:
     """Return the page in which a box runs, complete.
 
     Parameters
     ----------
-    plan : mapping
-        What the page must know of its engine: see `atmosbox.lab`.
-    module, image : str
-        The engine and its memory, each compressed and in base64.
+    title : str
+        Of the scene.
+    starts : sequence
+        Of each start that the page offers what it is called, and how many bytes its plan and its memory have.
+    module, stored : str
+        The engine, and plans and memories of all starts: see `atmosbox.lab`; each compressed and in base64.
     theme : {"auto", "light", "dark"}
         Its colours.
     language : {"auto", "en", "de", "es"}
@@ -126,17 +130,17 @@ def lab_page(plan: Mapping[str, Any], module: str, image: str, *, theme: str = "
 
     Examples
     --------
-    >>> "WebAssembly" in lab_page({"told": {"stage": {"title": "Air"}}}, "AA==", "AA==")
+    >>> "WebAssembly" in lab_page("Air", [["20", 5, 9]], "AA==", "AA==")
     True
     """
     engine = "\n".join(_text("web", name) for name in ("lab_machine.js", "lab_worker.js"))
     data = [
-        _block("plan", "application/json", _json(plan)),
+        _block("starts", "application/json", _json(starts)),
         _block("module", "text/plain", module),
-        _block("image", "text/plain", image),
+        _block("stored", "text/plain", stored),
         _block("worker", "text/plain", _inline(engine)),
     ]
-    return _document("lab", str(plan["told"]["stage"]["title"]), theme, language, data)
+    return _document("lab", title, theme, language, data)
 
 
 @functools.cache

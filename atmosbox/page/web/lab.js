@@ -22,7 +22,7 @@ export class Bench {
       else hear(data);
     };
     this.worker.onerror = ({ message }) => hear({ type: "note", level: "error", text: message });
-    this.worker.postMessage({ type: "begin", plan: JSON.parse(read("plan")), module: read("module"), image: read("image") });
+    this.worker.postMessage({ type: "begin", starts: JSON.parse(read("starts")), module: read("module"), stored: read("stored") });
     document.addEventListener("visibilitychange", () => this.say({ type: "watched", is: !document.hidden }));
     state("open");
   }

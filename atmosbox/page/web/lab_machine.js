@@ -49,17 +49,16 @@ class Machine {
 
 // The starts of a page, by number of molecules or by title: the plan of each, and what its memory holds.
 class Starts {
-  static async of({ plan, module, image }) {
-    const stored = await inflated(bytesOf(image)), found = new Map();
-    let at = plan.pieces.reduce((sum, [, length]) => sum + length, 0);
-    found.set(String(plan.molecules), () => ({ plan, stored }));
-    for (const [key, said, held] of plan.others) {
+  static async of({ starts, module, stored }) {
+    const all = await inflated(bytesOf(stored)), found = new Map();
+    let at = 0;
+    for (const [key, said, held] of starts) {
       const from = at;
-      found.set(key, () => ({ plan: JSON.parse(new TextDecoder().decode(stored.subarray(from, from + said))),
-        stored: stored.subarray(from + said, from + said + held) }));
+      found.set(key, () => ({ plan: JSON.parse(new TextDecoder().decode(all.subarray(from, from + said))),
+        stored: all.subarray(from + said, from + said + held) }));
       at += said + held;
     }
-    return Object.assign(new Starts(), { found, first: String(plan.molecules), module: await WebAssembly.compile(await inflated(bytesOf(module))) });
+    return Object.assign(new Starts(), { found, first: starts[0][0], module: await WebAssembly.compile(await inflated(bytesOf(module))) });
   }
 
   async machine(key) {

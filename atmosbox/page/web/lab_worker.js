@@ -343,7 +343,7 @@ async function hear(data) {
   try {
     if (data.type === "begin") {
       const starts = await Starts.of(data);
-      box = new Box(starts, await starts.machine(data.plan.molecules));
+      box = new Box(starts, await starts.machine(starts.first));
     } else await box?.obey(data);
   } catch (error) {
     refuse(`The engine of this page has stopped: ${error.message}`);
