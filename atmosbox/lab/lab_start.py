@@ -47,8 +47,8 @@ class Start(NamedTuple):
 def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
     """Return the starts of the page of a scene, that of its own settings first, and the name of the module of all.
 
-    The others are the presets of the scene, then half as many molecules, twice as many, and so on. Only those are
-    offered whose box runs with the same kernels.
+    The others are half as many molecules and twice as many, the presets of the scene, then a quarter and four times as
+    many molecules. Only those are offered whose box runs with the same kernels.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
     --------
     >>> found, _ = lab_starts(prepare("temperature", {"molecules": 20}), 80_000)
     >>> [start.key for start in found]
-    ['20', 'Desert at noon']
+    ['20', '10']
     """
     plan, memory, box = lab_plan(prepared)
     made = [Start(str(plan["molecules"]), plan, _content(memory))]
@@ -91,11 +91,12 @@ def lab_starts(prepared: Prepared, most: int) -> tuple[list[Start], str]:
 def _others(prepared: Prepared) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield title and settings of what else a page may offer; a number of molecules has no title."""
     seed = prepared.settings.seed
+    number = getattr(prepared.settings, "molecules", 0)
+    numbers = [("", {"seed": seed, "molecules": round(times * number)}) for times in _TIMES if number]
+    yield from numbers[:2]
     for preset in lesson_of(prepared.module).presets:
         yield preset.title, {"seed": seed, **preset.values}
-    number = getattr(prepared.settings, "molecules", 0)
-    for times in _TIMES if number else ():
-        yield "", {"seed": seed, "molecules": round(times * number)}
+    yield from numbers[2:]
 
 
 def _offer(made: list[Start], presets: list[str]) -> None:
