@@ -8,6 +8,7 @@ from atmosbox import theory
 from atmosbox.plot.theme import DARK, DATA_COLOURS
 from atmosbox.simulation import runner
 from atmosbox.simulation.runner import Outcome
+from tests.oracle.stirred_kinetic import stirred_profiles
 
 RATES = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 SHOWN = (1.0, 100.0)
@@ -68,6 +69,10 @@ def stirring(found: Findings) -> None:
     fast = curves[True][-1]
     warmer = fast.dataset.layer_temperature - fast.dataset.layer_temperature_theory
     found.number("warmer", rounded(float(warmer.mean()), 2))
+    many = stirred(100.0, rotation=True, molecules=16_000).dataset
+    found.number("warmer-many", rounded(float((many.layer_temperature - many.layer_temperature_theory).mean()), 2))
+    column = stirred_profiles(0.02, 100.0, 5)
+    found.number("warmer-kinetic", rounded(288.15 * float((column.kinetic - column.fourier)[30:-30].mean()), 2))
     settled = fast.dataset.isel(elapsed_time=slice(len(fast.dataset.elapsed_time) // 3, None))
     work, heat = (
         float(each[-1] - each[0]) for each in (settled.work_by_stirring, -settled.heat_from_wall.sel(wall="z_low"))

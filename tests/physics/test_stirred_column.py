@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 
+from atmosbox import scenarios
 from atmosbox.errors import SettingError
 from atmosbox.scene.statistics import block_average
 from atmosbox.simulation import runner
@@ -17,6 +18,7 @@ from atmosbox.simulation.verification import verify
 from atmosbox.theory import stirred_column, thin_gas_conductivity
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR, STANDARD_GRAVITY
 from tests.oracle.heat_conduction import conduction_of_rotating_spheres
+from tests.oracle.stirred_kinetic import lapse, stirred_profiles
 from tests.oracle.weak_stirring import gradient_of_weak_stirring
 
 STIRS = {"parcel": 0.05, "lifts": (0.15, 0.35)}
@@ -81,6 +83,22 @@ def test_rotation_makes_spheres_conduct_five_quarters():
     assert abs(factor - 1.25) < 4.0 * error
     both = [thin_gas_conductivity(1.0, 1.0, 0.3, freedom) for freedom in (3, 5)]
     assert both[1] / both[0] == pytest.approx(1.25)
+
+
+@pytest.mark.parametrize("freedom", [3, 5])
+def test_what_the_headline_allows_is_what_the_kinetic_equation_says_fouriers_law_leaves_out(freedom):
+    """Molecules that have not met for long carry less heat: the column comes nearer to the adiabat than by Fourier."""
+    allowed = scenarios.load("atmosphere").FOURIER
+    shares = []
+    for knudsen in (0.02, 0.05, 0.33):
+        for stirring in (0.3, 1.0, 30.0):
+            kinetic, fourier = lapse(stirred_profiles(knudsen, stirring, freedom, layers=60, points=4))
+            reached, taken = stirring / (1.0 + stirring), 1.0 / (1.0 + stirring)
+            shares.append(0.5 * (freedom + 2.0) * (kinetic - fourier) / (knudsen * reached * taken))
+    assert 1.0 < min(shares) < max(shares) < allowed
+    assert max(shares) > 0.75 * allowed or freedom == 5
+    near = stirred_profiles(0.0005, 1.0, freedom, layers=60, points=4)
+    assert near.kinetic == pytest.approx(near.fourier, abs=1e-4)
 
 
 # ---------------------------------------------------------------------- the scene
@@ -181,6 +199,22 @@ def test_the_curve_of_the_lapse_rate_is_that_of_theory(stirring, rotation):
     values = np.array([lapse_of(outcome) for outcome in outcomes])
     error = math.hypot(*values[:, 1]) / len(outcomes)
     assert abs(values[:, 0].mean() - values[0, 2]) <= 4.0 * error + values[0, 3]
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("rotation", [True, False])
+def test_stirred_air_is_warmer_than_by_fouriers_law_as_the_kinetic_equation_says(rotation):
+    """At all heights alike, once what parcels of few molecules add, which goes as 1 / N, is taken away."""
+    warmer = []
+    for molecules in (4000, 16000):
+        found = run(stirring=100, rotation=rotation, molecules=molecules, duration=300).dataset
+        above = found.layer_temperature.values - found.layer_temperature_theory.values
+        warmer.append(above.mean())
+        assert abs(above[3:12].mean() - above[-12:-3].mean()) < 0.5 * above.mean()
+    many = (4.0 * warmer[1] - warmer[0]) / 3.0
+    assert warmer[0] > warmer[1] > many
+    column = stirred_profiles(0.02, 100.0, 5 if rotation else 3)
+    assert many == pytest.approx(288.15 * (column.kinetic - column.fourier)[30:-30].mean(), rel=0.3)
 
 
 @pytest.mark.validate
