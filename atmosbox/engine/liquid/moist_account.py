@@ -6,6 +6,7 @@ from abc import abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.engine.core.elementary import log
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.parcel import Array, Parcel
 from atmosbox.engine.core.refusal import RefusedError
@@ -119,7 +120,7 @@ class MoistAccount(Parcel):
             raise RefusedError("the liquid of this box is no pool that could be covered: make it a Pool")
         share = number(share, "open share of the pool", least=0.0, most=1.0)
         sticking, log_rate = self._uncovered
-        leaves = max(math.log(share), _NEVER) if share > 0.0 else _NEVER
+        leaves = max(float(log(share)), _NEVER) if share > 0.0 else _NEVER
         self._reservoir = self._reservoir._replace(sticking=sticking * share, log_rate=log_rate + leaves)
         self._reservoir_changes()
 
