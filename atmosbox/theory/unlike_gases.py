@@ -6,7 +6,7 @@ import functools
 import math
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.legendre import leggauss, legval
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
@@ -113,12 +113,10 @@ def _equation(mass_ratio: float) -> tuple[FloatArray, FloatArray, FloatArray]:
 
     The polynomials are :math:`c^l P_l(\cos\vartheta) L_p^{(l + 1/2)}(m c^2 / 2)`, products are means over both gases.
     """
-    from scipy import special  # loads slowly
-
     mass, share, size = (1.0, mass_ratio), 0.5, 2 * _ORDER
     whole = (_SHAPES + 1) * size
     collide, stream, norm = np.zeros((whole, whole)), np.zeros((whole, whole)), np.zeros(whole)
-    energy, chance = special.roots_genlaguerre(_ORDER + _SHAPES + 2, 0.5)
+    energy, chance = _laguerre_points(_ORDER + _SHAPES + 2, 0.5)
     chance = chance / chance.sum()
     order = np.arange(_ORDER)
     for harmonic in range(_SHAPES + 1):
@@ -126,13 +124,13 @@ def _equation(mass_ratio: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         collide[block, block] = _collisions(mass, share, harmonic)
         for gas, one in enumerate(mass):
             here = slice(harmonic * size + gas * _ORDER, harmonic * size + (gas + 1) * _ORDER)
-            powers = special.gamma(order + harmonic + 1.5) / special.gamma(order + 1.0) / special.gamma(1.5)
+            powers = np.array([math.gamma(p + harmonic + 1.5) / math.gamma(p + 1.0) for p in order]) / math.gamma(1.5)
             norm[here] = share * (2.0 / one) ** harmonic * powers / (2 * harmonic + 1)
             if harmonic > 0:
                 below = slice(here.start - size, here.stop - size)
                 above, under = (
-                    np.array([special.eval_genlaguerre(p, shape + 0.5, energy) for p in order])
-                    for shape in (harmonic, harmonic - 1)
+                    np.array([_laguerre(p, shape, energy) for p in range(_ORDER)])
+                    for shape in (harmonic + 0.5, harmonic - 0.5)
                 )
                 angle = share * harmonic / ((2.0 * harmonic - 1.0) * (2.0 * harmonic + 1.0))
                 stream[here, below] = angle * (above * (chance * (2.0 * energy / one) ** harmonic)) @ under.T
@@ -158,14 +156,12 @@ def _of_pairs(mass: tuple[float, float], harmonic: int) -> FloatArray:
     Hard spheres part in any direction with the same chance, in the system of their centre of mass. So of each
     polynomial the mean over that direction is left, :math:`\bar X`, which points along the velocity of the centre.
     """
-    from scipy import special  # loads slowly
-
     total = mass[0] + mass[1]
     reduced = mass[0] * mass[1] / total
     points = harmonic + 2 * _ORDER  # then all integrals are exact
-    nodes, of_centre = special.roots_genlaguerre(points, 0.5)
+    nodes, of_centre = _laguerre_points(points, 0.5)
     centre = np.sqrt(2.0 * nodes / total)[:, None, None]
-    nodes, of_speed = special.roots_genlaguerre(points, 1.0)
+    nodes, of_speed = _laguerre_points(points, 1.0)
     speed = np.sqrt(2.0 * nodes / reduced)[None, :, None]
     cosine, of_angle = leggauss(points)
     weight = np.multiply.outer(of_centre / of_centre.sum(), of_speed / of_speed.sum())
@@ -180,16 +176,41 @@ def _of_pairs(mass: tuple[float, float], harmonic: int) -> FloatArray:
     sizes = [np.hypot(*velocity) for velocity in velocities]
     polynomials, means = [], []
     for (_, along), size, one in zip(velocities, sizes, mass, strict=True):
-        turned = special.eval_legendre(harmonic, along / size)
-        each = [
-            size**harmonic * special.eval_genlaguerre(p, harmonic + 0.5, 0.5 * one * size**2) for p in range(_ORDER)
-        ]
+        turned = _legendre(harmonic, along / size)
+        each = [size**harmonic * _laguerre(p, harmonic + 0.5, 0.5 * one * size**2) for p in range(_ORDER)]
         polynomials.append(np.array(each).reshape(_ORDER, -1))
         means.append(np.array([(x * turned) @ of_angle for x in each]).reshape(_ORDER, -1))
     between = (velocities[0][0] * velocities[1][0] + velocities[0][1] * velocities[1][1]) / (sizes[0] * sizes[1])
     chance = np.multiply.outer(weight, of_angle).ravel()
-    turned = special.eval_legendre(harmonic, between).ravel() * chance
+    turned = _legendre(harmonic, between).ravel() * chance
     rows = [[(polynomials[a] * (chance if a == b else turned)) @ polynomials[b].T for b in range(2)] for a in range(2)]
     mean = np.concatenate(means)
     rate = math.pi * math.sqrt(8.0 / (math.pi * reduced))
     return np.asarray(rate / (2 * harmonic + 1) * (np.block(rows) - (mean * weight.ravel()) @ mean.T))
+
+
+# As scipy has them, which takes longer to load than all else that a scene says of itself.
+
+
+def _laguerre_points(number: int, alpha: float) -> tuple[FloatArray, FloatArray]:
+    r"""Return where and how heavy the points are that integrate :math:`x^\alpha e^{-x}` times a polynomial.
+
+    They are the eigenvalues of a matrix (Golub and Welsch 1969, doi:10.1090/S0025-5718-69-99647-1).
+    """
+    order = np.arange(number)
+    beside = np.sqrt(order[1:] * (order[1:] + alpha))
+    points, vectors = np.linalg.eigh(np.diag(2.0 * order + alpha + 1.0) + np.diag(beside, 1) + np.diag(beside, -1))
+    return points, math.gamma(alpha + 1.0) * vectors[0] ** 2
+
+
+def _laguerre(number: int, alpha: float, x: FloatArray) -> FloatArray:
+    r"""Return the polynomial :math:`L_n^{(\alpha)}(x)`."""
+    before, now = np.zeros_like(x), np.ones_like(x)
+    for n in range(number):
+        before, now = now, ((2.0 * n + 1.0 + alpha - x) * now - (n + alpha) * before) / (n + 1.0)
+    return now
+
+
+def _legendre(number: int, x: FloatArray) -> FloatArray:
+    """Return the polynomial :math:`P_n(x)`."""
+    return np.asarray(legval(x, [0.0] * number + [1.0]))

@@ -66,7 +66,7 @@ def test_the_boltzmann_equation_has_the_known_coefficients_of_hard_spheres():
 
 def test_the_second_approximation_is_that_of_chapman_and_cowling(monkeypatch):
     # as Marrero and Mason (1972, doi:10.1063/1.3253094) write it, for rigid spheres
-    monkeypatch.setattr(unlike_gases, "_ORDER", 2)
+    monkeypatch.setitem(law.diffusivity_factor.__globals__, "_ORDER", 2)
     first, second = 1.0, 10.0
     total, product = first + second, 4.0 * first * second / (first + second) ** 2
     numerator = 15.0 * (1.0 - product) + 2.0 * product
