@@ -95,7 +95,7 @@ def test_the_third_virial_coefficient_is_seen_by_itself(kT, packing, time):
     """B3 = (Z - 1 - B2 rho) / rho^2 - B4 rho, to 15 %, in 3 standard errors.
 
     With N molecules that neither come nor go, Z differs by (rho / 2N) d ln(dp/drho) / d rho from that of many, at
-    T* = 1 by a third of what B3 makes. B3 is small there: at half the density it would take five times as long.
+    T* = 1 by half of what B3 makes. B3 is small there: at half the density it would take five times as long.
     """
     number, density = 500, packing * 6.0 / math.pi
     gas = well_gas(number, density, kT, rate=1.5, seed=7)
