@@ -13,7 +13,6 @@ by ``go(steps)``, in parallel where ``par``, and counts collisions in ``out[thre
 import argparse
 import gc
 import importlib
-import json
 import math
 import resource
 import sys
@@ -23,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured_on import keep
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -153,8 +153,7 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
                 )
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     print(f"\nMost memory of the process, Python and what the start is made from included: {peak / 1e9:.2f} GB")
-    if asked.json:
-        asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    keep(asked.json, results)
     return results
 
 

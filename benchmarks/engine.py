@@ -12,7 +12,6 @@ which advances equal spheres of unit diameter by ``go(nc=collisions)`` and count
 import argparse
 import gc
 import importlib
-import json
 import math
 import os
 import subprocess
@@ -24,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured_on import keep
 
 sys.path.insert(0, os.environ.get("ATMOSBOX_CHECKOUT", str(Path(__file__).resolve().parents[1])))
 
@@ -218,8 +218,7 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
                     f"| {r['bytes_per_molecule']:.0f} |",
                     flush=True,
                 )
-    if asked.json:
-        asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    keep(asked.json, results)
     return results
 
 

@@ -43,6 +43,7 @@ from types import FrameType
 from typing import Any
 
 import numpy as np
+from measured_on import keep
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -473,8 +474,7 @@ def main(arguments: list[str] | None = None) -> None:
     else:
         result = measure(asked)
         show(result)
-        if asked.json:
-            asked.json.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+        keep(asked.json, result)
 
 
 if __name__ == "__main__":

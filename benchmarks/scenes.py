@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured_on import keep
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("start", "compile", "build", "kernel", "files")
@@ -142,8 +143,7 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
         results.append(result)
         shares = " | ".join(f"{result[key]:.2f}" for key in ("cpu", "wall", *PARTS))
         print(f"| {scene} | {shares} | {beside} |", flush=True)
-    if asked.json:
-        asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    keep(asked.json, results)
     return results
 
 

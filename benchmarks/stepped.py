@@ -12,7 +12,6 @@ all), and advances them by ``go(steps)``. With more than one thread, wall time i
 import argparse
 import gc
 import importlib
-import json
 import math
 import sys
 import time
@@ -22,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured_on import keep
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -119,8 +119,7 @@ def main(arguments: list[str] | None = None) -> list[dict[str, Any]]:
                         f"| {beside} | {r['bytes_per_molecule']:.0f} |",
                         flush=True,
                     )
-    if asked.json:
-        asked.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    keep(asked.json, results)
     return results
 
 

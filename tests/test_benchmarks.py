@@ -29,7 +29,9 @@ def run(script, *arguments):
 def test_the_pace_of_the_engine_is_measured(tmp_path):
     file = tmp_path / "engine.json"
     printed = run("engine.py", "--n", 100, "--phi", 0.01, "--cases", "periodic", "--repeats", 1, "--json", file)
-    (result,) = json.loads(file.read_text())
+    told = json.loads(file.read_text())
+    (result,) = told["results"]
+    assert set(told["measured_on"]) == {"date", "processor", "processors", "python", "numba"}
     assert "| periodic | 0.01 | 100 |" in printed
     assert result["collisions_per_second"] > 0.0
     assert 0.0 < result["bytes_per_molecule"] < 2000.0
@@ -40,7 +42,7 @@ def test_whole_runs_are_timed_in_turns_with_another_checkout(tmp_path):
     file = tmp_path / "scenes.json"
     asked = ("elastic-collisions", "--set", "duration=2s", "--repeats", 1, "--against", ROOT, "--json", file)
     printed = run("scenes.py", *asked)
-    (result,) = json.loads(file.read_text())
+    (result,) = json.loads(file.read_text())["results"]
     assert "| elastic-collisions | " in printed
     assert 0.2 < result["ratio"] < 5.0
     parts = [result[part] for part in ("start", "compile", "build", "kernel", "files")]
@@ -52,7 +54,9 @@ def test_whole_runs_are_timed_in_turns_with_another_checkout(tmp_path):
 def features():
     specification = importlib.util.spec_from_file_location("features", ROOT / "benchmarks" / "features.py")
     module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(ROOT / "benchmarks")
+        specification.loader.exec_module(module)
     return module
 
 
@@ -105,7 +109,7 @@ def test_the_cost_of_features_is_measured(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")  # compiling eleven engines would take minutes
     file = tmp_path / "features.json"
     run("features.py", "--trial", "--n", 20, "--processes", 2, "--repeats", 1, "--span", 1, "--json", file)
-    result = json.loads(file.read_text())
+    result = json.loads(file.read_text())["results"]
     assert set(result["off"]) == {"nothing", *Modes._fields}
     for each in result["on"].values():
         assert each["shows"] in ("", *each["modes"])

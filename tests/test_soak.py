@@ -13,7 +13,7 @@ from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 
 pytestmark = pytest.mark.soak
 
-CONTACTS = 1e9  # of all exact boxes together
+CONTACTS = 1.2e9  # of all exact boxes together
 WATER = Substance(mass=0.62, diameter=1.0, rotation=3.0, binding_energy=4.0, heat_capacity=9.0, volatility=1.0)
 SMOOTH = (Specular(),) * 5
 
@@ -30,6 +30,11 @@ def column(fraction):
     x, v, side = gas(fraction)
     walls = (Periodic(),) * 4 + (HeatBath(1.0), HeatBath(1.5))
     return ParcelSet(x, v, length=(side,) * 3, walls=walls, gravity=0.05, rotation=2.0, rotational_energy=1.0)
+
+
+def crowded():
+    x, v, side = gas(0.49)
+    return ParcelSet(x, v, length=(side,) * 3, walls=(Periodic(),) * 6)
 
 
 def baths():
@@ -51,6 +56,7 @@ BOXES = {
     "dilute column": lambda: column(0.01),
     "column": lambda: column(0.1),
     "dense column": lambda: column(0.3),
+    "periodic, nearly frozen": crowded,
     "six baths": baths,
     "piston": lifted,
     "mist under a piston": mist,

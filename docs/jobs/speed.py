@@ -1,5 +1,6 @@
 """How fast the engine is, as the benchmarks have measured it."""
 
+import datetime
 import json
 from typing import Any
 
@@ -10,28 +11,34 @@ CASES = {"periodic": "periodic box", "gravity": "gravity between heat baths"}
 
 
 def results(name: str) -> Any:
-    """Return what a benchmark has written, or None."""
-    path = FOLDER / f"{name}.json"
-    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+    """Return what a benchmark has written."""
+    return told(name)["results"]
+
+
+def told(name: str) -> Any:
+    """Return what a benchmark has written, with the machine that it ran on."""
+    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def machine(name: str) -> str:
+    """Return when and on what a benchmark ran."""
+    on = told(name)["measured_on"]
+    date = datetime.date.fromisoformat(on["date"])
+    return f"{date.day} {date:%B %Y}, {on['processor']}, Python {on['python']}, numba {on['numba']}"
 
 
 @job("speed", quick=True)
 def speed(found: Findings) -> None:
     """Make the tables of what the benchmarks have measured."""
     paces, features = results("engine"), results("features")
-    if paces is None:
-        found.text("`python benchmarks/engine.py` measures it.")
-    else:
-        rows = [
-            [CASES[r["case"]], f"{r['packing_fraction']:g}", f"{r['molecules']:,}",
-             f"{r['collisions_per_second'] / 1e3:.0f}", f"{r['bytes_per_molecule']:.0f}"] for r in paces
-        ]  # fmt: skip
-        head = ["gas", "packing fraction", "molecules", "thousand collisions per CPU second", "bytes per molecule"]
-        found.table(head, rows)
-    if features is None:
-        for key in ("features", "instruments"):
-            found.text("`python benchmarks/features.py` measures it.", key=key)
-        return
+    rows = [
+        [CASES[r["case"]], f"{r['packing_fraction']:g}", f"{r['molecules']:,}",
+         f"{r['collisions_per_second'] / 1e3:.0f}", f"{r['ratio']:.2f}", f"{r['bytes_per_molecule']:.0f}"]
+        for r in paces
+    ]  # fmt: skip
+    head = ["gas", "packing fraction", "molecules", "thousand collisions per CPU second", "over the pace without rows"]
+    found.table([*head, "bytes per molecule"], rows)
+    found.number("machine", machine("engine"))
     off = features["off"]
     rows = []
     for name, each in features["on"].items():
@@ -61,6 +68,20 @@ def speed(found: Findings) -> None:
 def ratio(each: dict[str, float]) -> str:
     """Return a ratio with its standard error."""
     return f"{each['ratio']:.3f} ± {each['error']:.3f}"
+
+
+@job("waiting", quick=True)
+def waiting(found: Findings) -> None:
+    """Make the table of what a class waits for."""
+    warm, cold = ({r["scene"]: r for r in results(name)} for name in ("scenes", "scenes-first"))
+    rows = [
+        [f"[{scene}](scenes/{scene}.md)", *(f"{each[part]:.1f}" for part in ("cpu", "wall", "start", "kernel")),
+         f"{each['compile'] + each['build'] + each['files']:.1f}", f"{cold[scene]['cpu']:.0f}"]
+        for scene, each in warm.items()
+    ]  # fmt: skip
+    head = ["scene", "processor time [s]", "wall time [s]", "start-up", "engine", "measuring and files", "first run [s]"]
+    found.table(head, rows)
+    found.number("machine", machine("scenes"))
 
 
 @job("pace-in-steps", quick=True)
