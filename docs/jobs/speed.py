@@ -73,13 +73,13 @@ def ratio(each: dict[str, float]) -> str:
 @job("waiting", quick=True)
 def waiting(found: Findings) -> None:
     """Make the table of what a class waits for."""
-    warm, cold = ({r["scene"]: r for r in results(name)} for name in ("scenes", "scenes-first"))
     rows = [
-        [f"[{scene}](scenes/{scene}.md)", *(f"{each[part]:.1f}" for part in ("cpu", "wall", "start", "kernel")),
-         f"{each['compile'] + each['build'] + each['files']:.1f}", f"{cold[scene]['cpu']:.0f}"]
-        for scene, each in warm.items()
+        [f"[{each['scene']}](scenes/{each['scene']}.md)",
+         *(f"{each[part]:.1f}" for part in ("cpu", "wall", "start", "kernel")),
+         f"{each['compile'] + each['build'] + each['files']:.1f}"]
+        for each in results("scenes")
     ]  # fmt: skip
-    head = ["scene", "processor time [s]", "wall time [s]", "start-up", "engine", "measuring and files", "first run [s]"]
+    head = ["scene", "processor time [s]", "wall time [s]", "start-up", "engine", "measuring and files"]
     found.table(head, rows)
     found.number("machine", machine("scenes"))
 
