@@ -23,11 +23,13 @@ PHYSICS = ("engine", "theory", "scene", "simulation")
 MET_BY = {
     "scene/knob.py": "live",
     "scene/sounding": "lifting-sounding",
+    "simulation/accuracy": "trade",
     "simulation/continuation.py": None,
     "simulation/restart.py": None,
 }
 """Which scenario or room a job must name or import so that a part of the physics changes its numbers: knobs are turned
-by hand, and a run that goes on from a saved state ends in the same bits as one that was never stopped."""
+by hand, a run that goes on from a saved state ends in the same bits as one that was never stopped, and the measured
+trade chooses only for those who wish for an accuracy."""
 LAYOUT = ("registry", "drawing")
 """Files of jobs that only lay out what the others find."""
 
