@@ -27,9 +27,9 @@ from atmosbox import scenarios  # noqa: E402
 from atmosbox.errors import AtmosboxError  # noqa: E402
 from atmosbox.file.netcdf import read  # noqa: E402
 from atmosbox.file.provenance import parameters  # noqa: E402
-from atmosbox.scene import engines  # noqa: E402
 from atmosbox.scene.parameter import Parameter  # noqa: E402
 from atmosbox.simulation.accuracy import said  # noqa: E402
+from atmosbox.simulation.preparation import usual_engine  # noqa: E402
 from atmosbox.simulation.runner import LEDGER_LIMIT  # noqa: E402
 from atmosbox.trade import tradeoff  # noqa: E402
 from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
@@ -80,7 +80,8 @@ def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
         key = json.dumps([way["engine"], settings], sort_keys=True)
         if key not in found or found[key]["members"] < members:  # two series may share a run
             found[key] = way
-    default = found.get(json.dumps([str(engines.EXACT), {}]))
+    usual = usual_engine(module, module.Settings())
+    default = found.get(json.dumps([str(usual), {}]))
     if default is None:
         raise AtmosboxError("The scene's default run did not run often enough: give a longer --budget.")
     seconds = default["cost"]

@@ -1,6 +1,6 @@
 """Why the air does not fly away, and why it thins with height.
 
-Three thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the
+Ten thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the
 floor. They fall, and within some minutes density and pressure decrease with height by the barometric law, by a factor
 e every 8.4 km; the means leave these minutes out. Each molecule falls freely between collisions, and yet the column
 neither lies down on the floor nor leaves. The molecules hit the floor, and the force on the floor minus that on the
@@ -17,14 +17,14 @@ faster than molecules conduct heat, the air cools by g/c_p with height, 9.8 K in
 suits it: molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in equilibrium,
 duration 300.
 
-Modelled: hard spheres in uniform gravity, exact parabolas, periodic sides, a floor that is a heat bath or
-smooth, a smooth ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Left out: water,
-wind, sunshine. Each
-molecule stands for some 10^34 real ones and is a hundred metres wide or more, so that it meets others within a
-stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it becomes for
-molecules so wide: they exclude volume from each other, and no centre comes nearer to floor or ceiling than its radius,
-so that a part of the lowest and of the highest layer is empty. With ``plane`` the air is discs in a plane, and a slab
-one scale height thick stands for the third dimension.
+Modelled: spheres in uniform gravity, exact parabolas, hard if they are 5,000 or fewer (of more, those that collide
+are drawn at random, as often as spheres would meet), periodic sides, a floor that is a heat bath or smooth, a smooth
+ceiling; with ``rotation`` molecules that rotate, which changes no profile at rest. Left out: water, wind, sunshine.
+Each molecule stands for some 10^33 real ones or more and is some 70 metres wide or more, so that it meets others
+within a stated share of the scale height (the Knudsen number). Beside the textbook's barometric law stands what it
+becomes for molecules so wide: hard ones exclude volume from each other, and no centre comes nearer to floor or
+ceiling than its radius, so that a part of the lowest and of the highest layer is empty. With ``plane`` the air is
+discs in a plane, and a slab one scale height thick stands for the third dimension.
 """
 
 import math
@@ -57,7 +57,7 @@ from atmosbox.scene import (
     Stirrer,
     setting,
 )
-from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.instruments.stirrer import weighted_slope
 from atmosbox.scene.knob import gravity, wall_temperature
@@ -105,12 +105,12 @@ tests/oracle): 1.5 to 7.7 for Knudsen numbers of 0.02 to 0.33, stirring of 0.3 t
 """
 
 ladder = (
-    Series("exact", "duration", (50, 100, 200, 400)),
-    Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2), {"duration": 50}),
-    Series("dsmc", "duration", (50, 100, 200, 400)),
-    Series("dsmc", "molecules", (3000, 10000, 30000), {"duration": 100}),
-    Series("exact", "duration", (50, 100), {"plane": True, "knudsen": 0.05}),
-    Series("classic", "delta", (8, 4, 2), {"plane": True, "knudsen": 0.05, "duration": 50}),
+    Series("exact", "duration", (50, 100, 200, 400), {"molecules": 3000}),
+    Series("stepped", "delta", (1.6, 0.8, 0.4, 0.2), {"molecules": 3000, "duration": 50}),
+    Series("dsmc", "duration", (50, 100, 200, 400), {"molecules": 3000}),
+    Series("dsmc", "molecules", (3000, 10_000, 30_000)),
+    Series("exact", "duration", (50, 100), {"molecules": 3000, "plane": True, "knudsen": 0.05}),
+    Series("classic", "delta", (8, 4, 2), {"molecules": 3000, "plane": True, "knudsen": 0.05, "duration": 50}),
 )
 """What is worth comparing: a column at rest is hardly sensitive to errors, except to a fall that makes energy."""
 
@@ -118,7 +118,7 @@ ladder = (
 class Settings(SceneSettings):
     """What a user may set."""
 
-    molecules: int = setting(3000, "1", "number of molecules", low=50, high=1_000_000)
+    molecules: int = setting(10_000, "1", "number of molecules", low=50, high=1_000_000)
     temperature: float = setting(
         288.15, "K", "temperature of the floor, and of the air at the start", low=10.0, high=2000.0
     )
@@ -338,8 +338,10 @@ def _settled(column: Column, settings: Settings) -> int:
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the column runs unless another is asked for: where it is stirred, one that can."""
-    return "dsmc" if settings.stirring else "exact"
+    """Return the engine on which the column runs unless another is asked for: one that can."""
+    if settings.stirring:
+        return "dsmc"
+    return "exact" if settings.plane else suited(settings.molecules)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

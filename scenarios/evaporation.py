@@ -9,11 +9,12 @@ The curve e_s(T) is put in: the volatility of the liquid, its binding energy and
 from it. What the run shows is that two rates, counted independently, meet there; that the air plays no part; that
 the pool cools first and the air follows; and how much so few molecules scatter.
 
-Modelled: hard molecules of air and water of real size and density under a piston that keeps the pressure; a pool
-on the floor. Every molecule of vapour that hits the pool sticks; molecules of air exchange heat with it; molecules
-of water leave it at a rate that depends on its energy. Left out: ice, gravity, currents within the pool, which has
-one temperature and no volume; forces between molecules of vapour. At this size no layer of moist air builds up over
-the pool, and no wind is needed to remove it.
+Modelled: molecules of air and water of real size and density under a piston that keeps the pressure, hard spheres if
+they are 5,000 or fewer (of more, those that collide are drawn at random); a pool on the floor. Every molecule of
+vapour that hits the pool sticks; molecules of air exchange heat with it; molecules of water leave it at a rate that
+depends on its energy. Left out: ice, gravity, currents within the pool, which has one temperature and no volume;
+forces between molecules of vapour. At this size no layer of moist air builds up over the pool, and no wind is needed
+to remove it.
 """
 
 import math
@@ -38,7 +39,7 @@ from atmosbox.scene import (
     block_average,
     setting,
 )
-from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.engines import EXACT, suited, used
 from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, history, temperature_of_those_that_left
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import open_pool, warmed_walls
@@ -121,6 +122,11 @@ def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
     return AirOverPool(
         settings.molecules, settings.pool, si.diameter, si.temperature, si.pressure, vapour_pressure, ideal
     )
+
+
+def usual_engine(settings: Settings) -> str:
+    """Return the engine on which the scene runs unless another is asked for."""
+    return suited(settings.molecules)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

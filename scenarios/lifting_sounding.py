@@ -4,11 +4,12 @@ The air at the ground is lifted through the air that a balloon has found above i
 environment, it must be pushed; above the level of free convection its cloud is warmer, and it rises by itself, up to
 the equilibrium level. The area between the two curves is the energy that a storm can have.
 
-Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the air;
-the environment as it was measured, hydrostatic; buoyancy of density temperatures. Reversible: the droplets stay in
-the parcel, and their weight counts; with rain=on the cloud holds a gram per kilogram. Left out: ice, the curvature of
-droplets; mixing with the environment, which weakens every real cloud; the parcel's own motion: it is lifted at a
-steady rate, whatever its buoyancy. Exaggerated: some ten kilometres are climbed within nanoseconds.
+Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
+at random; droplets too fine to draw, of one temperature, carried along by the air; the environment as it was
+measured, hydrostatic; buoyancy of density temperatures. Reversible: the droplets stay in the parcel, and their
+weight counts; with rain=on the cloud holds a gram per kilogram. Left out: ice, the curvature of droplets; mixing
+with the environment, which weakens every real cloud; the parcel's own motion: it is lifted at a steady rate,
+whatever its buoyancy. Exaggerated: some ten kilometres are climbed within nanoseconds.
 """
 
 import functools
@@ -29,7 +30,7 @@ from atmosbox.scene.ascent import (
     refuse_descent,
     rise,
 )
-from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.engines import EXACT, suited, used
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,9 +42,9 @@ BUILT_IN = "weisman-klemp"
 
 
 ladder = (
-    Series("exact", "ascent", (200, 400, 800)),
-    Series("exact", "molecules", (6000,)),
-    Series("dsmc", "ascent", (400, 800)),
+    Series("exact", "ascent", (200, 400)),
+    Series("exact", "molecules", (5000,), {"ascent": 400}),
+    Series("dsmc", "ascent", (200, 400, 1400)),
 )
 """What is worth comparing: a fast ascent ends too warm, and few molecules scatter."""
 
@@ -52,11 +53,11 @@ class Settings(SceneSettings):
     """What a user may set."""
 
     sounding: str = setting(BUILT_IN, "", "file of a sounding, or weisman-klemp for the analytic one")
-    molecules: int = setting(20_000, "1", "number of molecules in the parcel", low=200, high=1_000_000)
+    molecules: int = setting(30_000, "1", "number of molecules in the parcel", low=200, high=1_000_000)
     top_pressure: float = setting(150.0, "hPa", "pressure at which the ascent ends", low=50.0, high=900.0)
     rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
-    ascent: float = setting(800.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)
+    ascent: float = setting(1400.0, "1", "length of the ascent in mean free times at its start", low=20.0, high=1e6)
     area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
@@ -116,6 +117,11 @@ def _ascent(settings: Settings) -> MoistAscent:
         area=settings.area,
         most_liquid=settings.si.cloud_water if settings.rain else math.inf,
     )
+
+
+def usual_engine(settings: Settings) -> str:
+    """Return the engine on which the scene runs unless another is asked for."""
+    return suited(settings.molecules)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:

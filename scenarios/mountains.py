@@ -5,12 +5,14 @@ plain again. On the way up its vapour condenses and warms it; part of the water 
 cloud is left evaporates, and from there the parcel warms by ten degrees in a kilometre: more than it had cooled.
 Without rain it would arrive as it set out.
 
-Modelled: hard molecules of air and water; droplets too fine to draw, of one temperature, carried along by the
-air; rain, which takes what liquid the cloud cannot hold with its heat. Left out: ice, the curvature of droplets and
-what is dissolved in them; the wind, mixing with the environment, heat from the ground and from the sun. Exaggerated:
-eight kilometres up and down within nanoseconds.
+Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
+at random; droplets too fine to draw, of one temperature, carried along by the air; rain, which takes what liquid the
+cloud cannot hold with its heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind,
+mixing with the environment, heat from the ground and from the sun. Exaggerated: eight kilometres up and down within
+nanoseconds.
 """
 
+import functools
 import math
 from typing import TYPE_CHECKING
 
@@ -29,7 +31,7 @@ from atmosbox.scene.ascent import (
     rise,
     temperature_covariance,
 )
-from atmosbox.scene.engines import EXACT, used
+from atmosbox.scene.engines import EXACT, suited, used
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,9 +43,8 @@ BLOCK = 6
 
 
 ladder = (
-    Series("exact", "travel", (125, 250, 500)),
-    Series("exact", "molecules", (10_000,)),
-    Series("dsmc", "travel", (250, 500)),
+    Series("exact", "travel", (150, 300)),
+    Series("dsmc", "travel", (150, 300, 600, 1200)),
 )
 """What is worth comparing: a fast journey ends too warm, and few molecules scatter."""
 
@@ -61,7 +62,7 @@ class Settings(SceneSettings):
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
-    travel: float = setting(500.0, "1", "length of the way in mean free times at its start", low=20.0, high=1e6)
+    travel: float = setting(600.0, "1", "length of the way in mean free times at its start", low=20.0, high=1e6)
     area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
@@ -89,6 +90,7 @@ def _height(settings: Settings, share: float) -> float:
     return float(places[k] + (places[k + 1] - places[k]) * 0.5 * (1.0 - math.cos(math.pi * part)))
 
 
+@functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the way, by theory."""
     si = settings.si
@@ -106,6 +108,11 @@ def _ascent(settings: Settings) -> MoistAscent:
         area=settings.area,
         most_liquid=si.cloud_water if settings.rain else math.inf,
     )
+
+
+def usual_engine(settings: Settings) -> str:
+    """Return the engine on which the scene runs unless another is asked for."""
+    return suited(settings.molecules)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
@@ -139,13 +146,11 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         return ()
     misfit = dataset.parcel_temperature.values - dataset.adiabat_temperature.values
     path, ideal = ascent.planned[1], used(dataset).ideal
-    arrival, cold = float(path.temperature[-1]), float(path.temperature.min())
+    arrival = float(path.temperature[-1])
     late = slice(-BLOCK, None)
     outside = dataset.environment_pressure.values
     chance = temperature_covariance(along_frames(ascent, outside, FRAMES, SAMPLES, ideal=ideal), SAMPLES)[late, late]
     rains = "rain_mixing_ratio" in dataset
-    lost = finite_size.rain_scatter(ascent) if rains else 0.0
-    scatter = math.hypot(arrival * math.sqrt(chance.mean()), finite_size.warmth_of(lost, cold))
     known = finite_size.drift(ascent, ideal=ideal)
     more = finite_size.rained(ascent) if rains else path
     warmer = float(known.warmer[-1]) + max(float(more.temperature[-1]) - arrival, 0.0)
@@ -153,7 +158,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         Headline(
             "arrival_temperature",
             arrival + float(misfit[late].mean()),
-            scatter,
+            arrival * math.sqrt(chance.mean()),
             arrival if finite_size.comparable(ascent) else None,
             max(warmer, float(known.colder[-1])),
             "the way is not infinitely slow, some molecules are clustered in clear air, and a cloud that scatters "
@@ -168,7 +173,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             Headline(
                 "rain",
                 float(dataset.rain_mixing_ratio[-1]),
-                lost,
+                finite_size.rain_scatter(ascent),
                 float(path.rain[-1]) if finite_size.comparable(ascent) else None,
                 abs(float(more.rain[-1]) - float(path.rain[-1])),
                 "the liquid of so few molecules scatters, and a surplus rains",

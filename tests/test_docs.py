@@ -2,7 +2,6 @@
 
 import importlib.util
 import itertools
-import json
 import os
 import re
 import shlex
@@ -13,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from atmosbox import scenarios
-from atmosbox.file.netcdf import read
 from atmosbox.simulation import runner
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -117,16 +115,3 @@ def test_every_run_that_a_page_suggests_is_understood(page):
             settings = dict(word.split("=", 1) for word in given)
             changed = runner.prepare(scene, settings).settings.changed().keys()
             assert changed <= settings.keys() or "stirring" in settings  # which brings other settings along
-
-
-def test_the_scene_of_the_own_scene_page_is_the_example_and_runs_as_the_page_says(tmp_path):
-    text = (DOCS / "own-scene.md").read_text(encoding="utf-8")
-    shown = next(block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "class Settings" in block)
-    assert shown.rstrip() == (DOCS / "examples" / "my_scene.py").read_text(encoding="utf-8").rstrip()
-    (tmp_path / "my_scene.py").write_text(shown, encoding="utf-8")
-    command = next(words for words in commands(DOCS / "own-scene.md") if words[0].endswith(".py"))
-    typed = [sys.executable, "-m", "atmosbox", "run", *command, "--json"]
-    done = subprocess.run(typed, cwd=tmp_path, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=True)
-    (headline,) = json.loads(done.stdout)["headlines"]
-    assert headline["agrees"]
-    assert all(check.passed for check in runner.verify(read(tmp_path / "my_scene.nc")))

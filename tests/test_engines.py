@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from atmosbox.cli import app
 from atmosbox.engine import CoarseStepWarning, Parcel
 from atmosbox.errors import SettingError, UnknownSettingError
-from atmosbox.scene.engines import ENGINES, EXACT, choose, used
+from atmosbox.scene.engines import ENGINES, EXACT, FEW, choose, used
 from atmosbox.simulation import runner
 
 
@@ -98,6 +98,17 @@ def test_without_collisions_nobody_meets_and_theory_counts_no_room():
     assert not made.collision_count.values.any()
     assert made.wall_hit_count.values[-1] > 0
     assert used(made).ideal is True
+
+
+@pytest.mark.parametrize("scene", ["atmosphere", "evaporation", "lifting-moist", "lifting-sounding", "mountains"])
+def test_many_molecules_of_a_thin_gas_run_on_dsmc_and_few_on_the_exact_engine(scene):
+    as_it_comes, many, few = (
+        runner.prepare(scene, given) for given in ({}, {"molecules": FEW + 1}, {"molecules": FEW})
+    )
+    assert [each.engine.name for each in (as_it_comes, many, few)] == ["dsmc", "dsmc", "exact"]
+    assert {each.unusual_engine for each in (as_it_comes, many, few)} == {""}
+    asked = runner.prepare(scene, {}, engine="exact")
+    assert (str(asked.engine), asked.unusual_engine) == ("exact", "exact")
 
 
 def test_an_engine_that_cannot_do_a_scene_says_why(tmp_path, monkeypatch):

@@ -7,8 +7,8 @@ that errors are too large. Where the model states a known error, the mean may be
 of an F distribution of n and 12 n degrees.
 
 The cheap tier does so in small boxes, in a few seconds each. With ``--validate`` each scene runs 60 times as it comes:
-of one processor half a minute for temperature and discs, five to ten minutes for atmosphere, lifting-dry, condensation
-and evaporation, and half an hour for each moist ascent, two hours in all. Nothing slips through: a headline that
+of one processor one or two minutes for temperature, discs, atmosphere, evaporation and lifting-dry, and five or six for
+condensation and each moist ascent, half an hour in all. Nothing slips through: a headline that
 states no error must be among those known to have none, and every headline that a scene names must be seen in a case.
 """
 
@@ -130,7 +130,8 @@ def assert_profiles_are_covered(outcomes, names):
         if (beside := PROFILES.get(name)) in outcomes[0].dataset:  # a parcel is at another pressure in each run
             values = values - np.array([o.dataset[beside].values for o in outcomes])
         known = np.isfinite(values).all(axis=0) & np.isfinite(errors).all(axis=0) & (errors > 0.0).any(axis=0)
-        known &= np.ptp(values, axis=0) > 0.0  # where one gas has not come in any run there is no scatter to compare
+        if name.startswith("left_gas_share_"):  # where one gas has not come in any run there is no scatter to compare
+            known &= (values > 0.0).any(axis=0) & (values < 1.0).any(axis=0)
         assert known.any()
         values, errors = values[:, known], errors[:, known]
         apart = (values - values.mean(axis=0)) / np.sqrt(np.mean(errors**2, axis=0))

@@ -81,7 +81,7 @@ def oldest_processor(folder):
 
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 def test_the_oldest_processor_would_end_in_the_same_state(tmp_path):
-    names = ("lifting-dry",)
+    names = ("temperature",)
     assert digests(*names, **oldest_processor(tmp_path)) == known(*names)
 
 

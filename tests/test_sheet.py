@@ -558,3 +558,12 @@ def test_a_sheet_for_pages_is_refused_where_its_runs_have_none(tmp_path):
     assert told.exit_code == 2
     assert "exact engine" in told.output
     assert not list(tmp_path.iterdir())
+
+
+def test_pages_of_a_scene_that_runs_on_dsmc_by_itself_hold_the_exact_engine_and_the_sheet_says_so(tmp_path):
+    out = tmp_path / "sheet.md"
+    many = ["--set", "molecules=5200", "--set", "pool=200"]
+    told = CliRunner().invoke(app, ["sheet", "evaporation", "--lab", *many, "--out", str(out)])
+    assert told.exit_code == 0, told.output
+    assert "engine exact" in out.read_text(encoding="utf-8")
+    assert len(list(tmp_path.glob("evaporation-*.html"))) == 3

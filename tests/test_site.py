@@ -20,6 +20,7 @@ from atmosbox import scenarios
 from atmosbox.file.netcdf import read
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import prepare
+from atmosbox.simulation.verification import verify
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -82,7 +83,8 @@ def site(request, tmp_path_factory):
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", str(folder / "trees")]
     if not request.config.getoption("--validate"):
         command += ["-D", "nb_execution_mode=off"]
-    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", str(DOCS), str(folder / "site")]
+    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", "-D", "gallery_film=1"]
+    command += [str(DOCS), str(folder / "site")]
     done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=False)
     said = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("[IPKernelApp] WARNING")]
     return folder / "site", "\n".join(said), done.returncode
@@ -235,6 +237,7 @@ def test_no_number_in_a_sentence_begins_a_line(page):
 def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path):
     text = (DOCS / "own-scene.md").read_text(encoding="utf-8")
     (scene,) = re.findall(r"<!-- table:own-scene.source -->\n```python\n(.*?)```", text, re.DOTALL)
+    assert scene.rstrip() == (DOCS / "examples" / "my_scene.py").read_text(encoding="utf-8").rstrip()
     (tmp_path / "my_scene.py").write_text(scene, encoding="utf-8")
     blocks = [block.splitlines() for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)]
     typed = [line for block in blocks for line in block]
@@ -258,6 +261,7 @@ def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path):
         json.loads(read(tmp_path / name).atmosbox_parameters)["engine"] for name in ("my_scene.nc", "flask-dsmc.nc")
     ]
     assert engines == ["exact", "dsmc"]
+    assert all(check.passed for check in verify(read(tmp_path / "my_scene.nc")))
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
         "flask-dsmc.nc",
         "my_scene.nc",

@@ -113,14 +113,19 @@ def test_a_part_of_the_physics_that_few_runs_meet_makes_their_jobs_stale(house, 
     assert edited(house, f"atmosbox/{path}", new, old)
 
 
-def test_the_parts_that_few_runs_meet_are_there_and_some_job_meets_each_of_them(figures, monkeypatch):
+@pytest.fixture(scope="module")
+def digests(figures):
+    """The digest of the sources of each job, by the module that figures.py has loaded."""
+    return {name: sys.modules["jobs.source"].digest(name, each.file) for name, each in figures.JOBS.items()}
+
+
+def test_the_parts_that_few_runs_meet_are_there_and_some_job_meets_each_of_them(figures, digests, monkeypatch):
     sources = sys.modules["jobs.source"]
-    usual = {name: sources.digest(name, each.file) for name, each in figures.JOBS.items()}
     for part, by in source.MET_BY.items():
         assert (ROOT / "atmosbox" / part).exists()
-        if by is not None:
-            monkeypatch.setitem(sources.MET_BY, part, None)
-            assert any(sources.digest(name, figures.JOBS[name].file) != usual[name] for name in usual), part
+        if by:
+            monkeypatch.setitem(sources.MET_BY, part, ())
+            assert any(sources.digest(name, figures.JOBS[name].file) != digests[name] for name in digests), part
             monkeypatch.setitem(sources.MET_BY, part, by)
 
 
@@ -139,10 +144,8 @@ def test_every_slow_job_has_said_which_sources_its_numbers_come_from(figures):
     assert {name for name, kept in NUMBERS.items() if "sources" in kept} == slow
 
 
-def test_the_stale_jobs_are_those_whose_sources_have_changed(figures, capsys):
-    # by the module that figures.py has loaded, which has parsed most of them by then
-    sources = sys.modules["jobs.source"]
-    fresh = {name: {"sources": sources.digest(name, each.file)} for name, each in figures.JOBS.items()}
+def test_the_stale_jobs_are_those_whose_sources_have_changed(figures, digests, capsys):
+    fresh = {name: {"sources": digest} for name, digest in digests.items()}
     assert figures.stale(fresh) == []
     changed = fresh | {"lifting-seeds": {"sources": "of another day"}, "speed": {}}
     assert figures.stale(changed) == ["lifting-seeds"]

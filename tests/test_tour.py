@@ -91,6 +91,7 @@ def test_enter_goes_on_and_ctrl_c_leaves_cleanly(tmp_path, ending):
     until("info temperature\n  [Enter]")
     if ending == "ctrl-c":
         # a signal between the prompt and the wait for a line is told to Python after that line only
+        time.sleep(0.3)
         for _ in range(12):
             tour.send_signal(signal.SIGINT)
             with contextlib.suppress(subprocess.TimeoutExpired):

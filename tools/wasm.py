@@ -174,7 +174,7 @@ def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]
     found = {}
     boxes = [(scene, SCENES[scene]) for scene in scenes]
     for scene, settings in [*boxes, *(each for each in WORKSHEETS if each[0] in scenes)]:
-        box = bench(prepare(scene, settings))
+        box = bench(prepare(scene, settings, engine="exact"))
         types = {name: tuple(map(numba.typeof, given)) for name, given in arguments(box).items()}
         found[box.module] = box.modes, box.attracts, types
     return found

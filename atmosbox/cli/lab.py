@@ -58,6 +58,8 @@ def lab(
     from atmosbox.simulation import runner
 
     asked = gather(scene, values or (), config, source, seed, False, engine, accuracy)
+    if asked.engine is None and asked.accuracy is None:
+        asked = asked._replace(engine="exact")  # the one that a page holds
     with progress("lab", quiet=False) as show:
         with prints_to_stderr():
             prepared = runner.prepare(**asked._asdict())
@@ -65,9 +67,9 @@ def lab(
         from atmosbox.file.output_path import check_writable
 
         check_writable(path, force)
-        show(0.1, "building the box")
+        show(0.0, "building the box")
         from atmosbox.lab import save_lab
 
         with prints_to_stderr():
-            written = save_lab(prepared, path, theme=theme.value, language=language.value, force=force)
+            written = save_lab(prepared, path, theme=theme.value, language=language.value, force=force, progress=show)
     say(str(written))

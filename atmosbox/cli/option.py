@@ -101,7 +101,7 @@ Engine = Annotated[
     typer.Option(
         "--engine",
         metavar="NAME[:OPTION=VALUE,...]",
-        help="The engine: exact, or an approximate one such as stepped:delta=0.02.  [default: exact]",
+        help="The engine: exact, or an approximate one such as stepped:delta=0.02.  [default: that of the scene]",
     ),
 ]
 Accuracy = Annotated[

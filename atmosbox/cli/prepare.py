@@ -16,7 +16,7 @@ from atmosbox.errors import AtmosboxError, EngineError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
 
-Work = tuple[str, str | None]
+Work = tuple[str, str]
 
 
 @app.command("prepare", epilog=examples("atmosbox prepare", "atmosbox prepare lifting-dry", "atmosbox prepare --all"))
@@ -47,7 +47,7 @@ def prepare(
     names = list(scenes or scenarios.names())
     for name in names:
         scenarios.load(name)
-    asked = [(name, engine) for engine in _engines(every_engine) for name in names]
+    asked = [(name, engine) for name in names for engine in _engines(name, every_engine)]
     began = time.perf_counter()
     seconds: dict[Work, float] = {}
     with progress("prepare", quiet=quiet or as_json) as show:
@@ -59,12 +59,12 @@ def prepare(
     waited = time.perf_counter() - began
     folder, size = str(cache_home()), compiled_here()
     if as_json:
-        rows = [{"scene": name, "engine": engine or "exact", "seconds": s} for (name, engine), s in seconds.items()]
+        rows = [{"scene": name, "engine": engine, "seconds": s} for (name, engine), s in seconds.items()]
         say_json({"folder": folder, "bytes": size, "seconds": waited, "compiled": rows})
     elif quiet:
         say(folder)
     else:
-        lines = [(name, engine or "exact", f"{s:.1f} s" if s else "kept") for (name, engine), s in seconds.items()]
+        lines = [(name, engine, f"{s:.1f} s" if s else "kept") for (name, engine), s in seconds.items()]
         say("\n".join(table(["scene", "engine", "compiled in"], lines, width())))
         say(f"\nready after {waited:.0f} s; {size / 1e6:.0f} MB of machine code are kept in {folder}")
 
@@ -81,9 +81,12 @@ def _find_pace(names: list[str]) -> None:
             runner.execute(prepared)
 
 
-def _engines(every: bool) -> list[str | None]:
-    """Return the engines to compile for; None is that of the scene."""
-    return [None, "dsmc", "stepped"] if every else [None]
+def _engines(scene: str, every: bool) -> list[str]:
+    """Return the engines to compile for: that of the scene, and the exact one, on which it runs with few molecules."""
+    from atmosbox.simulation.preparation import prepare as prepared
+
+    own = prepared(scene, {}).engine.name
+    return list(dict.fromkeys([own, "exact", *(("dsmc", "stepped") if every else ())]))
 
 
 def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
@@ -103,7 +106,7 @@ def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
             raise
 
 
-def _compile(scene: str, engine: str | None) -> float | None:
+def _compile(scene: str, engine: str) -> float | None:
     """Compile for a scene and an engine in this process."""
     import warnings
 
@@ -115,6 +118,6 @@ def _compile(scene: str, engine: str | None) -> float | None:
             warnings.simplefilter("ignore")
             return compile_kernels(prepared(scene, {}, engine=engine))
     except AtmosboxError:
-        if engine is None:
+        if engine == prepared(scene, {}).engine.name:
             raise
         return None

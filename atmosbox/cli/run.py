@@ -163,16 +163,8 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: boo
     elif quiet:
         say(str(path))
     else:
-        expected_lines = expectation_lines(prepared.expectation, outcome.headlines, _chosen(prepared), width())
+        expected_lines = expectation_lines(prepared.expectation, outcome.headlines, prepared.unusual_engine, width())
         say("\n".join(outcome_lines(outcome, path=path, limit=LEDGER_LIMIT, width=width(), expected=expected_lines)))
-
-
-def _chosen(prepared: Prepared) -> str:
-    """Return the engine with its options, empty if it is that which the scene has without being asked."""
-    from atmosbox.simulation.preparation import usual_engine
-
-    usual = prepared.engine == usual_engine(prepared.module, prepared.settings)
-    return "" if usual else str(prepared.engine)
 
 
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:
@@ -196,7 +188,7 @@ def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry
     elif dry_run and quiet:
         say(str(path))
     else:
-        expected_lines = expectation_lines(prepared.expectation, (), _chosen(prepared), width())
+        expected_lines = expectation_lines(prepared.expectation, (), prepared.unusual_engine, width())
         times = [] if hint is None else [("a run takes", str(hint))]
         lines = [
             f"{card.scene}: {card.title}",

@@ -165,7 +165,12 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         setup,
         well_gas(parcel) if attracts else _gas(parcel),
         _ascent(parcel),
-        Book(np.array([parcel._now]), np.array([parcel._epoch_length]), moisture(parcel)),
+        Book(
+            np.array([parcel._now]),
+            np.array([parcel._epoch_length]),
+            np.array([parcel._start_energy]),
+            moisture(parcel),
+        ),
         lists(parcel) if attracts else _layout(parcel),
         _gauges(prepared, setup),
         *_averages(setup),
@@ -179,10 +184,10 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
 def _layout(parcel: Any) -> Layout:
     """Return how the cells are laid out now, with memory for other cells."""
     c = parcel._cells
-    shape = [c.stride, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
+    shortest, longest = (row_stride(number, mixed=parcel._modes.mixed) for number in (_PLACES, MOST))
+    # rows begin as short as in Python, and grow when molecules are placed
+    shape = [shortest, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
     most = int(_SPARE * max(shape[1:4])) + 2
-    places = (_PLACES, MOST)
-    shortest, longest = (row_stride(number, mixed=parcel._modes.mixed) for number in places)
     return Layout(
         np.array(shape),
         np.array([float(parcel._filled)]),
@@ -213,7 +218,7 @@ def _gas(parcel: Any) -> Gas:
     slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
     place = events.view(np.ndarray).view(np.uint8)
     copies = copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
-    cells = cells._replace(row=row, slot=slot, copies=copies)
+    cells = cells._replace(row=row, stride=row_stride(_PLACES, mixed=parcel._modes.mixed), slot=slot, copies=copies)
     gas: Gas = parcel._gas()._replace(events=events, cells=cells, calendar=new_calendar(number))
     return gas
 
@@ -233,7 +238,8 @@ def _ascent(parcel: Any) -> Any:
     lift = ascent.lift
     time, moment = np.full(_CORNERS, math.inf), np.full(_CORNERS, lift.course_moment[-1])
     time[: lift.course_time.size], moment[: lift.course_time.size] = lift.course_time, lift.course_moment
-    return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment))
+    # the energy of the start is in the book
+    return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment), start_energy=0.0)
 
 
 def _of(setup: Setup, kind: type) -> Any:

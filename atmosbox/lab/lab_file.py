@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from atmosbox.file.output_path import check_writable, write_whole
@@ -19,7 +20,14 @@ _MOST_BYTES = 310_000
 """How much a page carries of its module and of boxes at their start, compressed: with it it stays below 1.5 MB."""
 
 
-def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto", others: bool = True) -> str:
+def lab_text(
+    prepared: Prepared,
+    *,
+    theme: str = "auto",
+    language: str = "auto",
+    others: bool = True,
+    progress: Callable[[float, str], None] = lambda share, word: None,
+) -> str:
     """Return the HTML of the page that `save_lab` writes.
 
     Raises
@@ -33,7 +41,7 @@ def lab_text(prepared: Prepared, *, theme: str = "auto", language: str = "auto",
     >>> "WebAssembly" in lab_text(prepare("temperature", {"molecules": 20}), others=False)
     True
     """
-    starts, needed = lab_starts(prepared, _MOST_BYTES if others else 0)
+    starts, needed = lab_starts(prepared, _MOST_BYTES if others else 0, progress)
     module = module_bytes(needed, prepared.scene)
     stored = gzip.compress(b"".join(each.stored() for each in starts), 9, mtime=0)
     packed = (base64.b64encode(each).decode("ascii") for each in (module, stored))
@@ -49,6 +57,7 @@ def save_lab(
     language: str = "auto",
     others: bool = True,
     force: bool = False,
+    progress: Callable[[float, str], None] = lambda share, word: None,
 ) -> Path:
     """Write the page in which a scene runs.
 
@@ -66,6 +75,8 @@ def save_lab(
         Whether the page offers other numbers of molecules, too.
     force
         Whether a file of that name may be replaced.
+    progress
+        Called with the share of the page that is filled and a word on what is being done.
 
     Returns
     -------
@@ -78,5 +89,6 @@ def save_lab(
         If the scene cannot run in a page, or the file cannot be written.
     """
     target = check_writable(path, force, example="lab.html")
-    write_whole(target, lab_text(prepared, theme=theme, language=language, others=others).encode("utf-8"))
+    text = lab_text(prepared, theme=theme, language=language, others=others, progress=progress)
+    write_whole(target, text.encode("utf-8"))
     return target

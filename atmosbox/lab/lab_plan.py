@@ -46,6 +46,8 @@ STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "g
 
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
+_FIGURES = 4
+"""Of a curve that is drawn and not saved: a line on a screen is thicker than what is left out."""
 _KNOBS = ("temperature", "altitude", "way", "open_pool", "attraction")
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
@@ -127,7 +129,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "gauges": [] if box.gauges.half.size else _gauges(prepared, [name for name, _, _ in readings]),
         "profiles": _profiles(box),
         "fixed": _fixed(box),
-        "tables": [] if box.attracts else tables(prepared, setup, known),
+        "tables": [] if box.attracts else _drawn(tables(prepared, setup, known), panels[-1]),
         "planned": planned_alone(box),
         "knobs": numbers,
         "command": _command(prepared),
@@ -141,6 +143,25 @@ def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
     """Tell whether a graph draws one series against another: see `live.summary.Report`."""
     times = readings - {"elapsed_time"}
     return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
+
+
+def _drawn(found: list[dict[str, Any]], panels: tuple[Panel, ...]) -> list[dict[str, Any]]:
+    """Return tables of theory without the profiles that no panel draws, the others in so many figures as can be seen.
+
+    Series are saved, too, and keep theirs.
+    """
+    drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error, line.minus)}
+    for table in found:
+        table["curves"] = {
+            name: [_seen(row) for row in rows] if isinstance(rows[0], list) else rows
+            for name, rows in table["curves"].items()
+            if name in drawn or not isinstance(rows[0], list)
+        }
+    return found
+
+
+def _seen(row: list[float | None]) -> list[float | None]:
+    return [None if value is None else float(f"{value:.{_FIGURES}g}") for value in row]
 
 
 def _readings(box: Bench) -> list[tuple[str, int, float]]:
@@ -278,4 +299,5 @@ def _command(prepared: Prepared) -> str:
     """Return the command that begins the same run, the seed at its end."""
     changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
     sets = "".join(f" --set {name}={value}" for name, value in changed.items())
-    return f"atmosbox run {prepared.scene}{sets} --seed {prepared.settings.seed}"
+    engine = f" --engine {prepared.unusual_engine}" if prepared.unusual_engine else ""
+    return f"atmosbox run {prepared.scene}{sets}{engine} --seed {prepared.settings.seed}"

@@ -22,10 +22,12 @@ if TYPE_CHECKING:
     from atmosbox.scene.units import Scale
     from atmosbox.simulation.preparation import Prepared
 
-__all__ = ["bins_of", "hygrometer", "liquid_sight", "moisture", "theory_at"]
+__all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_sight", "moisture", "theory_at"]
 
 _WAY = 801
 """Values of the table of the adiabat of a parcel."""
+_KINK, _STRAIGHT = 8.0, 1e-9
+"""How many times as bent as usual a curve is at a kink, and below which share of that it is straight."""
 _WIDER = 0.25
 """How much further than its planned way that table reaches at both ends."""
 _FARTHEST, _OFFSETS = 0.16, 41
@@ -91,9 +93,34 @@ def _levels(setup: Setup, lift: MoistLift) -> Any:
     return np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
 
 
+def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
+    """Return levels that are so many times closer together at kinks of a curve, which straight lines would cut off.
+
+    That of a parcel has one where the cloud begins, that of a sounding one at each of its levels.
+
+    Examples
+    --------
+    >>> levels = np.linspace(0.0, 1.0, 11)
+    >>> finer = finer_at_kinks(levels, np.where(levels < 0.45, levels**2, 2.0 * levels))
+    >>> finer.size, [round(float(each), 3) for each in finer[:4]]
+    (200, [0.0, 0.1, 0.2, 0.3])
+    """
+    bent = np.abs(np.diff(curve, 2))
+    usual = np.median(bent[bent > _STRAIGHT * bent.max()])
+    is_near = np.zeros(levels.size - 1, np.bool_)
+    for k in np.flatnonzero(bent > _KINK * usual):
+        is_near[k : k + 2] = True
+    pieces = [
+        np.linspace(low, high, times + 1)[:-1] if near else [low]
+        for low, high, near in zip(levels[:-1], levels[1:], is_near, strict=True)
+    ]
+    return np.concatenate([*pieces, levels[-1:]])
+
+
 def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
     """Return the adiabat of a parcel that keeps its water, which depends on the pressure alone: see `Hygrometer`."""
     levels = _levels(setup, lift)
+    levels = finer_at_kinks(levels, lift._curve(np.exp(levels)))
     kelvin = lift._curve(np.exp(levels))
     unit = np.array([math.log(setup.scale.pressure)])
     return np.zeros(1), unit * 0.0, levels[::-1] - unit, kelvin[None, ::-1] / setup.scale.temperature
@@ -128,6 +155,7 @@ def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any
     levels, name = _levels(setup, lift), "environment_virtual_temperature"
     if name not in theory_at(prepared, np.exp(levels[:2])):  # where it rains, theory takes its time
         return np.zeros(0), np.zeros(0)
+    levels = finer_at_kinks(levels, theory_at(prepared, np.exp(levels))[name], 4)  # it has many, and none is sharp
     around = theory_at(prepared, np.exp(levels))[name]
     return levels[::-1] - math.log(setup.scale.pressure), around[::-1] / setup.scale.temperature
 

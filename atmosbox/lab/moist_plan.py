@@ -10,7 +10,7 @@ import numpy as np
 from atmosbox import theory as law
 from atmosbox.lab.bench import Bench
 from atmosbox.lab.kernels.hygrometer import WaterReading
-from atmosbox.lab.moist_bench import bins_of, theory_at
+from atmosbox.lab.moist_bench import bins_of, finer_at_kinks, theory_at
 from atmosbox.live.trace import plain
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Leaving, MoistLift, Nuclei
@@ -200,6 +200,8 @@ def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -
     rains = "rain_mixing_ratio" in found
     # where it rains, theory takes its time, and by the pressure alone there is only a straight curve
     levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, _WAY // 2 if rains else 2 * _WAY - 1)
+    if not rains:
+        levels = finer_at_kinks(levels, theory_at(prepared, levels)["cloud_liquid_water_mixing_ratio_theory"])
     by_pressure = theory_at(prepared, levels)
     if any(name.startswith("environment_") for name in by_pressure):
         told = theory_at(prepared, outside)

@@ -17,12 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine import RandomNumbers, equal_speeds, maxwell_velocities
+from atmosbox.engine import RandomNumbers, equal_speeds, maxwell_velocities, rotational_energies
 from atmosbox.engine.core.elementary import cbrt
-from atmosbox.engine.core.inputs import natural_time
+from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
+from atmosbox.engine.exact import cells
+from atmosbox.engine.exact.rows import _farthest
 from atmosbox.engine.start.overlap import _bins, _Spheres
+from atmosbox.lab.kernels.layering import Column
+from atmosbox.lab.kernels.pairwise import DEPTH
 from atmosbox.lab.kernels.starting import ALONG_X, AS_PLACED, SHUFFLED, STEP, Start, can_start
+from atmosbox.scene import moisture
 from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.setup import Setup
 from atmosbox.simulation.preparation import Prepared
@@ -33,6 +38,9 @@ Array = NDArray[np.float64]
 
 _GAP = 1e-6
 _WORD = 1 << 64
+_DRAWING = (maxwell_velocities, equal_speeds, rotational_energies)
+_PLACING = {"length", "diameter", "periodic", "planar", "scale_height"}
+"""What a scene may say of the places of its molecules."""
 
 
 @dataclass
@@ -41,7 +49,9 @@ class Watched:
 
     placed: list[tuple[dict[str, Any], Array, int, int]] = field(default_factory=list)
     moved: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
-    made: list[tuple[Array, Array]] = field(default_factory=list)
+    turned: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
+    made: list[tuple[Array, Array, Array]] = field(default_factory=list)
+    layers: list[tuple[float, int, float, float]] = field(default_factory=list)
 
 
 def _count(rng: RandomNumbers, seed: int) -> int:
@@ -54,16 +64,18 @@ def _count(rng: RandomNumbers, seed: int) -> int:
 def watched(prepared: Prepared) -> Iterator[Watched]:
     """Watch how a scene begins its box."""
     seen, seed = Watched(), int(prepared.settings.seed)
-    names = prepared.module.build.__globals__
-    usual = {each.__name__: each for each in (maxwell_velocities, equal_speeds) if each.__name__ in names}
-    scatter, make = EngineChoice.scatter, EngineChoice.make
+    places = [vars(moisture), prepared.module.build.__globals__]
+    usual = [(names, each) for names in places for each in _DRAWING if each.__name__ in names]
+    scatter, make, layers = EngineChoice.scatter, EngineChoice.make, cells._layers
 
     def drawing(name: str, function: Callable[..., Array]) -> Callable[..., Array]:
         def draw(*given: Any, **named: Any) -> Array:
             told = inspect.signature(function).bind(*given, **named)
             told.apply_defaults()
             before = _count(told.arguments["rng"], seed)
-            seen.moved.append((name, dict(told.arguments), made := function(*given, **named), before))
+            made = function(*given, **named)
+            kept = seen.turned if function is rotational_energies else seen.moved
+            kept.append((name, dict(told.arguments), made.copy(), before))
             return made
 
         return draw
@@ -76,16 +88,23 @@ def watched(prepared: Prepared) -> Iterator[Watched]:
         return made
 
     def put(self: EngineChoice, position: Any, velocity: Any, **box: Any) -> Any:
-        seen.made.append((np.array(position), np.array(velocity)))
+        spin = np.array(box.get("rotational_energy", np.zeros(len(position))))
+        seen.made.append((np.array(position), np.array(velocity), spin))
         return make(self, position, velocity, **box)
 
+    def lay(height: float, number: int, scale_height: float, thinnest: float) -> Array:
+        seen.layers.append((height, number, scale_height, thinnest))
+        return layers(height, number, scale_height, thinnest)
+
     try:
-        EngineChoice.scatter, EngineChoice.make = place, put  # type: ignore[method-assign]
-        names.update({name: drawing(name, each) for name, each in usual.items()})
+        EngineChoice.scatter, EngineChoice.make, cells._layers = place, put, lay  # type: ignore[method-assign]
+        for names, each in usual:
+            names[each.__name__] = drawing(each.__name__, each)
         yield seen
     finally:
-        EngineChoice.scatter, EngineChoice.make = scatter, make  # type: ignore[method-assign]
-        names.update(usual)
+        EngineChoice.scatter, EngineChoice.make, cells._layers = scatter, make, layers  # type: ignore[method-assign]
+        for names, each in usual:
+            names[each.__name__] = each
 
 
 def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
@@ -104,30 +123,57 @@ def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
     seed = int(prepared.settings.seed)
     if not (len(seen.placed) == len(seen.moved) == len(seen.made) == 1):
         return None
-    (told, placed, before, after), (position, velocity) = seen.placed[0], seen.made[0]
+    (told, placed, before, after), (position, velocity, spin) = seen.placed[0], seen.made[0]
     name, asked, moved, motion = seen.moved[0]
     parcel: Any = setup.parcel
-    if not can_start(parcel._modes):
-        return None
-    if set(told) - {"length", "diameter", "periodic"} or asked["planar"] or asked.get("exact"):
+    if not can_start(parcel._modes) or set(told) - _PLACING or asked["planar"] != parcel.planar:
         return None
     if not len(position) or moved.shape != position.shape or (moved != velocity).any():
         return None
+    if parcel._modes.gravity and (parcel._modes.mixed or any(high > 5_000 * thin for high, _, thin, _ in seen.layers)):
+        return None
     numbered = _numbered(placed, position, after, seed)
-    if numbered is None:
+    rotates = _rotating(seen, spin) if parcel._rotates else {}
+    if numbered is None or rotates is None:
         return None
     n = len(position)
     same = name == "equal_speeds"
-    factor = np.zeros(n) if same else np.sqrt(np.broadcast_to(asked["kT"], (n,)) / np.asarray(asked["mass"]))
-    found = _start(parcel, told["diameter"])
-    return found._replace(
+    mass = np.broadcast_to(asked.get("mass", 1.0), (n,))
+    kT = np.broadcast_to(asked.get("kT", 0.0), (n,))
+    twice = 0.0
+    if asked.get("exact") and n > 1 and kT.mean() > 0.0:
+        if (mass != parcel.mass).any():
+            return None
+        twice = (2.0 if parcel.planar else 3.0) * float(kT.sum())
+    return _start(parcel, told["diameter"], seen)._replace(
         place=before,
         order=after,
         motion=motion,
         numbered=numbered,
+        scale_height=float(told.get("scale_height") or 0.0),
         speed=float(asked["speed"]) if same else 0.0,
-        factor=factor,
+        twice=twice,
+        weight=float(np.array(mass).sum()),
+        factor=np.zeros(n) if same else np.sqrt(kT / mass),
+        **rotates,
     )
+
+
+def _rotating(seen: Watched, spin: Array) -> dict[str, Any] | None:
+    """Return how energies of rotation are drawn, None if in no way that is known."""
+    if len(seen.turned) != 1:
+        return None
+    _, asked, drawn, first = seen.turned[0]
+    degrees = np.asarray(asked["rotation"])
+    if degrees.shape != spin.shape or np.ndim(asked["kT"]):
+        return None
+    rotating = 0.0
+    if (spin != drawn).any():  # scaled, to half a kT for each degree of freedom
+        rotating = 0.5 * float(degrees.sum())
+        if (spin != drawn * (rotating / drawn.sum())).any():
+            return None
+    degrees = degrees.astype(np.float64)
+    return {"rotation": first, "rotating": rotating, "warmth": float(asked["kT"]), "degrees": degrees}
 
 
 def _numbered(placed: Array, position: Array, after: int, seed: int) -> int | None:
@@ -144,28 +190,77 @@ def _numbered(placed: Array, position: Array, after: int, seed: int) -> int | No
 
 def no_start(setup: Setup) -> Start | None:
     """Return what stands for the start where a box has the seed of its page alone; None where no module asks for it."""
-    if not can_start(setup.parcel._modes):  # type: ignore[attr-defined]
+    parcel: Any = setup.parcel
+    if not can_start(parcel._modes):
         return None
-    return _start(setup.parcel, np.array(setup.parcel.diameter))
+    return _start(parcel, np.array(parcel.diameter), Watched())
 
 
-def _start(parcel: Any, diameter: Array) -> Start:
+def _start(parcel: Any, diameter: Array, seen: Watched) -> Start:
     """Return a start with all that the box decides."""
-    n = parcel.number
+    n, planar = parcel.number, bool(parcel.planar)
     radius = 0.5 * diameter
     sides, turns = np.array(parcel._sides), np.array(parcel._periodic)
     low = np.where(turns, 0.0, 1.0)[None, :] * 0.5 * diameter[:, None]
     high = sides[None, :] - low
+    if planar:
+        low[:, 1] = high[:, 1] = 0.5 * sides[1]
     turn = sides * turns
-    spacing = float(cbrt(math.prod(sides.tolist()) / max(n, 1)))
-    warm = bool((parcel._walls.law == HEAT_BATH).any())
-    # molecules at rest pass their neighbours as fast as the walls make them
-    fastest = spacing / natural_time(np.zeros((1, 3)), sides, n, parcel._walls, parcel.mass, 0.0) if warm else 0.0
     flags = (np.zeros(n, np.bool_), np.zeros(n, np.bool_))
+    liquid = float(parcel.condensed_energy), _warm(parcel)
     return Start(
-        0, 0, 0, AS_PLACED, 0.0,
+        0, 0, 0, 0, AS_PLACED, 0.0, int(planar), 0.0, 0.0, 0.0, 0.0, 0.0, *liquid,
         _Spheres(np.zeros((n, 3)), radius, low, high, turn, *flags),
         _bins(radius, low, high, turn, _GAP),
-        np.zeros(n), np.array([spacing, fastest]), np.zeros((n, 3)), np.zeros(n), np.zeros(n, np.int64),
-        np.zeros(n, np.int64), np.zeros(1, np.uint64),
+        np.zeros(n), np.array(parcel.mass), np.zeros(n), _spread(parcel, sides), _first_gauges(parcel),
+        _column(parcel, seen), np.zeros((n, 3)), np.zeros(3 * n), np.zeros(n, np.int64), np.zeros(n, np.int64),
+        np.zeros((DEPTH, 2), np.int64), np.zeros(DEPTH), np.zeros(1, np.uint64),
+    )  # fmt: skip
+
+
+def _spread(parcel: Any, sides: Array) -> Array:
+    """Return how far molecules are from each other, and what is the fastest beside them: see `natural_time`."""
+    walls = parcel._walls
+    spacing = float(cbrt(math.prod(sides.tolist()) / max(parcel.number, 1)))
+    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    fastest = [math.sqrt(float(kT) / float(parcel.mass.mean())) for law, kT in first if law == HEAT_BATH]
+    fastest.append(math.sqrt(parcel.gravity * spacing))
+    return np.array([spacing, max(fastest)])
+
+
+def _warm(parcel: Any) -> float:
+    """Return how fast molecules may leave the warmest wall of a box with liquid: see `MoistParcelSet`."""
+    baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
+    return math.sqrt(8.0 * max(baths, default=0.0) / parcel._liquid.substance.mass) if parcel._modes.phases else 0.0
+
+
+def _first_gauges(parcel: Any) -> Any:
+    """Return what the law of a piston asks of the gas at the start, without its energy; 0 where none rises."""
+    if not parcel._ascends:
+        return 0
+    open_height = parcel.ceiling - float(parcel.diameter.mean())
+    return Gauges(
+        0.0, parcel.number, parcel.degrees_of_freedom, 2.0 if parcel.planar else 3.0, 0.0, 0.0, parcel.open_density,
+        open_height,
+    )  # fmt: skip
+
+
+def _column(parcel: Any, seen: Watched) -> Any:
+    """Return what decides on the layers of cells of a column, 0 without gravity."""
+    if not parcel._modes.gravity:
+        return 0
+    grid, walls = parcel._grid, parcel._walls
+    height, number, _, thinnest = seen.layers[-1] if seen.layers else (float(parcel.length[2]), 1, 1.0, 0.0)
+    around = [
+        float(_farthest(grid.edges[axis], wraps=parcel.periodic[axis]).max())
+        for axis in (0, 1)
+        if not (parcel.planar and axis == 1)
+    ]
+    area = float(grid.edges[0][-1]) * (1.0 if parcel.planar else float(grid.edges[1][-1]))
+    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    baths = [float(kT) for law, kT in first if law == HEAT_BATH]
+    weight = float(parcel.mass.mean()) * parcel.gravity
+    return Column(
+        height, weight, max(baths, default=0.0), number, thinnest, max(around), area, float(parcel._size_radius[0]),
+        np.zeros(grid.number[2] + 1),
     )  # fmt: skip

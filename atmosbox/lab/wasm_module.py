@@ -29,7 +29,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "mountains": {"molecules": 3000},
     "nuclei": {"molecules": 1500},
 }
-"""The shipped scenes that a page can run, with the settings that they need for it, or for a page of 1.5 MB."""
+"""The shipped scenes that a page can run, with the settings that they need for it, or to be watched while they run."""
 WORKSHEETS: tuple[tuple[str, dict[str, Any]], ...] = (
     ("lifting-dry", {"rotation": False}),
     ("diffusion", {"molecules": 4000, "mass_ratio": 10}),

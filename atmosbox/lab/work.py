@@ -27,7 +27,7 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
     if box.modes.ascends:
         found["lead"] = (gas, ascent, book, 0.0)
     if can_start(box.modes):
-        found["start"] = (gas, book, box.start, 0)
+        found["start"] = (gas, ascent, book, box.start, 0)
     found |= {
         "place": (gas, book, layout),
         "pass_time": (gas, ascent, book, layout, 0.0, 0),

@@ -62,11 +62,11 @@ class Trial:
         >>> Trial("A", "", runner.prepare("lifting-dry", {"ascent": 50})).command
         'atmosbox run lifting-dry --seed 1 --set ascent=50 --out lifting-dry-A.nc'
         """
-        settings, engine = self.prepared.settings, str(self.prepared.engine)
+        settings, engine = self.prepared.settings, self.prepared.unusual_engine
         known = {p.name: p for p in settings.describe()}
         words = ["atmosbox run", shlex.quote(self.prepared.scene), f"--seed {settings.seed}"]
         words += [f"--set {name}={known[name].typed(v)}" for name, v in settings.changed().items() if name != "seed"]
-        words += [] if engine == "exact" else [f"--engine {shlex.quote(engine)}"]
+        words += [f"--engine {shlex.quote(engine)}"] if engine else []
         return " ".join([*words, f"--out {shlex.quote(self.file)}"])
 
     @property

@@ -180,7 +180,7 @@ class _Filling:
 def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool, lab: bool) -> Worksheet:
     """Return the sheet."""
     first = runs[0].prepared
-    differs = bool(first.settings.changed().keys() - {"seed"}) or str(first.engine) != "exact"
+    differs = bool(first.settings.changed().keys() - {"seed"}) or bool(first.unusual_engine)
     content = _Filling(path, runs, answers=answers, differs=differs).sheet(words)
     content["leaves_out"] = content["leaves_out"] or left_out(first.module.__doc__ or "").replace("<", "&lt;")
     for name in ("predict", *SECTIONS) if lab else ():
@@ -229,7 +229,7 @@ def _about(first: runner.Prepared, answers: bool) -> str:
     molecules = getattr(first.settings, "molecules", None)
     parts = [] if molecules is None else [f"N = {molecules}"]
     parts.append(f"seed {first.settings.seed}")
-    parts += [] if str(first.engine) == "exact" else [f"engine {first.engine}"]
+    parts += [f"engine {first.unusual_engine}"] if first.unusual_engine else []
     return ", ".join([*parts, f"atmosbox {__version__}"] if answers else parts)
 
 

@@ -42,6 +42,17 @@ class Prepared:
     """The errors that were expected when it began, of a run that goes on."""
 
     @property
+    def unusual_engine(self) -> str:
+        """The engine with its options, empty if it is that on which the scene runs without being asked.
+
+        Examples
+        --------
+        >>> prepare("temperature", {}).unusual_engine, prepare("temperature", {}, engine="dsmc").unusual_engine
+        ('', 'dsmc')
+        """
+        return "" if self.engine == usual_engine(self.module, self.settings) else str(self.engine)
+
+    @property
     def parameters(self) -> dict[str, Any]:
         """Everything that makes the run, and the errors that are expected of it, as JSON can hold it."""
         expected = self.stated if self.expectation is None else self.expectation.as_dict()
@@ -125,7 +136,7 @@ def prepare(
     expectation = None
     if accuracy is not None:
         expectation = picked.at(checked.changed())
-    elif chosen.name != EXACT.name:
+    elif chosen != usual_engine(module, checked):
         expectation = accuracies.expect(name, str(chosen), checked.changed())
     return Prepared(name, module, checked, save_molecules, chosen, expectation)
 
@@ -138,7 +149,7 @@ def card(prepared: Prepared) -> Card:
     >>> dict(card(prepare("lifting-dry", {"molecules": 100})).facts)["gamma"]
     '7/5'
     """
-    if prepared.engine.name == EXACT.name and prepared.scene in scenarios.names():
+    if not prepared.unusual_engine and prepared.scene in scenarios.names():
         # the start of a scene that is shipped is known to be lawful; that of a user's own is tried out
         prepared = replace(prepared, engine=replace(prepared.engine, described=True))
     setup = build(prepared)

@@ -15,22 +15,16 @@ from sphinx.application import Sphinx
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [] if str(ROOT) in sys.path else [str(ROOT)]
 
+from atmosbox.lab.wasm_module import SCENES  # noqa: E402
+
 NAME = "gallery"
 
-LABS = {
+LABS = SCENES | {
     "temperature": {"molecules": 400},
-    "elastic-collisions": {},
     "atmosphere": {"molecules": 1500, "start": "equilibrium"},
     "lifting-dry": {"molecules": 1500, "ascent": 400},
-    "temperature-large": {},
     "diffusion": {"molecules": 3000},
     "attraction": {"molecules": 400},
-    "evaporation": {"molecules": 3000, "pool": 600},
-    "condensation": {"molecules": 3000},
-    "lifting-moist": {"molecules": 3000},
-    "lifting-sounding": {"molecules": 3000},
-    "mountains": {"molecules": 3000},
-    "nuclei": {"molecules": 1500},
 }
 """The settings of the labs: so few molecules that a phone keeps up."""
 
@@ -52,12 +46,12 @@ FEW = {
 """So few molecules that a page is small and quick to make."""
 
 
-FILM = {"seconds": 8.0, "fps": 8.0}
-"""How long a film is, and of how many pictures a second: it takes seconds to make, and a megabyte."""
+PICTURES = 8.0
+"""How many pictures a second a film has: one of eight seconds takes seconds to make, and a megabyte."""
 
 
-def make(folder: Path, chosen: list[str]) -> None:
-    """Make pages, films and worksheets of some scenes, and their labs, in a folder."""
+def make(folder: Path, seconds: float, chosen: list[str]) -> None:
+    """Make pages, films of some seconds and worksheets of some scenes, and their labs, in a folder."""
     import atmosbox as ab
     from atmosbox import film, sheet
     from atmosbox.lab import save_lab
@@ -67,10 +61,10 @@ def make(folder: Path, chosen: list[str]) -> None:
     for name in chosen:
         run = ab.run(name, save_molecules=True, **FEW.get(name, {}))
         save([run], folder / f"{name}.html", force=True)
-        film.save(run, folder / f"{name}.mp4", force=True, **FILM)
+        film.save(run, folder / f"{name}.mp4", force=True, seconds=seconds, fps=PICTURES)
         sheet.save(sheet.worksheet(name, {}), folder / f"{name}-sheet.pdf", force=True)
         if name in LABS:
-            save_lab(prepare(name, LABS[name]), folder / f"{name}-lab.html", force=True)
+            save_lab(prepare(name, LABS[name], engine="exact"), folder / f"{name}-lab.html", force=True)
 
 
 def scenes(app: Sphinx) -> list[str]:
@@ -121,16 +115,17 @@ def build(app: Sphinx, problem: Exception | None) -> None:
     if problem is None and app.builder.format == "html":
         folder = Path(app.outdir) / NAME
         folder.mkdir(exist_ok=True)
-        subprocess.run([sys.executable, __file__, str(folder), *scenes(app)], check=True)
+        subprocess.run([sys.executable, __file__, str(folder), app.config.gallery_film, *scenes(app)], check=True)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx."""
     app.add_config_value("gallery_scenes", "all", "html", str)
+    app.add_config_value("gallery_film", "8", "html", str)  # seconds
     app.connect("source-read", add_links)
     app.connect("build-finished", build)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
 if __name__ == "__main__":
-    make(Path(sys.argv[1]), sys.argv[2:])
+    make(Path(sys.argv[1]), float(sys.argv[2]), sys.argv[3:])

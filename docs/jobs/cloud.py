@@ -16,7 +16,7 @@ from atmosbox.simulation import runner
 
 LEVELS = (850, 700, 500, 300)
 SEEDS = range(1, 5)
-LENGTHS = (50, 100, 200, 400)
+LENGTHS = (50, 100, 200, 400, 1000)
 NUMBERS = (3000, 6000, 12_000)
 TICKS = (300, 400, 500, 700, 850, 1000)
 RAIN: Mapping[str, Any] = {"rain": True}

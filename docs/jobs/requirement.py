@@ -174,7 +174,8 @@ def column(found: Findings) -> None:
              f"{rounded(real_path / h)} H", "in equilibrium the profile of points does not depend on how often they "
              "meet: 0"],
             ["the excluded volume of wide molecules", f"$Z - 1$ = {rounded(crowd)} at the floor",
-             f"the mean height is {rounded(100.0 * higher)} % too large, which the theory beside it counts"],
+             f"on `exact` the mean height is {rounded(100.0 * higher)} % larger, which the theory beside it counts; on "
+             "`dsmc`, on which so many molecules run, they exclude none"],
             ["weight of a molecule", f"{rounded(air.scale.weight)}",
              "pressure, density and energy are multiplied by it, speeds and temperatures are not; what does not "
              f"scale is chance: the temperature of the column scatters by "

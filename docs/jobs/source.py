@@ -20,16 +20,17 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 PHYSICS = ("engine", "theory", "scene", "simulation")
-MET_BY = {
-    "scene/knob.py": "live",
-    "scene/sounding": "lifting-sounding",
-    "simulation/accuracy": "trade",
-    "simulation/continuation.py": None,
-    "simulation/restart.py": None,
+MET_BY: dict[str, tuple[str, ...]] = {
+    "scene/ascent": ("lifting-dry", "lifting-moist", "lifting-sounding", "mountains"),
+    "scene/knob.py": ("live",),
+    "scene/sounding": ("lifting-sounding",),
+    "simulation/accuracy": ("trade",),
+    "simulation/continuation.py": (),
+    "simulation/restart.py": (),
 }
-"""Which scenario or room a job must name or import so that a part of the physics changes its numbers: knobs are turned
-by hand, a run that goes on from a saved state ends in the same bits as one that was never stopped, and the measured
-trade chooses only for those who wish for an accuracy."""
+"""Of which scenarios or rooms a job must name or import one, so that a part of the physics changes its numbers: knobs
+are turned by hand, a run that goes on from a saved state ends in the same bits as one that was never stopped, and the
+measured trade chooses only for those who wish for an accuracy."""
 LAYOUT = ("registry", "drawing")
 """Files of jobs that only lay out what the others find."""
 
@@ -166,7 +167,7 @@ def digest(name: str, file: Path, root: Path = ROOT) -> str:
     named = scenarios_named(name, "\n".join(texts), sorted(scenes))
     for scene in named:
         members |= room(scenes[scene])
-    without = frozenset(package / part for part, by in MET_BY.items() if by not in (*named, *rooms))
+    without = frozenset(package / part for part, by in MET_BY.items() if rooms.union(named).isdisjoint(by))
     for each in {*PHYSICS, *rooms}:
         members |= room(package / each, without)
     return _digest(sorted(members))

@@ -1,4 +1,7 @@
-"""A thin gas of molecules that attract each other: its second and third virial coefficient, each by itself."""
+"""A thin gas of molecules that attract each other, as in `attraction`.
+
+Its second and third virial coefficient, each by itself.
+"""
 
 import math
 

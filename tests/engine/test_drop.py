@@ -1,6 +1,6 @@
 """Drops keep the books event by event, stay in the box, merge, and do the same however a run is cut.
 
-The boxes below need four sets of kernels in all: each new set costs seconds of compilation.
+The boxes below need three sets of kernels in all: each new set costs seconds of compilation.
 """
 
 import math
@@ -98,7 +98,9 @@ def box(name, drops=None, **changes):
     return damp(drops or nuclei(), walls=walls, **options | changes)
 
 
-by_name = pytest.mark.parametrize("name", ["smooth", "between heat baths", "periodic", "under a piston"])
+# there a molecule meets two images of a drop: the kernels for that take 12 s to compile, and no scene has them
+PERIODIC = pytest.param("periodic", marks=pytest.mark.validate)
+by_name = pytest.mark.parametrize("name", ["smooth", "between heat baths", PERIODIC, "under a piston"])
 
 
 def flying(parcel):
@@ -326,7 +328,9 @@ def test_a_piston_that_would_crush_a_drop_is_stopped():
 
 @many_events
 @pytest.mark.parametrize("seed", [1, 4, 8])
-@pytest.mark.parametrize("walls", [SMOOTH, TURNING], ids=["walled", "periodic"])
+@pytest.mark.parametrize(
+    "walls", [SMOOTH, pytest.param(TURNING, marks=pytest.mark.validate)], ids=["walled", "periodic"]
+)
 def test_a_drop_that_has_swallowed_another_stands_in_its_cells_and_is_hit_by_all(walls, seed):
     # it stands where the mass of both was, a radius away, among so many molecules that there are many cells
     centres = ((3.0, 4.0, 4.0), (5.2, 4.0, 4.0))
@@ -380,7 +384,7 @@ def test_in_the_end_there_is_one_drop_and_those_it_swallowed_never_come_back(nam
 @many_events
 def test_the_surface_that_two_drops_lose_warms_them_and_their_salts_add_up(by_single_events):
     drops = nuclei(30, surface_tension=1.5, dissolved=(5.0, 0.0, 7.0))
-    parcel = box("periodic", drops)
+    parcel = box("smooth", drops)
     before = []
 
     def check(time):

@@ -230,9 +230,15 @@ def test_one_that_flips_overshoots_by_no_more_than_a_step():
     assert 0.5 * way < furthest <= way
 
 
+FEW = [
+    pytest.param(walls, number, marks=pytest.mark.validate if number < 2 and P in walls else ())  # kernels of their own
+    for walls in ((S,) * 6, (P,) * 6, (*(HeatBath(1.0),) * 2, P, P, HeatBath(1.0), Piston(0.01)))
+    for number in range(4)
+]
+
+
 @many_steps
-@pytest.mark.parametrize("number", [0, 1, 2, 3])
-@pytest.mark.parametrize("walls", [(S,) * 6, (P,) * 6, (*(HeatBath(1.0),) * 2, P, P, HeatBath(1.0), Piston(0.01))])
+@pytest.mark.parametrize(("walls", "number"), FEW)
 def test_few_molecules_are_no_exception(number, walls):
     all_at_once = {"gravity": 0.1, "mass": [1.0, 4.0, 1.0][:number], "rotation": 2.0}
     facts = all_at_once if walls[5] == Piston(0.01) else {}
@@ -255,24 +261,27 @@ def test_nothing_happens_where_nothing_moves():
     assert box.snapshot().position.tolist() == [[1, 1, 1], [3, 3, 3]]
 
 
+COLUMN = {"length": (4, 4, 4), "walls": (P, P, P, P, S, S), "gravity": 1.0}
+
+
 @many_steps
 def test_one_at_rest_on_the_floor_stays_there():
-    box = parcel([[2, 2, 0.5]], np.zeros((1, 3)), length=(4, 4, 4), gravity=1.0, delta=0.01)
+    box = parcel([[1, 1, 0.5], [3, 3, 0.5]], np.zeros((2, 3)), delta=0.01, **COLUMN)
     box.advance(50.0)
-    assert box.snapshot().position[0, 2] == pytest.approx(0.5, abs=1e-12)
-    assert sum(box.energy()) == pytest.approx(0.5, abs=1e-12)
+    assert box.snapshot().position[:, 2] == pytest.approx([0.5, 0.5], abs=1e-12)
+    assert sum(box.energy()) == pytest.approx(1.0, abs=1e-12)
 
 
 @many_steps
 def test_one_that_bounces_in_gravity_rises_as_high_as_it_fell():
-    box = parcel([[2, 2, 2.5]], np.zeros((1, 3)), length=(4, 4, 4), gravity=1.0, dt=0.1)
+    box = parcel([[1, 1, 2.5], [3, 3, 2.5]], np.zeros((2, 3)), dt=0.1, **COLUMN)
     heights = []
     for _ in range(400):
         box.advance(box.time + 0.1)
         t = (box.time + 2.0) % 4.0 - 2.0
-        heights.append(box.snapshot().position[0, 2] - (2.5 - 0.5 * t * t))
+        heights.append(box.snapshot().position[:, 2] - (2.5 - 0.5 * t * t))
     assert np.abs(heights).max() < 1e-10
-    assert box.wall_hits.tolist() == [0, 0, 0, 0, 10, 0]
+    assert box.wall_hits.tolist() == [0, 0, 0, 0, 20, 0]
 
 
 def test_a_corner_turns_all_three_velocities():
@@ -305,7 +314,8 @@ def test_those_that_overlap_at_the_start_are_refused_as_the_exact_engine_does(wa
 
 def test_the_step_is_what_was_asked_for():
     v = [[2, 0, 0], [-2, 0, 0]]
-    box = parcel([[1, 2, 2], [3, 2, 2]], v, length=(4, 4, 4), delta=0.1, diameter=[0.5, 1.0], mass=[1.0, 4.0])
+    unlike = {"diameter": [0.5, 1.0], "mass": [1.0, 4.0]}
+    box = parcel([[1, 2, 2], [3, 2, 2]], v, length=(4, 4, 4), walls=(P,) * 6, delta=0.1, **unlike)
     # 3 kT = (4 + 16) / 2, and the lighter one is the faster
     assert box.time_step == pytest.approx(0.1 * 0.5 / math.sqrt(10.0 / 3.0))
     assert box.delta == pytest.approx(0.1)
@@ -376,10 +386,17 @@ def test_a_piston_is_stopped_before_it_crushes():
 PERIODIC = [(False, False, False), (True, True, True), (True, False, True), (False, True, False)]
 
 
+# unlike molecules between six walls need kernels of their own
+SIDES = [
+    pytest.param(periodic, mixed, marks=pytest.mark.validate if mixed and not any(periodic) else ())
+    for periodic in PERIODIC
+    for mixed in (False, True)
+]
+
+
 @many_steps
-@pytest.mark.parametrize("periodic", PERIODIC)
+@pytest.mark.parametrize(("periodic", "mixed"), SIDES)
 @pytest.mark.parametrize("length", [(2.4, 2.5, 2.6), (3.2, 4.0, 9.0), (7.0, 7.0, 7.0), (3.0, 30.0, 3.0)])
-@pytest.mark.parametrize("mixed", [False, True])
 @pytest.mark.parametrize("planar", [False, True])
 def test_every_pair_in_overlap_is_found_once(monkeypatch, periodic, length, mixed, planar):
     found = []
@@ -424,7 +441,7 @@ def test_a_collision_of_two_converges_to_the_exact_one_with_the_step(masses):
         for b, phase in aim:
             x, v = [[2.0 - step * phase, 3.0, 3.0], [4.0, 3.0 + b, 3.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
             exact = ParcelSet(x, v, length=(6, 6, 6), mass=masses)
-            box = parcel(x, v, length=(6, 6, 6), mass=masses, dt=step)
+            box = parcel(x, v, length=(6, 6, 6), walls=(P,) * 6, mass=masses, dt=step)  # they meet no wall
             for one in (exact, box):
                 one.advance(1.6)
             assert box.contacts == exact.contacts == 1

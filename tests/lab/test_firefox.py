@@ -30,7 +30,7 @@ def firefox(tmp_path_factory):
 @pytest.mark.parametrize("scene", SMALL)
 def test_firefox_has_the_same_bytes_as_python(firefox, tmp_path, scene):
     settings, frames = SMALL[scene]
-    prepared = prepare(scene, SCENES[scene] | settings)
+    prepared = prepare(scene, SCENES[scene] | settings, engine="exact")
     firefox.open(save_lab(prepared, tmp_path / "lab.html", others=False))
     firefox.evaluate(WHEN_IT_IS.format("document.body.dataset.ready"))
     firefox.evaluate(ASK.format(f"{{type: 'frames', value: {frames}}}"))

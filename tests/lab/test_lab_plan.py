@@ -5,6 +5,7 @@ import shlex
 import numpy as np
 import pytest
 
+from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import prepare
@@ -16,16 +17,25 @@ from atmosbox.simulation.preparation import prepare
         ("temperature", {}),
         ("temperature", {"molecules": 50, "temperature": "300 K", "start": "equal", "seed": 7}),
         ("lifting-dry", {"molecules": 200, "rotation": False, "ascent": 12.5}),
+        ("atmosphere", {"molecules": 5500, "start": "equilibrium"}),
     ],
 )
 def test_the_command_that_is_saved_begins_the_same_run(scene, settings):
-    prepared = prepare(scene, settings)
+    prepared = prepare(scene, settings, engine="exact")
     plan, _, _ = lab_plan(prepared)
     program, verb, named, *options = shlex.split(plan["command"])
     assert (program, verb, named) == ("atmosbox", "run", scene)
     assert options[-2:] == ["--seed", str(prepared.settings.seed)]
     values = dict(each.split("=", 1) for each in options if "=" in each)
-    assert prepare(scene, values | {"seed": options[-1]}).settings == prepared.settings
+    engine = options[options.index("--engine") + 1] if "--engine" in options else None
+    begun = prepare(scene, values | {"seed": options[-1]}, engine=engine)
+    assert (begun.settings, begun.engine) == (prepared.settings, prepared.engine)
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("scene", ["diffusion", "evaporation", "lifting-dry", "lifting-moist", "lifting-sounding"])
+def test_a_page_of_as_many_molecules_as_a_run_has_is_no_larger_than_promised(scene):
+    assert len(lab_text(prepare(scene, {}, engine="exact"), others=False).encode()) < 1_500_000
 
 
 def test_theory_that_changes_with_time_goes_on_as_theory_does():

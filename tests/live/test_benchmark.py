@@ -6,9 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.mark.validate
 def test_the_pictures_that_a_page_gets_are_counted(tmp_path):
     file = tmp_path / "live.json"
     words = ["--scene", "elastic-collisions", "--molecules", "20", "--seconds", "1", "--json", str(file)]

@@ -60,7 +60,7 @@ def test_the_facts_of_a_plane_column_are_those_of_discs():
     plane, space = facts(plane=True), facts()
     assert plane["gamma"].startswith("2:")
     assert space["gamma"].startswith("5/3:")
-    assert plane["exaggeration"].startswith("discs 3.1 m wide")
+    assert plane["exaggeration"].startswith("discs 0.9 m wide")
     assert "slab 8.43 km thick" in plane["box"]
     # as many molecules stand for as much air
     assert plane["weight of a molecule"] == space["weight of a molecule"]

@@ -41,8 +41,10 @@ def test_energy_is_kept_to_rounding_over_ten_million_contacts(gas):
 
 @pytest.mark.parametrize("gravity", [0.0, 0.05])
 def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
-    walls = (HeatBath(1.5), HeatBath(0.7), S, HeatBath(1.0, 0.5), S, Piston())
-    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=gravity, diameter=0.8, seed=2)
+    # with gravity there are two kinds of molecules, and periodic sides, whose kernels other tests have
+    sides, mass = ((P, P, HeatBath(1.0, 0.5)), [1.0, 1.5] * 150) if gravity else ((S, HeatBath(1.0, 0.5), S), 1.0)
+    walls = (HeatBath(1.5), HeatBath(0.7), *sides, Piston())
+    box = gas(300, (9.0, 9.0, 9.0), walls=walls, rotation=2, gravity=gravity, diameter=0.8, mass=mass, seed=2)
     exchanged = 0.0
     for stroke in range(20):
         box.set_piston_velocity(-0.1 if stroke % 2 else 0.1)
@@ -59,7 +61,7 @@ def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
 BOXES = {
     "walls and gravity": {"number": 191, "length": (10.0, 10.0, 10.0), "gravity": 0.3},
     "periodic and dense": {"number": 400, "length": (8.2, 8.2, 8.2), "walls": (P,) * 6, "duration": 8.0},
-    "periodic, as small as it may be": {"number": 18, "length": (3.6, 3.6, 3.6), "walls": (P,) * 6},
+    "periodic, as small as it may be": {"number": 5, "length": (2.4, 2.4, 2.4), "walls": (P,) * 6},
     "periodic along two axes": {
         "number": 300,
         "length": (10.0, 10.0, 12.0),

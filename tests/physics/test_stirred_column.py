@@ -160,7 +160,7 @@ def test_what_is_not_set_suits_a_stirred_column_and_what_is_set_stays():
     chosen = runner.prepare("atmosphere", {"stirring": 50, "height": 8, "rotation": False}).settings
     assert (chosen.rotation, chosen.height) == (False, 8.0)
     rest = runner.prepare("atmosphere", {"stirring": 0})
-    assert (str(rest.engine), rest.settings) == ("exact", runner.prepare("atmosphere", {}).settings)
+    assert (str(rest.engine), rest.settings) == ("dsmc", runner.prepare("atmosphere", {}).settings)
     again = runner.prepare("atmosphere", stirred.settings.as_dict())
     assert (str(again.engine), again.settings) == ("dsmc", stirred.settings)
     assert dict(card(stirred).facts)["adiabat"] == "g/c_p = 9.76 K/km"

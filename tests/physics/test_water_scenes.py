@@ -21,7 +21,8 @@ from atmosbox.errors import SettingError
 from atmosbox.file.netcdf import read, write
 from atmosbox.file.variables import VARIABLES
 from atmosbox.scene.ascent import along_frames, finite_size, temperature_covariance
-from atmosbox.scene.ascent.dissipation import entropy_gain
+from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
+from atmosbox.scene.ascent.raining import walk
 from atmosbox.simulation import runner
 
 pytestmark = pytest.mark.skipif(not COMPILED, reason="so many events take minutes without numba")
@@ -314,3 +315,60 @@ def test_the_pushes_of_molecules_on_droplets_that_flow_with_the_air_are_those_of
     work = cloud.expansion[30] * cloud.height[30] * rng.uniform(size=400_000) * (after - before)
     # the piston's answer to fluctuations adds a hundredth; the mean square is known to 0.3 %
     assert pushes == pytest.approx(np.mean(work**2) * cloud.hits[30], rel=0.03)
+
+
+def over_mountains(**settings):
+    """Return the way of the mountains, and its parcel at 8 samples in each of 96 frames."""
+    ascent = scenarios.load("mountains")._ascent(runner.prepare("mountains", settings).settings)
+    shares = np.linspace(0.0, 1.0, len(ascent.route))
+    outside = np.exp(np.interp((np.arange(96) + 0.5) / 96, shares, np.log(ascent.route)))
+    return ascent, along_frames(ascent, outside, 96, 8, ideal=True)
+
+
+@pytest.mark.parametrize(("molecules", "keeps"), [(30_000, 1.0), pytest.param(4000, 3.0, marks=pytest.mark.validate)])
+def test_rain_scatters_as_molecules_that_fall_one_by_one_out_of_a_cloud_that_scatters(molecules, keeps):
+    ascent, cloud = over_mountains(molecules=molecules, cloud_water=keeps)
+    found = walk(cloud)
+    # the process itself, 1500 times: liquid is driven to its equilibrium, and each molecule that is too many may fall
+    inverse = np.linalg.inv(cloud.resists)
+    scatter = np.sqrt(inverse[:, 0, 0])
+    memory = (inverse @ np.linalg.inv(cloud.yields) @ inverse)[:, 0, 0] / scatter**2
+    walked = np.sqrt(np.diff(gathered(entropy_gain(cloud).variance, cloud.moment), prepend=0.0))
+    warms = theory.LIQUID_HEAT_CAPACITY * np.diff(np.log(cloud.temperature), prepend=np.log(cloud.temperature[0]))
+    expected = ascent.path(cloud.pressure, cloud.moment / ascent.length).rain / theory.WATER_MASS_RATIO * cloud.air
+    rng, fine = np.random.default_rng(3), 3
+    fallen, entropy, x = np.zeros((3, 1500))
+    steps, lost = np.diff(cloud.moment, prepend=0.0) / fine, np.empty((len(walked), len(x)))
+    for k, step in enumerate(steps):
+        entropy += walked[k] * rng.standard_normal(len(x)) + warms[k] * (fallen - fallen.mean())
+        kept = math.exp(-step / memory[k])
+        for _ in range(fine):
+            x = kept * x + math.sqrt(1.0 - kept * kept) * scatter[k] * rng.standard_normal(len(x))
+            surplus = cloud.liquid[k] + expected[k] - fallen - cloud.dries[k] * entropy + x - cloud.keeps
+            fallen += rng.poisson(cloud.rains * step * np.maximum(surplus, 0.0))
+        lost[k] = fallen
+    variance = np.einsum("tijt->tij", found.covariance.swapaxes(2, 3))[:, 1, 1]
+    # 1500 times tell a variance by 3.7 %, and a mean by a fortieth of the scatter; at its onset, when a molecule or two
+    # have fallen, rain is not linear, and theory has up to a fifth too much
+    wet = variance > 0.5 * variance[-1]
+    assert wet.sum() > 300
+    assert lost[wet].var(axis=1) == pytest.approx(variance[wet], rel=0.15)
+    assert (np.abs(lost.mean(axis=1) - expected - found.more) < 0.15 * np.sqrt(variance))[wet].all()
+    # a warmer parcel loses less: 1500 times tell it by a 39th of both scatters
+    end = found.covariance[-1, :, -1]
+    assert abs(np.cov(entropy, fallen)[0, 1] - end[0, 1]) < 3.0 / 39.0 * math.sqrt(end[0, 0] * end[1, 1])
+
+
+def test_water_that_has_rained_leaves_the_cloud_as_warm_and_the_clear_air_behind_it_warmer():
+    ascent, cloud = over_mountains()
+    share = cloud.moment / ascent.length
+    less, more = (replace(ascent, most_liquid=keeps).path(cloud.pressure, share) for keeps in (1.001e-3, 0.999e-3))
+    lost = (more.rain - less.rain) / theory.WATER_MASS_RATIO * cloud.air
+    assert lost[-1] > 0.09
+    gained = np.cumsum(theory.LIQUID_HEAT_CAPACITY * lost * np.gradient(np.log(cloud.temperature)))
+    warmer = (more.temperature - less.temperature) / cloud.temperature
+    wet, dry = cloud.liquid > 10.0, (cloud.liquid == 0.0) & (share > 0.9)
+    # a molecule that leaves a cloud takes heat along, and changes its temperature a hundredth as much as behind it
+    assert np.abs(warmer - gained / cloud.cloudy_heat)[wet].max() < 2e-9
+    behind = (gained + (cloud.latent - np.log(cloud.humidity)) * lost) / cloud.clear_heat
+    assert warmer[dry] == pytest.approx(behind[dry], rel=1e-3)

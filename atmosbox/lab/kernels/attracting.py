@@ -14,7 +14,7 @@ from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.wells.vicinity import Vicinity
 from atmosbox.engine.wells.well_events import WellGas, specialise
-from atmosbox.lab.kernels.passing import Passed
+from atmosbox.lab.kernels.passing import Passed, shift_clocks
 
 __all__ = ["Lists", "attracting", "energy_of_wells", "warm_bath"]
 
@@ -92,17 +92,8 @@ def _next_time(gas):
 @kernel
 def _rebase(step, gas, book):
     """Let all clocks read small numbers again: see `AttractingParcelSet._rebase`."""
-    for i in range(gas.molecules.size):
-        gas.molecules[i].clock -= step
-        gas.events[i].contact_time -= step
-    times = gas.calendar.time
-    for k in range(times.size):
-        times[k] -= step
+    shift_clocks(step, gas, book)
     gas.bath.clock[0] -= step
-    gas.walls.piston[2] -= step
-    gas.tallies.progress[0] -= step
-    gas.walls.epoch[0] += step
-    book.now[0] -= step
 
 
 @functools.cache

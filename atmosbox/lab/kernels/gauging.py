@@ -16,6 +16,7 @@ from atmosbox.engine.core.walls import HEAT_BATH, wall_kT
 from atmosbox.engine.exact.encounter import kind_of, motion_at
 from atmosbox.engine.exact.turning import gauges as ledger_gauges
 from atmosbox.lab.kernels.hygrometer import Hygrometer, hygrometry
+from atmosbox.lab.kernels.passing import ascent_of
 from atmosbox.lab.kernels.presence import is_away, number_in_gas
 from atmosbox.lab.kernels.two_gases import Mixture, mixing
 
@@ -230,7 +231,8 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
         def end_lift(gas, ascent, book, gauges):
             """Read the state of a parcel that rises, by the ledger of its energy: see `instruments.Lift`."""
             lift = ascent.lift
-            at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, ascent)
+            here = ascent_of(ascent, book, ascent.filled)
+            at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, here)
             kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
             gauges.reading[Reading.PARCEL_KT] = kT
             gauges.reading[Reading.PARCEL_PRESSURE] = at.density * kT * (1.0 + lift.measured[0] * at.density)

@@ -39,10 +39,11 @@ class Hygrometer(NamedTuple):
     logarithms of the pressure over the planned one, ``adiabat : (row, place)`` gives the temperature of a parcel by
     theory [energy]; where that depends on the pressure alone, there is one row, and nothing is planned. ``level``,
     ``around : (place,)`` the virtual temperature of the environment [energy] by the logarithm of its pressure, and
-    ``mass`` of a molecule of water over one of air. All are empty where nobody asks.
+    ``mass`` of a molecule of water over one of air. All are empty in a scene without an ascent.
 
     ``width : (bin,)`` [energy], ``mean``, ``error : (bin,)`` [1/energy] the energies of molecules that left, of which
-    the first ``empty`` lie below the binding energy, and ``merged`` of the engine make one; empty where nobody asks.
+    the first ``empty`` lie below the binding energy, and ``merged`` of the engine make one; empty in a scene that does
+    not show them.
     """
 
     sums: Any

@@ -18,7 +18,7 @@ from atmosbox.lab.kernels.height_profile import end_profile
 from atmosbox.lab.kernels.moist_passing import moist_knobs
 from atmosbox.lab.kernels.passing import passing
 from atmosbox.lab.kernels.sight import sight
-from atmosbox.lab.kernels.starting import can_start, start, start_in_cells
+from atmosbox.lab.kernels.starting import can_start, starting
 
 __all__ = ["kernels"]
 
@@ -65,11 +65,11 @@ def note_frame(gas, gauges, speeds, layers):
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
     """Return the kernels for one set of modes by name, and for molecules that attract each other."""
     found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
-    found |= {"start": start_in_cells} if can_start(modes) else {}
+    found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
     if wells:
         pass_time, place, attract = attracting(modes)
         begin, sample, end_frame, look = clustering(modes)
-        found |= {"attract": attract, "warm_bath": warm_bath, "start": start}
+        found |= {"attract": attract, "warm_bath": warm_bath}
     else:
         pass_time, place = passing(modes)
         begin, sample, end_frame = gauging(modes)

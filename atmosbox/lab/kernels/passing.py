@@ -19,7 +19,7 @@ from atmosbox.engine.exact.turning import Ascent
 from atmosbox.lab.kernels.laying_out import LAST, NUMBER, STRIDE, choose_cells, write_cells
 from atmosbox.lab.kernels.moist_passing import moist_passing
 
-__all__ = ["Book", "Passed", "passing"]
+__all__ = ["Book", "Passed", "ascent_of", "passing", "shift_clocks"]
 
 # The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
 _DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
@@ -31,11 +31,12 @@ class Book(NamedTuple):
     """What a box knows beside its gas.
 
     ``now : (1,)`` the time that its clocks read [time]; ``epoch_length : (1,)`` after what time they begin anew [time];
-    ``moisture`` its liquid, 0 if it has none.
+    ``energy : (1,)`` what it had at the start [energy]; ``moisture`` its liquid, 0 if it has none.
     """
 
     now: Any
     epoch_length: Any
+    energy: Any
     moisture: Any
 
 
@@ -56,6 +57,13 @@ class Passed(IntEnum):
 
 
 @kernel
+def ascent_of(ascent, book, filled):
+    """Return an ascent with the energy of its start, above cells that were laid out for a ceiling of this height."""
+    a = ascent
+    return Ascent(a.lift, a.turns, filled, a.lowest, book.energy[0], a.gravity_work, a.freedom, a.diameter)
+
+
+@kernel
 def _as_laid_out(gas, layout):
     """Return the gas with its cells as they are now."""
     c, shape = gas.cells, layout.shape
@@ -67,20 +75,26 @@ def _as_laid_out(gas, layout):
 
 
 @kernel
-def _rebase(step, gas, book):
-    """Let all clocks read small numbers again: see `ParcelSet._rebase`."""
+def shift_clocks(step, gas, book):
+    """Let all clocks that every box has read so much less [time]."""
     for i in range(gas.molecules.size):
         gas.molecules[i].clock -= step
         gas.events[i].contact_time -= step
     times = gas.calendar.time
     for k in range(times.size):
         times[k] -= step
-    gas.cells.copies.epoch[START] -= step
-    gas.cells.copies.epoch[STOP] -= step
     gas.walls.piston[2] -= step
     gas.tallies.progress[0] -= step
     gas.walls.epoch[0] += step
     book.now[0] -= step
+
+
+@kernel
+def _rebase(step, gas, book):
+    """Let all clocks read small numbers again: see `ParcelSet._rebase`."""
+    shift_clocks(step, gas, book)
+    gas.cells.copies.epoch[START] -= step
+    gas.cells.copies.epoch[STOP] -= step
 
 
 @kernel
@@ -117,10 +131,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         @kernel
         def proceed(gas, ascent, book, layout, until, most):
             """Resolve events, and turn the piston as it is due."""
-            a = ascent
-            here = Ascent(
-                a.lift, a.turns, layout.filled[0], a.lowest, a.start_energy, a.gravity_work, a.freedom, a.diameter
-            )
+            here = ascent_of(ascent, book, layout.filled[0])
             return advance(_as_laid_out(gas, layout), here, book, until, most)
 
         @kernel

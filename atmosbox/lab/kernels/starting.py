@@ -4,19 +4,26 @@ It draws and places as the functions of `atmosbox.engine.start` do, in the same 
 pushes overlapping molecules apart is the engine's own kernel. `start_recipe` tells how a scene uses these functions.
 """
 
+import functools
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from atmosbox.engine.core.elementary import expm1, log1p, log_of_normal
 from atmosbox.engine.core.jit import kernel
+from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.rows import LONGEST, STOP, TOP_SPEED
 from atmosbox.engine.exact.rows import START as BEGUN
 from atmosbox.engine.start import overlap
+from atmosbox.lab.kernels.layering import write_layers
+from atmosbox.lab.kernels.moist_passing import moist_passing
+from atmosbox.lab.kernels.pairwise import pairwise_sum
 
-__all__ = ["ALONG_X", "AS_PLACED", "PATIENCE", "SHUFFLED", "STEP", "Start", "can_start", "start", "start_in_cells"]
+__all__ = ["ALONG_X", "AS_PLACED", "PATIENCE", "SHUFFLED", "STEP", "Start", "can_start", "starting"]
 
 AS_PLACED, SHUFFLED, ALONG_X = range(3)
 """How molecules that have been placed are numbered: as they were, in random order, or from left to right."""
@@ -34,32 +41,55 @@ _push = kernel(getattr(overlap._push, "py_func", overlap._push))
 class Start(NamedTuple):
     """How the molecules of a box are drawn and placed.
 
-    ``place``, ``order``, ``motion`` after how many random numbers those of each begin; ``numbered`` one of `AS_PLACED`,
-    `SHUFFLED`, `ALONG_X`; ``speed`` that all molecules have [length/time], 0 where speeds differ. ``spheres`` and
-    ``bins`` are what the engine pushes apart; ``factor : (molecule,)`` is sqrt(kT / m) [length/time], ``spread : (2,)``
-    how far molecules are from each other [length], and the fastest speed of the walls [length/time]. ``velocity :
-    (molecule, axis)``, ``key``, ``rank`` and ``other : (molecule,)`` and ``state : (1,)`` are scratch.
+    ``place``, ``order``, ``motion``, ``rotation`` after how many random numbers those of each begin; ``numbered`` one
+    of `AS_PLACED`, `SHUFFLED`, `ALONG_X`; ``scale_height`` of the air as it is placed [length], 0 if it is spread
+    evenly; ``planar`` 1 in a plane gas, else 0. ``speed`` that all molecules have [length/time], 0 where speeds differ.
+    ``twice`` the kinetic energy that they have together, twice, with the ``weight`` of them all, ``rotating`` their
+    energy of rotation [energy]: 0 each where it is as drawn. ``warmth`` kT of rotation, ``condensed`` the energy of the
+    liquid [energy]; ``warm`` how fast molecules may leave the warmest wall [length/time], in a box with liquid.
+
+    ``spheres`` and ``bins`` are what the engine pushes apart; ``factor : (molecule,)`` is sqrt(kT / m) [length/time],
+    ``mass`` and ``degrees : (molecule,)`` mass and rotational degrees of freedom. ``spread : (2,)`` how far molecules
+    are from each other [length], and the fastest speed of the walls and of the fall between two of them [length/time].
+    ``at`` is what the law of the piston asks of the gas, the energy apart, and ``column`` what decides
+    on its layers: 0 each in a box without. ``velocity : (molecule, axis)``, ``key : (3 molecule,)``, ``rank`` and
+    ``other : (molecule,)``, ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
     """
 
     place: int
     order: int
     motion: int
+    rotation: int
     numbered: int
+    scale_height: float
+    planar: int
     speed: float
+    twice: float
+    weight: float
+    rotating: float
+    warmth: float
+    condensed: float
+    warm: float
     spheres: Any
     bins: Any
     factor: Any
+    mass: Any
+    degrees: Any
     spread: Any
+    at: Any
+    column: Any
     velocity: Any
     key: Any
     rank: Any
     other: Any
+    waiting: Any
+    partial: Any
     state: Any
 
 
 def can_start(modes: Modes) -> bool:
-    """Tell whether boxes of a set of modes can be begun in the page: cells and piston must not follow the energy."""
-    return not (modes.gravity or modes.piston or modes.phases)
+    """Tell whether boxes of a set of modes can be begun in the page: there must be no drops that can be seen."""
+    return not modes.drops and (modes.ascends or not modes.piston)
 
 
 @kernel
@@ -80,7 +110,7 @@ def _skip(seed, number, state):
 @kernel
 def _sort(key, rank, other):
     """Write down in which order keys rise, of equal ones the first first: runs that double are merged."""
-    number = key.size
+    number = rank.size
     for k in range(number):
         rank[k] = k
     width = 1
@@ -109,6 +139,11 @@ def _place(seed, start):
     for i in range(x.shape[0]):
         for axis in range(3):
             x[i, axis] = low[i, axis] + uniform(state) * (high[i, axis] - low[i, axis])
+    if start.scale_height > 0.0:
+        for i in range(x.shape[0]):
+            reach = high[i, 2] - low[i, 2]
+            thinned = log1p(uniform(state) * expm1(-reach / start.scale_height))
+            x[i, 2] = low[i, 2] - start.scale_height * thinned
     for _ in range(PATIENCE):
         spheres.moved[:] = True
         if _push(spheres, start.bins, _ROUNDS, _GAP) == 0:
@@ -125,9 +160,15 @@ def _number(seed, start):
     if start.numbered == AS_PLACED:
         return
     _skip(seed, start.order, start.state)
-    for i in range(key.size):
+    for i in range(rank.size):
         key[i] = uniform(start.state) if start.numbered == SHUFFLED else start.spheres.x[i, 0]
     _sort(key, rank, start.other)
+
+
+@kernel
+def _sum(number, start):
+    """Return the sum of the first numbers of ``key``, as numpy takes it."""
+    return pairwise_sum(start.key, number, start.waiting, start.partial)
 
 
 @kernel
@@ -142,50 +183,173 @@ def _move(seed, start):
         if k + 1 < number:
             v[(k + 1) // 3, (k + 1) % 3] = two
     for i in range(v.shape[0]):
+        if start.planar != 0:
+            v[i, 1] = 0.0
         size = 0.0
         if start.speed > 0.0:
             size = math.sqrt(v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
         for axis in range(3):
             v[i, axis] = start.speed * v[i, axis] / size if start.speed > 0.0 else v[i, axis] * factor[i]
+    if start.twice > 0.0:
+        _be_at_rest(start)
 
 
 @kernel
-def start(gas, book, begun, seed):
-    """Place and move all molecules as the start of a seed does; tell whether that was possible."""
-    word = np.uint64(seed)
-    if not _place(word, begun):
-        return 1
-    _number(word, begun)
-    _move(word, begun)
-    squares = 0.0
-    for i in range(gas.molecules.size):
-        molecule, k = gas.molecules[i], begun.rank[i]
-        molecule.x = begun.spheres.x[k, 0]
-        molecule.y = begun.spheres.x[k, 1]
-        molecule.z = begun.spheres.x[k, 2]
-        molecule.vx = begun.velocity[i, 0]
-        molecule.vy = begun.velocity[i, 1]
-        molecule.vz = begun.velocity[i, 2]
-        squares += molecule.vx * molecule.vx + molecule.vy * molecule.vy + molecule.vz * molecule.vz
-    gas.tallies.random[0] = _first_state(word, _FIRST_OF_RUN)
-    # the largest power of two within the time in which a molecule passes its neighbour's place: see `natural_time`
-    spread = begun.spread[0] / max(math.sqrt(squares / gas.molecules.size), begun.spread[1])
+def _be_at_rest(start):
+    """Take the drift out of the velocities, and give them the energy that they are to have."""
+    v, mass, key = start.velocity, start.mass, start.key
+    px = py = pz = 0.0
+    for i in range(mass.size):
+        px += mass[i] * v[i, 0]
+        py += mass[i] * v[i, 1]
+        pz += mass[i] * v[i, 2]
+    px, py, pz = px / start.weight, py / start.weight, pz / start.weight
+    for i in range(mass.size):
+        v[i, 0] -= px
+        v[i, 1] -= py
+        v[i, 2] -= pz
+        for axis in range(3):
+            key[3 * i + axis] = mass[i] * v[i, axis] * v[i, axis]
+    factor = math.sqrt(start.twice / _sum(3 * mass.size, start))
+    for i in range(mass.size):
+        for axis in range(3):
+            v[i, axis] *= factor
+
+
+@kernel
+def _turn(seed, start, energy):
+    """Draw the energies of rotation of all molecules of the gas, and return their sum: see `rotational_energies`."""
+    degrees, state, key = start.degrees, start.state, start.key
+    _skip(seed, start.rotation, state)
+    for i in range(degrees.size):
+        drawn = -log_of_normal(uniform(state))
+        energy[i] = drawn if degrees[i] >= 2.0 else 0.0
+    spare, other = False, 0.0
+    for i in range(degrees.size):
+        if degrees[i] % 2.0 == 1.0:
+            deviate = other
+            if not spare:
+                deviate, other = gaussian_pair(state)
+            spare = not spare
+            energy[i] += 0.5 * deviate * deviate
+        energy[i] *= start.warmth
+        key[i] = energy[i]
+    if start.rotating > 0.0:
+        factor = start.rotating / _sum(degrees.size, start)
+        for i in range(degrees.size):
+            energy[i] *= factor
+            key[i] = energy[i]
+    return _sum(degrees.size, start)
+
+
+@kernel
+def _kinetic_energy(start):
+    """Return the kinetic energy of all molecules: see `Account.energy`."""
+    v = start.velocity
+    for i in range(v.shape[0]):
+        start.key[i] = start.mass[i] * (v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
+    return 0.5 * _sum(v.shape[0], start)
+
+
+@kernel
+def _fastest(start):
+    """Return the speed of the fastest molecule [length/time]."""
+    v, square = start.velocity, 0.0
+    for i in range(v.shape[0]):
+        square = max(square, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2])
+    return math.sqrt(square)
+
+
+@kernel
+def _write_epoch(start, book):
+    """Write after what time clocks begin anew: 1024 times what a molecule takes to its neighbour, or half as much.
+
+    It is a power of two: see `natural_time` and `ParcelSet`.
+    """
+    v, squares = start.velocity, 0.0
+    for axis in range(3):
+        for i in range(v.shape[0]):
+            start.key[i] = v[i, axis] * v[i, axis]
+        squares += _sum(v.shape[0], start)
+    time = start.spread[0] / max(math.sqrt(squares / v.shape[0]), start.spread[1])
     power = 1.0
-    while power > spread:
+    while power > time:
         power *= 0.5
-    while 2.0 * power <= spread:
+    while 2.0 * power <= time:
         power *= 2.0
     book.epoch_length[0] = 1024.0 * power
-    return 0
 
 
-@kernel
-def start_in_cells(gas, book, begun, seed):
-    """Do the same where molecules are entered in cells, whose copies of them are to be written anew."""
-    failed = start(gas, book, begun, seed)
-    epoch = gas.cells.copies.epoch
-    epoch[BEGUN] = 0.0
-    epoch[STOP] = math.inf
-    epoch[TOP_SPEED] = 0.0
-    epoch[LONGEST] = book.epoch_length[0]
-    return failed
+@functools.cache
+def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
+    """Return the kernel ``start`` of one set of modes, and for molecules that attract each other."""
+
+    @kernel
+    def prepare_cells(kinetic, gas, book, begun):
+        """Let the copies in cells be written anew, and choose layers of cells; tell whether that was possible."""
+        if wells:
+            return True
+        epoch = gas.cells.copies.epoch
+        epoch[BEGUN] = 0.0
+        epoch[STOP] = math.inf
+        epoch[TOP_SPEED] = 0.0
+        epoch[LONGEST] = book.epoch_length[0]
+        if modes.gravity:
+            dimensions = 2.0 if begun.planar != 0 else 3.0
+            return write_layers(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.column)
+        return True
+
+    if modes.ascends:
+
+        @kernel
+        def begin_ascent(gas, ascent, book, begun):
+            """Give the piston its first velocity."""
+            a, energy = begun.at, book.energy[0] - begun.condensed
+            at = Gauges(a.time, a.number, a.freedom, a.dimensions, energy, a.virial, a.density, a.open_height)
+            gas.walls.piston[1] = ceiling_velocity(at, ascent.lift)
+
+    else:
+
+        @kernel
+        def begin_ascent(gas, ascent, book, begun):
+            """Do nothing: no piston rises."""
+
+    if modes.phases:
+        _, _, _, draw, wake = moist_passing(modes)
+
+        @kernel
+        def begin_liquid(gas, ascent, book, begun):
+            """Draw when the liquid does something first, and give the piston its first velocity."""
+            draw(gas, book, max(_fastest(begun), begun.warm))
+            begin_ascent(gas, ascent, book, begun)
+            wake(gas, book, 2.0 * abs(gas.walls.piston[1]))
+
+    else:
+        begin_liquid = begin_ascent
+
+    @kernel
+    def start(gas, ascent, book, begun, seed):
+        """Place and move all molecules as the start of a seed does; tell whether that was possible."""
+        word = np.uint64(seed)
+        if not _place(word, begun):
+            return 1
+        _number(word, begun)
+        _move(word, begun)
+        for i in range(begun.rank.size):
+            molecule, k = gas.molecules[i], begun.rank[i]
+            molecule.x = begun.spheres.x[k, 0]
+            molecule.y = begun.spheres.x[k, 1]
+            molecule.z = begun.spheres.x[k, 2]
+            molecule.vx = begun.velocity[i, 0]
+            molecule.vy = begun.velocity[i, 1]
+            molecule.vz = begun.velocity[i, 2]
+        gas.tallies.random[0] = _first_state(word, _FIRST_OF_RUN)
+        _write_epoch(begun, book)
+        kinetic = _kinetic_energy(begun)
+        rotational = _turn(word, begun, gas.kinds.rotational_energy) if modes.rotation else 0.0
+        book.energy[0] = kinetic + rotational + begun.condensed
+        begin_liquid(gas, ascent, book, begun)
+        return 0 if prepare_cells(kinetic, gas, book, begun) else 1
+
+    made: Callable[..., Any] = start
+    return made

@@ -47,18 +47,33 @@ class Machine {
   }
 }
 
-// The starts of a page, by number of molecules or by title: the plan of each, and what its memory holds.
+// What a plan says together with the first one; "=" stands before what replaces all that is there.
+function merged(own, first) {
+  if (Array.isArray(own)) return own.length === first?.length ? own.map((each, place) => merged(each, first[place])) : own;
+  if (own === null || typeof own !== "object" || first === null || typeof first !== "object") return own;
+  if ("=" in own) return own["="];
+  const news = Object.entries(own).map(([name, value]) => [name, merged(value, first[name])]);
+  return { ...first, ...Object.fromEntries(news) };
+}
+
+// The starts of a page, by their settings or by title: the plan of each, and what its memory holds. A plan says only
+// what differs from the first one.
 class Starts {
   static async of({ starts, module, stored }) {
     const all = await inflated(bytesOf(stored)), found = new Map();
     let at = 0;
+    const first = () => JSON.parse(new TextDecoder().decode(all.subarray(0, starts[0][1])));
     for (const [key, said, held] of starts) {
       const from = at;
-      found.set(key, () => ({ plan: JSON.parse(new TextDecoder().decode(all.subarray(from, from + said))),
+      found.set(key, () => ({ plan: merged(JSON.parse(new TextDecoder().decode(all.subarray(from, from + said))), first()),
         stored: all.subarray(from + said, from + said + held) }));
       at += said + held;
     }
-    return Object.assign(new Starts(), { found, first: starts[0][0], module: await WebAssembly.compile(await inflated(bytesOf(module))) });
+    return Object.assign(new Starts(), { found, first: starts[0][0], values: first().start, module: await WebAssembly.compile(await inflated(bytesOf(module))) });
+  }
+
+  has(key) {
+    return this.found.has(key);
   }
 
   async machine(key) {

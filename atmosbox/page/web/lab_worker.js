@@ -36,13 +36,14 @@ class Box {
 
   take(machine) {
     Object.assign(this, { machine, plan: machine.plan, told: machine.plan.told });
+    if (!this.plan.seeded) this.seed = this.plan.seed;
   }
 
   begin() {
     const { machine } = this;
     machine.restore();
     if (this.plan.seeded) {
-      machine.set("start", "3", BigInt(this.seed));
+      machine.set("start", "4", BigInt(this.seed));
       if (machine.call("start") !== DONE) throw new Error("the molecules find no room");
     }
     if (machine.call("place") !== DONE) throw new Error("the molecules do not fit into their cells");
@@ -214,7 +215,7 @@ class Box {
 
   async obey(message) {
     const { type, value, name } = message;
-    if (type === "set" && name === "molecules") await this.choose(value);
+    if (type === "set" && name in this.plan.start) await this.choose(name, String(value));
     else if (type === "preset") await this.try(message.number);
     else if (type === "play") {
       if (this.failed) this.again();
@@ -240,14 +241,17 @@ class Box {
     say(this.state());
   }
 
-  // Begin anew with another number of molecules, which is another box.
-  async choose(molecules) {
-    const { choices = [] } = this.told.controls.find(({ name }) => name === "molecules") ?? {};
-    if (!choices.includes(String(molecules))) {
-      refuse(`molecules = ${molecules} is none of ${choices.join(", ")}: give one of these.`);
+  // Begin anew with another setting, as another number of molecules, which is another box. Where the page has not room
+  // for both this value and the others that are set, the others become those that the page was written with.
+  async choose(name, value) {
+    const { choices = [] } = this.told.controls.find((each) => each.name === name) ?? {};
+    if (!choices.includes(value)) {
+      refuse(`${name} = ${value} is none of ${choices.join(", ")}: give one of these.`);
       return;
     }
-    this.take(await this.starts.machine(molecules));
+    const key = (values) => Object.entries({ ...values, [name]: value }).map((pair) => pair.join("=")).join(", ");
+    const [here, written] = [key(this.plan.start), key(this.starts.values)];
+    this.take(await this.starts.machine(this.starts.has(here) ? here : written));
     this.again();
   }
 

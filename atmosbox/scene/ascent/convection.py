@@ -28,7 +28,7 @@ __all__ = ["convection_headlines"]
 Array = NDArray[np.float64]
 _NEAR = 4
 """How many frames on either side smooth one of them."""
-_DRAWN = 200
+_DRAWN = 1000
 _SEED = 20
 _LEAST = 0.9
 """Which share of the parcels drawn must have a level for it to be reported."""

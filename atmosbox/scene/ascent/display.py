@@ -25,7 +25,7 @@ BLOCK = 7
 """Over how many frames a temperature is averaged that is compared with the adiabat."""
 LEAST, CLUSTERED = 0.1, 3.0
 """From which share of all water on liquid counts as a cloud, and how many times its scatter that is at least."""
-_DRAWN = 200
+_DRAWN = 1000
 _SEED = 21
 REASON = "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid"
 
@@ -196,18 +196,22 @@ def _cloud_base(
     off = path.vapor + held + unit * (known.late - known.clustered)
     frames = dataset.environment_pressure.values
     v = np.interp(np.log(frames[::-1]), np.log(np.array(ascent.route))[::-1], off[::-1])[::-1]
-    expected = law.measured_cloud_base(frames, v, ascent.total_water - v, noise, least)
-    shift = expected.pressure - ascent.base if expected is not None else 0.0
-    where = "up" if shift < 0.0 else "down"
     # what noise does to the level goes by the slope of the curve, which is noisy itself: where that of a run happens to
-    # be flat its error would be several times too large, and the level too low. So parcels are drawn about theory's
+    # be flat its error would be several times too large, and the level too low. So parcels are drawn about theory's;
+    # their mean is off by what is known and by what noise does to the level on average
     root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
     drawn = np.clip(
         v + np.random.default_rng(_SEED).standard_normal((_DRAWN, len(v))) @ root.T, 0.0, ascent.total_water
     )
     seen = [law.measured_cloud_base(frames, each, ascent.total_water - each, noise, least) for each in drawn]
     levels = [each.pressure for each in seen if each is not None]
-    error = float(np.std(levels, ddof=1)) if len(levels) > 0.5 * _DRAWN else base.standard_error
+    if len(levels) > 0.5 * _DRAWN:
+        error, expected = float(np.std(levels, ddof=1)), float(np.mean(levels))
+    else:
+        quiet = law.measured_cloud_base(frames, v, ascent.total_water - v, noise, least)
+        error, expected = base.standard_error, quiet.pressure if quiet else ascent.base
+    shift = expected - ascent.base
+    where = "up" if shift < 0.0 else "down"
     return [
         Headline(
             "cloud_base",
@@ -215,7 +219,8 @@ def _cloud_base(
             error,
             ascent.base,
             abs(shift),
-            f"vapour must find liquid, spheres have volume: {abs(shift) / 100.0:.1f} hPa too far {where} on average",
+            "vapour must find liquid, spheres have volume, noise bends the curve: "
+            f"{abs(shift) / 100.0:.1f} hPa too far {where} on average",
             "Pa",
             "hPa",
             "cloud base",

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
 from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
-from atmosbox.scene.ascent.way import RAIN, MoistAscent
+from atmosbox.scene.ascent.raining import walk
+from atmosbox.scene.ascent.way import MoistAscent
 
-__all__ = ["Drift", "comparable", "drift", "least_cloud", "rain_scatter", "rained", "warmth_of"]
+__all__ = ["Drift", "comparable", "drift", "least_cloud", "rain_scatter", "rained"]
 
 Array = NDArray[np.float64]
 _PLACES = 24
@@ -114,20 +115,6 @@ def drift(ascent: MoistAscent, *, ideal: bool) -> Drift:
     )
 
 
-def warmth_of(water: float, temperature: float) -> float:
-    """Return by how much so much water per dry air [kg kg-1] warms the air when it condenses [K]."""
-    latent = law.BINDING_TEMPERATURE / temperature - (law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY)
-    return temperature * latent / 3.5 * water / law.WATER_MASS_RATIO
-
-
-def _at_the_top(ascent: MoistAscent) -> tuple[float, float]:
-    """Return variance and memory [mean free times at the start] of the number of liquid molecules at the top."""
-    cloud = _planned_cloud(ascent, False)
-    top = int(np.argmin(cloud.pressure))
-    variance = float(np.linalg.inv(cloud.resists[top])[0, 0])
-    return variance, variance / float(cloud.yields[top, 0, 0])
-
-
 def least_cloud(ascent: MoistAscent) -> float:
     """Return how much liquid a cloud must hold before it rains, so that no chance surplus does [kg kg-1].
 
@@ -135,7 +122,8 @@ def least_cloud(ascent: MoistAscent) -> float:
     """
     if not ascent.vapour:
         return 0.0
-    scatter = math.sqrt(_at_the_top(ascent)[0])
+    cloud = _planned_cloud(ascent, False)
+    scatter = math.sqrt(float(np.linalg.inv(cloud.resists[int(np.argmin(cloud.pressure))])[0, 0]))
     return law.WATER_MASS_RATIO * 3.0 * scatter / (ascent.molecules - ascent.vapour)
 
 
@@ -156,19 +144,6 @@ def rained(ascent: MoistAscent) -> law.ParcelPath:
 
 
 def rain_scatter(ascent: MoistAscent) -> float:
-    r"""Return by how much the rain scatters, per dry air [kg kg-1].
-
-    What is left of the water is decided in the last time 1/r, when hardly any more condenses: the cloud scatters by s
-    about what it holds, and rains half of the time, so that a surplus goes at the rate r/2. The rain follows the
-    positive half of a normal scatter that is remembered for the time :math:`\tau`, whose variance is
-    :math:`s^2 (1/2 - 1/2 \pi)`: this leaves :math:`(1 - 1/\pi) s^2 r \tau`. And molecules fall one by one:
-    :math:`s / \sqrt{2 \pi}` are too many on average, and as large is the variance. Of what condenses meanwhile, J
-    molecules in a mean free time, half of J/r comes to it.
-    """
-    variance, memory = _at_the_top(ascent)
-    cloud = _planned_cloud(ascent, False)
-    top = int(np.argmin(cloud.pressure))
-    surplus = max(float(cloud.change[: top + 1, 0][-20:].mean()) / RAIN, 0.0)
-    unsteady = (1.0 - 1.0 / math.pi) * variance * RAIN * memory + math.sqrt(variance / (2.0 * math.pi))
-    lost = math.sqrt(max(unsteady + 0.5 * surplus, 1.0))
+    """Return by how much the rain of a whole way scatters, per dry air [kg kg-1]; at least by one molecule."""
+    lost = math.sqrt(max(float(walk(_planned_cloud(ascent, False)).covariance[-1, 1, -1, 1]), 1.0))
     return law.WATER_MASS_RATIO * lost / (ascent.molecules - ascent.vapour)

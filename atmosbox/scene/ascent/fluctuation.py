@@ -1,12 +1,13 @@
 r"""How far chance takes a parcel from its adiabat, and for how long: the covariance of its frames.
 
 A single run cannot tell it: what its entropy has gathered by chance stays to the end, and so neighbouring frames are
-off to the same side. Two parts follow from the molecules.
+off to the same side. Three parts follow from the molecules.
 
 * **Vapour and heat** that have not found their way to the liquid, or not back: `near_equilibrium` says how far x
   scatters and how fast it returns, :math:`C(t) = e^{-L G t} G^{-1}`. It is forgotten within a frame or two.
 * **Entropy** that has been gathered by chance: `dissipation` says how its variance grows. At a given pressure it shows
   in the temperature as :math:`\delta T = T \, \delta S / C_p`, where C_p counts the heat of condensing.
+* **Rain**, if it rains: of what has fallen by chance nothing evaporates again, see `raining`.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.scene.ascent.dissipation import entropy_gain, gathered
+from atmosbox import theory as law
+from atmosbox.scene.ascent.dissipation import gathered
 from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
+from atmosbox.scene.ascent.raining import walk
 from atmosbox.scene.ascent.way import MoistAscent
 
 __all__ = ["along_frames", "temperature_covariance", "vapour_covariance"]
@@ -56,18 +59,18 @@ def _of_means(covariance: Array, samples: int) -> Array:
     return np.asarray(covariance.reshape(frames, samples, frames, samples).mean(axis=(1, 3)))
 
 
-def _covariance(cloud: Cloud, seen: Array, held: Array, samples: int) -> Array:
-    """Return the covariance of frame means of what x shows as ``seen``, and a unit of entropy as ``held``."""
+def _covariance(cloud: Cloud, seen: Array, cloudy: Array, clear: Array, samples: int) -> Array:
+    """Return the covariance of frame means of what x shows as ``seen``, and S and R in a cloud and in clear air."""
     root = np.linalg.cholesky(cloud.resists)
     rate, mode = np.linalg.eigh(np.einsum("tji,tjk,tkl->til", root, cloud.forgets, root))
     size = np.einsum("tji,tj->ti", mode, np.linalg.solve(root, seen[:, :, None])[:, :, 0])
-    found = np.zeros((len(held), len(held)))
+    walked = walk(cloud)
+    found = walked.shown(cloudy + walked.clear[:, None] * (clear - cloudy))
     for k in range(2):
         age = gathered(rate[:, k], cloud.moment)
         amplitude = np.abs(size[:, k])
         found += np.outer(amplitude, amplitude) * np.exp(-np.abs(age[:, None] - age))
-    variance = gathered(entropy_gain(cloud).variance, cloud.moment)
-    return _of_means(found + np.outer(held, held) * np.minimum(variance[:, None], variance), samples)
+    return _of_means(found, samples)
 
 
 def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False) -> Array:
@@ -86,18 +89,24 @@ def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False)
     -------
     (frame, frame) ndarray
     """
-    held = 1.0 / cloud.heat
-    if density:  # warmer air holds more vapour
-        held = held * np.where(cloud.liquid > 0.0, 1.0 + cloud.vapour / cloud.air * cloud.latent, 1.0)
-    return _covariance(cloud, cloud.seen(density=density), held, samples)
+    none = np.zeros_like(cloud.moment)
+    cloudy = np.stack([1.0 / cloud.cloudy_heat, none], axis=1)
+    clear = np.stack([1.0 / cloud.clear_heat, (cloud.latent - np.log(cloud.humidity)) / cloud.clear_heat], axis=1)
+    if density:  # warmer air holds more vapour, and water that has rained weighs nothing
+        carried = law.WATER_MASS_RATIO / (cloud.air + law.WATER_MASS_RATIO * (cloud.vapour + cloud.liquid))
+        cloudy += np.stack([cloud.dries / cloud.gas, carried], axis=1)
+        clear[:, 1] += carried - 1.0 / cloud.gas
+    return _covariance(cloud, cloud.seen(density=density), cloudy, clear, samples)
 
 
 def vapour_covariance(cloud: Cloud, samples: int) -> Array:
     """Return the covariance of the frame means of the number of molecules of vapour, (frame, frame)."""
-    share = cloud.vapour / cloud.air
-    held = np.where(cloud.liquid > 0.0, cloud.vapour * (1.0 + share) * cloud.latent / cloud.heat, 0.0)
-    gone = np.zeros((len(held), 2))
+    none = np.zeros_like(cloud.moment)
+    gone = np.zeros((len(none), 2))
     gone[:, 0] = -1.0
     # beside theory's vapour at the pressure that the gas then has
     pressure = cloud.warms - np.array([1.0, 0.0]) / cloud.gas[:, None]
-    return _covariance(cloud, gone - cloud.vapour_slope[:, None] * pressure, held, samples)
+    seen = gone - cloud.vapour_slope[:, None] * pressure
+    return _covariance(
+        cloud, seen, np.stack([cloud.dries, none], axis=1), np.stack([none, none - 1.0], axis=1), samples
+    )

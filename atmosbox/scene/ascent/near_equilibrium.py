@@ -9,22 +9,34 @@ are driven back; the counted rates at which molecules meet the droplets make Ons
 Both follow from what is put into the box; nothing is fitted. Energies are over kT, times in mean free times at the
 start.
 
+**The slow ones wait.** Fast molecules meet the droplets first, slow ones stay behind until a contact makes them fast.
+Were contacts so frequent that all speeds are always there, L would count the molecules that meet the droplets; in a
+small box, whose droplets are nearer than a mean free path, it is a fifth less, and what is out of balance lasts as much
+longer. For a time :math:`1/\nu` in which contacts make good the speeds, the gas :math:`f (1 + \varphi)` beside a liquid
+of the force :math:`\psi`, from which a flux s is taken as by hydrodynamics, rests where :math:`k v (\varphi - \psi) +
+\nu \varphi = -s`, with the rate k v at which a molecule meets the droplets. All three are sums of what contacts keep, B
+= (1 for vapour, 1 for air, energy), and :math:`\varphi` contains none of it; with :math:`M = \langle B B \rangle` and
+:math:`S = \langle B B / (k v + \nu) \rangle` the flux for a force is
+
+.. math:: L = M S^{-1} M - \nu M .
+
 References
 ----------
 Onsager, L. (1931), doi:10.1103/PhysRev.37.405. Landau and Lifshitz, Statistical Physics, part 1, sections 110 and 118
-to 120.
+to 120. Bhatnagar, Gross and Krook (1954), doi:10.1103/PhysRev.94.511, for contacts that make good the speeds.
 """
 
 from __future__ import annotations
 
 import functools
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atmosbox import theory as law
-from atmosbox.scene.ascent.way import MoistAscent
+from atmosbox.scene.ascent.way import RAIN, MoistAscent
 
 __all__ = ["Cloud", "cloud_along"]
 
@@ -33,6 +45,16 @@ _CARRIED = np.array([[1.0, 3.5], [3.5, 3.5**2 + 3.5]])
 """A molecule arrives with 7/2 kT on average, of variance 7/2: means of 1, e and e^2."""
 _NO_VAPOUR = 1e-6
 """Molecules of vapour, and relative humidity, of dry air: so that no logarithm is infinite."""
+_NODES, _FASTEST = 48, 6.0
+"""Of the sums over speeds: how many, and up to which, over sqrt(2 kT/m)."""
+_AIR_ROTATION, _VAPOUR_ROTATION = 1.0, 1.5
+"""Mean energy of the rotation, over kT, and its variance."""
+_SPEEDS = 1.5 * 1.016 * 1.25
+"""Within how many mean free times contacts make good the speeds: three halves of the time of a shear.
+
+So theory has it for the fourth moment of the velocity. A rotation takes 2, a molecule of water in air 1.4; between the
+two L differs by a hundredth.
+"""
 
 
 class Cloud(NamedTuple):
@@ -58,8 +80,8 @@ class Cloud(NamedTuple):
     warms: Array
     air_heat: Array
     """Heat capacity of the gas at constant volume, in k."""
-    heat: Array
-    """Heat capacity at constant pressure of all, that of condensing included, in k."""
+    clear_heat: Array
+    """Heat capacity at constant pressure of all, if no vapour condenses, in k."""
     slope: Array
     """d ln T / d ln p along the adiabat."""
     expansion: Array
@@ -79,6 +101,27 @@ class Cloud(NamedTuple):
     """How much longer the number of liquid molecules is remembered because it cannot be less than none, 1 to 2."""
     air: float
     """Molecules of dry air."""
+    humidity: Array
+    """Relative humidity, at most 1."""
+    keeps: float
+    """Molecules of liquid that the cloud holds before it rains, infinite if it does not."""
+    rains: float
+    """How often a molecule that is too many for the cloud falls out."""
+
+    @property
+    def cloudy_heat(self) -> Array:
+        """Heat capacity at constant pressure of all, that of condensing included, in k."""
+        return np.asarray(self.clear_heat + self.vapour * (1.0 + self.vapour / self.air) * self.latent**2)
+
+    @property
+    def dries(self) -> Array:
+        """By how many molecules of vapour there are more in a cloud that has a unit of entropy more."""
+        return np.asarray(self.vapour * (1.0 + self.vapour / self.air) * self.latent / self.cloudy_heat)
+
+    @property
+    def heat(self) -> Array:
+        """The heat capacity at constant pressure that theory has there, in k."""
+        return np.where(self.liquid > 0.0, self.cloudy_heat, self.clear_heat)
 
     @property
     def forgets(self) -> Array:
@@ -191,6 +234,46 @@ def _longer(a: Array) -> Array:
     return np.interp(a, *_memories())
 
 
+def _conducts(vapour: Array, air: float, vapour_meets: Array, air_meets: Array, speeds: Array) -> Array:
+    """Return L of vapour and air, for the times in which either meets the droplets and contacts make good the speeds.
+
+    Examples
+    --------
+    With very frequent contacts it counts who meets the droplets and what they carry; the slow make it less:
+
+    >>> one = np.ones(1)
+    >>> for speeds in (1e-4, 1.9):
+    ...     print(_conducts(40.0 * one, 2000.0, 0.5 * one, 0.6 * one, speeds * one)[0].round())
+    [[   80.   280.]
+     [  280. 11259.]]
+    [[  68.  237.]
+     [ 237. 9205.]]
+    """
+    root, weight = np.polynomial.legendre.leggauss(_NODES)
+    c = 0.5 * _FASTEST * (root + 1.0)
+    weight = weight * c * c * np.exp(-c * c)
+    weight /= weight.sum()
+    often = c / np.sum(weight * c)
+    found = np.zeros((2, len(vapour), 3, 3))  # S and M
+    root_vapour, root_air = np.sqrt(vapour), np.full_like(vapour, math.sqrt(air))
+    for k, (number, meets, r) in enumerate(
+        ((root_vapour, vapour_meets, _VAPOUR_ROTATION), (root_air, air_meets, _AIR_ROTATION))
+    ):
+        waits = weight / (often / meets[:, None] + 1.0 / speeds[:, None])
+        for matrix, at in zip(found, (waits, np.broadcast_to(weight, waits.shape)), strict=True):
+            none, one, two = (np.sum(at * c**power, axis=1) for power in (0, 2, 4))
+            share = number / root_air
+            matrix[:, k, k] = none
+            matrix[:, k, 2] = matrix[:, 2, k] = share * (one + r * none)
+            matrix[:, 2, 2] += share * share * (two + 2.0 * r * one + (r * r + r) * none)
+    waiting, kept = found
+    whole = kept @ np.linalg.solve(waiting, kept) - kept / speeds[:, None, None]
+    # no air stays in the liquid
+    pair = np.linalg.inv(np.linalg.inv(whole)[:, ::2, ::2])
+    size = np.stack([root_vapour, root_air], axis=1)
+    return np.asarray(pair * size[:, :, None] * size[:, None, :])
+
+
 def cloud_along(
     ascent: MoistAscent, pressure: Array, share: Array, *, ideal: bool = False, path: law.ParcelPath | None = None
 ) -> Cloud:
@@ -259,12 +342,12 @@ def cloud_along(
     meets = 4.0 * tall / (ascent.area * thermal * squeezed)
     of_air, of_vapour = (meets / float(law.mean_speed(1.0, mass)) for mass in (1.0, law.WATER_MASS_RATIO))
     condenses, hits = vapour * humidity / of_vapour, air / of_air
-    yields = condenses[:, None, None] * _CARRIED
-    yields[:, 1, 1] += 3.0 * hits  # a molecule of air shares 3 kT with the liquid
+    free_time = ascent.pressure / pressure * thermal
+    yields = _conducts(vapour * humidity, air, of_vapour, of_air, _SPEEDS * free_time)
 
     held, latent = vapour / air, binding - (capacity - law.VAPOR_HEAT_CAPACITY)
-    heat = 3.5 + ascent.nuclei_heat + law.VAPOR_HEAT_CAPACITY * held
-    wet = heat + capacity * liquid / air + held * (1.0 + held) * latent**2
+    heat = 3.5 + ascent.nuclei_heat + law.VAPOR_HEAT_CAPACITY * held + capacity * liquid / air
+    wet = heat + held * (1.0 + held) * latent**2
     slope = np.where(liquid > 0.0, (1.0 + held) * (1.0 + held * latent) / wet, (1.0 + held) / heat)
     return Cloud(
         moment=moment,
@@ -277,14 +360,17 @@ def cloud_along(
         yields=yields,
         warms=warms,
         air_heat=np.asarray(gas_heat),
-        heat=air * np.where(liquid > 0.0, wet, heat),
+        clear_heat=air * heat,
         slope=slope,
         expansion=np.gradient(np.log(t) - np.log(pressure), moment),
         height=np.asarray(tall / thermal),
-        free_time=np.asarray(ascent.pressure / pressure * thermal),
+        free_time=np.asarray(free_time),
         meets=np.asarray(of_air),
         hits=np.asarray(hits + condenses),
         liquid_heat=np.asarray(liquid_heat),
         bounded=_longer(mode / np.sqrt(free)),
         air=air,
+        humidity=humidity,
+        keeps=float(ascent.keeps) if ascent.rains else math.inf,
+        rains=RAIN if ascent.rains else 0.0,
     )

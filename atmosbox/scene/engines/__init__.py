@@ -6,6 +6,6 @@ the output.
 """
 
 from atmosbox.scene.engines.declared import ENGINES, Engine
-from atmosbox.scene.engines.engine_choice import EXACT, EngineChoice, choose, names, used
+from atmosbox.scene.engines.engine_choice import EXACT, FEW, EngineChoice, choose, names, suited, used
 
-__all__ = ["ENGINES", "EXACT", "Engine", "EngineChoice", "choose", "names", "used"]
+__all__ = ["ENGINES", "EXACT", "FEW", "Engine", "EngineChoice", "choose", "names", "suited", "used"]

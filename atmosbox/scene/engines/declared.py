@@ -157,7 +157,7 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
             ),
             Engine(
                 "dsmc",
-                "equal steps: in each cell partners of collisions are drawn at random; for a hundred thousand and more",
+                "equal steps: in each cell partners of collisions are drawn at random; for many in a thin gas",
                 _dsmc,
                 (
                     _number("dt", 0.2, 1e-4, 10.0, "time step in mean free times"),
