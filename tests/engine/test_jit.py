@@ -247,6 +247,12 @@ def fallen(x, outer, modes):
     return x
 
 
+@pytest.fixture
+def nothing_kept(monkeypatch):
+    """Let every kernel be compiled by the test itself: another test's machine code on disk would say nothing here."""
+    monkeypatch.setattr(compiler, "_CACHE", None)
+
+
 def asked_with(modes):
     """Return a kernel that calls `fallen` with a set of modes."""
 
@@ -257,6 +263,7 @@ def asked_with(modes):
     return ask
 
 
+@pytest.mark.usefixtures("nothing_kept")
 def test_a_feature_that_is_off_is_not_compiled_and_a_reference_reads_and_writes_what_it_names():
     values = np.zeros(3)
     outer = Outer(Inner(2.0, values), 5.0)
@@ -269,6 +276,7 @@ def test_a_feature_that_is_off_is_not_compiled_and_a_reference_reads_and_writes_
 
 
 @needs_numba
+@pytest.mark.usefixtures("nothing_kept")
 def test_boxes_that_differ_in_what_a_kernel_does_not_read_share_it():
     outer = Outer(Inner(2.0, np.zeros(3)), 5.0)
     for modes in (NO_MODES, NO_MODES._replace(mixed=True), NO_MODES._replace(pool=True, periodic=True)):
@@ -279,6 +287,7 @@ def test_boxes_that_differ_in_what_a_kernel_does_not_read_share_it():
 
 
 @needs_numba
+@pytest.mark.usefixtures("nothing_kept")
 def test_a_kernel_that_reads_a_flag_it_was_said_to_do_without_is_refused():
     outer = Outer(Inner(2.0, np.zeros(3)), 5.0)
     assert asked_with(NO_MODES.without("mixed"))(1.0, outer) == 3.0
