@@ -1,5 +1,6 @@
 """The classic schemes do what applets did: contact by contact, wall by wall, and with honest books."""
 
+import itertools
 import math
 
 import numpy as np
@@ -10,9 +11,7 @@ from hypothesis import strategies as st
 from atmosbox.engine import (
     HeatBath,
     Periodic,
-    Piston,
     Ramp,
-    RefusedError,
     Specular,
     maxwell_velocities,
     random_positions,
@@ -82,23 +81,23 @@ def test_a_light_molecule_bounces_off_a_heavy_one(scheme):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("angle", [0.1, 1.0, 2.5, 4.0])
-def test_an_oblique_contact_keeps_energy_and_momentum_and_what_lies_across(scheme, angle):
+def test_an_oblique_contact_keeps_energy_and_momentum_and_what_lies_across(scheme):
     mass = (1.0, 1.0) if scheme == "strips" else (2.0, 7.0)
-    normal = np.array([math.cos(angle), math.sin(angle)])
-    across = np.array([-normal[1], normal[0]])
-    box = pair(scheme, 0.99 * normal, 1.0 * normal + 0.3 * across, mass=mass, dt=1e-300)
-    before = box.snapshot().velocity[:, [0, 2]]
-    box.advance(1e-300)
-    after = box.snapshot().velocity[:, [0, 2]]
-    weight = np.array(mass)[:, None]
-    assert box.contacts == 1
-    assert np.sum(weight * after, axis=0) == pytest.approx(np.sum(weight * before, axis=0), abs=1e-14)
-    assert np.sum(weight * after**2) == pytest.approx(np.sum(weight * before**2), rel=1e-14)
-    assert after @ across == pytest.approx(before @ across, abs=1e-14)
-    assert np.diff(after @ normal) == pytest.approx(-np.diff(before @ normal), abs=1e-14)
-    impulse = weight[0, 0] * (after[0] - before[0]) @ normal
-    assert box.virial.sum() == pytest.approx(-0.99 * impulse, rel=1e-6)
+    for angle in (0.1, 1.0, 2.5, 4.0):
+        normal = np.array([math.cos(angle), math.sin(angle)])
+        across = np.array([-normal[1], normal[0]])
+        box = pair(scheme, 0.99 * normal, 1.0 * normal + 0.3 * across, mass=mass, dt=1e-300)
+        before = box.snapshot().velocity[:, [0, 2]]
+        box.advance(1e-300)
+        after = box.snapshot().velocity[:, [0, 2]]
+        weight = np.array(mass)[:, None]
+        assert box.contacts == 1
+        assert np.sum(weight * after, axis=0) == pytest.approx(np.sum(weight * before, axis=0), abs=1e-14)
+        assert np.sum(weight * after**2) == pytest.approx(np.sum(weight * before**2), rel=1e-14)
+        assert after @ across == pytest.approx(before @ across, abs=1e-14)
+        assert np.diff(after @ normal) == pytest.approx(-np.diff(before @ normal), abs=1e-14)
+        impulse = weight[0, 0] * (after[0] - before[0]) @ normal
+        assert box.virial.sum() == pytest.approx(-0.99 * impulse, rel=1e-6)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -281,16 +280,15 @@ def test_a_mirror_reflects_as_often_as_it_takes():
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("dt", [1e-3, 0.1, 3.0, 1000.0])
-@pytest.mark.parametrize("law", [Specular(), HeatBath(2.0, accommodation=0.5)])
-def test_no_molecule_is_ever_outside(scheme, dt, law):
-    box = gas(scheme, dt=dt, gravity=0.3, walls=(law,) * 6)
-    for step in range(1, 60 if COMPILED else 4):
-        box.advance(step * dt)
-        assert box.steps == step
-        assert box.escaped() == 0
-    assert box.ledger() < 1e-10
-    assert dt < 1.0 or box.wall_hits[[0, 1, 4]].min() > 0
+def test_no_molecule_is_ever_outside(scheme):
+    for dt, law in itertools.product((1e-3, 0.1, 3.0, 1000.0), (Specular(), HeatBath(2.0, accommodation=0.5))):
+        box = gas(scheme, dt=dt, gravity=0.3, walls=(law,) * 6)
+        for step in range(1, 60 if COMPILED else 4):
+            box.advance(step * dt)
+            assert box.steps == step
+            assert box.escaped() == 0
+        assert box.ledger() < 1e-10
+        assert dt < 1.0 or box.wall_hits[[0, 1, 4]].min() > 0
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -367,15 +365,15 @@ def test_the_same_seed_gives_the_same_bytes_however_the_run_is_cut(scheme):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("number", [0, 1, 2, 3])
-def test_few_molecules_or_none(scheme, number):
-    box = gas(scheme, number=number, gravity=0.1, walls=(HeatBath(1.0),) * 6)
-    box.advance(20.0)
-    assert box.time == pytest.approx(20.0, abs=box.time_step)
-    assert box.snapshot().position.shape == (number, 3)
-    assert box.escaped() == 0
-    assert box.ledger() < 1e-12
-    assert number or box.energy() == (0.0, 0.0, 0.0)
+def test_few_molecules_or_none(scheme):
+    for number in range(4):
+        box = gas(scheme, number=number, gravity=0.1, walls=(HeatBath(1.0),) * 6)
+        box.advance(20.0)
+        assert box.time == pytest.approx(20.0, abs=box.time_step)
+        assert box.snapshot().position.shape == (number, 3)
+        assert box.escaped() == 0
+        assert box.ledger() < 1e-12
+        assert number or box.energy() == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -416,37 +414,6 @@ def test_the_step_is_a_tenth_of_a_passage_of_the_fastest_over_the_smallest():
     assert hot.time_step == pytest.approx(0.005)
     hot.advance(0.005)
     assert hot.steps == 1
-
-
-def test_what_no_classic_scheme_knows_is_refused_with_the_engine_that_does():
-    with pytest.raises(RefusedError, match=r"no piston.*exact"):
-        gas("spheres", walls=(*SMOOTH[:5], Piston(0.1)))
-    with pytest.raises(RefusedError, match=r"no rotation.*exact"):
-        gas("spheres", rotation=2.0)
-
-
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        ({"scheme": "verlet"}, "give strips, lookahead, spheres"),
-        ({"delta": 0.0}, "delta = 0.0 is impossible"),
-        ({"delta": math.nan}, "delta = nan"),
-        ({"dt": -1.0}, "dt = -1.0"),
-        ({"dt": math.inf}, "dt = inf"),
-        ({"epsilon": 0.0}, "epsilon = 0.0"),
-        ({"scheme": "strips"}, "for a plane gas"),
-        ({"scheme": "lookahead"}, "for a plane gas"),
-        ({"mass": -1.0}, "mass = -1"),
-    ],
-)
-def test_what_is_impossible_is_refused(options, sentence):
-    with pytest.raises(RefusedError, match=sentence):
-        gas("spheres", **options)
-
-
-def test_strips_are_refused_to_unequal_discs():
-    with pytest.raises(RefusedError, match=r"equal discs.*lookahead"):
-        gas("lookahead", scheme="strips")
 
 
 @many_steps

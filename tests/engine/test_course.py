@@ -66,6 +66,7 @@ def test_a_parcel_that_is_led_up_and_down_follows_the_pressure_both_ways():
         length=length,
         walls=(Specular(),) * 5 + (Piston(),),
         driver=follow,
+        rotation=2.0,
         seed=3,
     )
     parcel.advance(150.0)

@@ -39,7 +39,7 @@ BOXES = {
         *gas(), length=(12.0,) * 3, walls=BETWEEN_PERIODIC_SIDES, driver=driver, rotation=2.0, layers=3
     ),
     "plane": lambda driver: ParcelSet(
-        *gas(planar=True), length=(15.0, 3.0, 15.0), walls=UNDER_PISTON, driver=driver, planar=True
+        *gas(planar=True), length=(15.0, 3.0, 15.0), walls=UNDER_PISTON, driver=driver, planar=True, rotation=2.0
     ),
     "mist": lambda driver: MoistParcelSet(
         *gas(), length=(12.0,) * 3, walls=UNDER_PISTON, driver=driver, liquid=Mist(WATER, number=9, kT=1.0), **MIXTURE
@@ -52,7 +52,8 @@ BOXES = {
 
 def pressure_of(name):
     """Return about the pressure that the box has at the start."""
-    return follow(1.0, 1.0).pressure(BOXES[name](None))
+    driver = follow(1.0, 1.0)
+    return driver.pressure(BOXES[name](driver))
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.validate if n == "pool" else ()) for n in BOXES])

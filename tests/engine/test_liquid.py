@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy import integrate, special, stats
 
-from atmosbox.engine import Liquid, Mist, Pool, RefusedError, Substance
+from atmosbox.engine import Mist, Pool, Substance
 from atmosbox.engine.core.random import gamma_of_shape
 from atmosbox.engine.liquid.reservoir import (
     CONDENSED,
@@ -285,53 +285,3 @@ def test_whole_numbers_make_the_same_kind_of_ledger_as_decimals():
     usual = ledger_of(2)
     for name, value, wanted in zip(usual._fields, new_reservoir(mist, mist.area, 2, 0, 0), usual, strict=True):
         assert type(value) is type(wanted), name
-
-
-# ------------------------------------------------------------------ what is refused
-
-
-def test_what_no_substance_can_have_is_refused_with_its_name():
-    cases = [
-        ({"mass": 0.0}, "mass of the substance = 0.0 must be above 0"),
-        ({"mass": math.nan}, "mass of the substance = nan"),
-        ({"mass": "heavy"}, "mass of the substance = 'heavy'"),
-        ({"binding_energy": -1.0}, "binding_energy of the substance = -1.0 must be above 0"),
-        ({"heat_capacity": 0.0}, "heat_capacity of the substance = 0.0 must be above 0"),
-        ({"volatility": 0.0}, "volatility of the substance = 0.0 must be above 0"),
-        ({"volatility": math.inf}, "volatility of the substance = inf"),
-        ({"diameter": -1.0}, "diameter of the substance = -1.0"),
-        ({"rotation": 1.0}, "rotation"),
-        ({"rotation": 2.5}, "rotation"),
-        ({"rotation": math.nan}, "rotation"),
-    ]
-    for changes, says in cases:
-        with pytest.raises(RefusedError, match=says):
-            Substance(**FACTS | changes)
-
-
-def test_what_no_liquid_can_have_is_refused_with_its_name():
-    cases = [
-        ({"number": -1}, "number of molecules in the liquid = -1"),
-        ({"number": 1.5}, "number of molecules in the liquid = 1.5 is not a whole number"),
-        ({"number": math.nan}, "number of molecules in the liquid = nan"),
-        ({"kT": -0.1}, "kT of the liquid = -0.1"),
-        ({"kT": math.inf}, "kT of the liquid = inf"),
-        ({"nuclei": -1.0}, "heat capacity of the nuclei = -1.0"),
-        ({"rain": -1.0}, "rain = -1.0"),
-        ({"rain": math.nan}, "rain = nan"),
-        ({"keeps": -1}, "number of molecules that the liquid keeps = -1"),
-        ({"sticking": 0.0}, "sticking = 0.0"),
-        ({"sticking": 1.1}, "sticking = 1.1"),
-        ({"sticking": math.nan}, "sticking = nan"),
-        ({"sticking": None}, "sticking = None"),
-    ]
-    for changes, says in cases:
-        for kind in [Liquid, Mist, Pool]:
-            with pytest.raises(RefusedError, match=says):
-                kind(WATER, **changes)
-
-
-@pytest.mark.parametrize("area", [0.0, -1.0, math.nan, math.inf, "wide"])
-def test_a_mist_has_an_area(area):
-    with pytest.raises(RefusedError, match="area of the mist = "):
-        Mist(WATER, area=area)

@@ -20,7 +20,6 @@ from atmosbox.engine import (
     Periodic,
     Piston,
     Pool,
-    RefusedError,
     Specular,
     StalledError,
     Substance,
@@ -317,6 +316,7 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
         assert state(parcel) == state(whole)
 
 
+@pytest.mark.validate  # without air: kernels of its own
 @many_events
 def test_cutting_changes_nothing_while_all_water_is_in_the_liquid():
     # no air, and vapour only now and then: the molecules alone know of no next event
@@ -531,7 +531,7 @@ def test_a_piston_may_compress_the_mist_until_it_would_crush_it():
     is_lawful(parcel, 30)
 
 
-# ------------------------------------------------------------------ what it tells and refuses
+# ------------------------------------------------------------------ what it tells
 
 
 @many_events
@@ -553,23 +553,8 @@ def test_a_box_tells_what_it_holds():
     assert parcel.open_density == pytest.approx(np.sum(1.0 / np.array(reach)))
 
 
-@pytest.mark.parametrize(
-    ("kind", "options", "says"),
-    [
-        (Mist, {"gravity": 1.0}, "no gravity"),
-        (Pool, {"walls": WARM}, "z_low Specular"),
-        (Pool, {"walls": TURNING}, "z_low Specular"),
-        (Mist, {"planar": True}, "three dimensions"),
-    ],
-)
-def test_what_no_moist_box_can_have_is_refused(kind, options, says):
-    with pytest.raises(RefusedError, match=says):
-        MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(6, 6, 6), liquid=kind(water(), number=1), **options)
-
-
 def test_a_whole_number_may_be_given_as_a_decimal():
-    parcel = MoistParcelSet([], [], length=(6, 6, 6), liquid=Mist(water(), number=3.0))
-    assert parcel.liquid == 3
+    assert moist(Mist(water(), number=3.0)).liquid == 3
 
 
 # ------------------------------------------------------------------ what dry air pays

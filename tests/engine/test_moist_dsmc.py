@@ -11,13 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atmosbox.engine import (
-    Drops,
     HeatBath,
     Mist,
     Periodic,
     Piston,
     Pool,
-    RefusedError,
     Specular,
     StalledError,
     Substance,
@@ -426,7 +424,7 @@ def test_a_piston_may_compress_the_mist_until_it_would_crush_it():
     is_lawful(parcel, 30)
 
 
-# ------------------------------------------------------------------ what it tells and refuses
+# ------------------------------------------------------------------ what it tells
 
 
 def test_a_box_tells_what_it_holds():
@@ -443,35 +441,3 @@ def test_a_box_tells_what_it_holds():
     assert parcel.degrees_of_freedom == pytest.approx(free / parcel.number)
     assert parcel.internal_energy() == pytest.approx(sum(parcel.energy()), rel=1e-10)
     assert parcel.open_density == pytest.approx(parcel.number / np.prod(parcel.length - 1.0))
-
-
-@pytest.mark.parametrize(
-    ("kind", "options", "says"),
-    [
-        (Mist, {"gravity": 1.0}, "no gravity"),
-        (Pool, {"walls": WARM}, "z_low Specular"),
-        (Pool, {"walls": TURNING}, "z_low Specular"),
-        (Mist, {"planar": True}, "three-dimensional"),
-        (Mist, {"diameter": 0.9}, "one size"),
-        (Mist, {"diameter": [1.0, 1.1]}, "one size"),
-    ],
-)
-def test_what_no_moist_box_can_have_is_refused(kind, options, says):
-    with pytest.raises(RefusedError, match=says):
-        MoistDsmcParcel(
-            [[2, 2, 2], [3, 2, 2]], [[1, 0, 0], [0, 0, 0]], length=(6, 6, 6), liquid=kind(water(), number=1), **options
-        )
-
-
-def test_drops_that_can_be_hit_are_refused():
-    drops = Drops(water(), position=((3.0, 3.0, 3.0),))
-    with pytest.raises(RefusedError, match="drops that can be hit need the engine exact"):
-        MoistDsmcParcel([[2, 2, 2]], [[1, 0, 0]], length=(6, 6, 6), liquid=drops)
-
-
-def test_more_kinds_than_can_be_counted_are_refused():
-    with pytest.raises(RefusedError, match="301 kinds of molecules"):
-        MoistDsmcParcel(
-            np.full((300, 3), 2.0), np.zeros((300, 3)), mass=1.0 + np.arange(300), length=(6, 6, 6),
-            liquid=Mist(water(), number=1),
-        )  # fmt: skip

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import RefusedError, random_positions
+from atmosbox.engine import random_positions
 
 
 def shortest(x, sides, periodic):
@@ -39,12 +39,6 @@ def test_points_need_no_room():
 def test_a_lid_keeps_all_molecules_below_it():
     x = random_positions((6.0, 6.0, 20.0), np.ones(50), np.random.default_rng(4), top=5.0)
     assert x[:, 2].max() <= 4.5
-
-
-@pytest.mark.parametrize("top", [0.0, -1.0, 20.1, math.nan])
-def test_a_lid_outside_the_box_is_refused(top):
-    with pytest.raises(RefusedError, match="is outside the box: give a height between 0 and 20"):
-        random_positions((6.0, 6.0, 20.0), np.ones(5), np.random.default_rng(5), top=top)
 
 
 def test_points_thin_out_with_height_as_an_isothermal_atmosphere():

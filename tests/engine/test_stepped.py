@@ -4,6 +4,7 @@ The boxes below need few kernels: each new set of flags costs seconds of compila
 equal molecules in a column with gravity.
 """
 
+import itertools
 import math
 import warnings
 from dataclasses import dataclass
@@ -170,15 +171,15 @@ def test_the_ledger_closes_with_baths_a_piston_and_rotation():
 
 @many_steps
 @pytest.mark.parametrize("walls", ["mirror", "fold", "flip", "clamp", "rewind"])
-@pytest.mark.parametrize("motion", ["parabola", "euler", "semi-implicit"])
-def test_the_books_close_whatever_the_rules(walls, motion):
-    laws = (S, S, P, P, S, Piston())
-    box = gas(200, (9.0, 9.0, 9.0), walls=laws, gravity=0.3, smooth_walls=walls, motion=motion, seed=8, **mixture(200))
-    box.advance(30.0)
-    assert box.wall_hits[[0, 1, 4, 5]].min() > 100
-    assert box.ledger() <= 1e-11
-    makes = motion != "parabola" or walls in ("fold", "clamp")
-    assert (abs(box.numerical_heat) > 1e-4 * box.energy()[0]) == makes
+def test_the_books_close_whatever_the_rules(walls):
+    laws, sides = (S, S, P, P, S, Piston()), (9.0, 9.0, 9.0)
+    for motion in ("parabola", "euler", "semi-implicit"):
+        box = gas(200, sides, walls=laws, gravity=0.3, smooth_walls=walls, motion=motion, seed=8, **mixture(200))
+        box.advance(30.0)
+        assert box.wall_hits[[0, 1, 4, 5]].min() > 100
+        assert box.ledger() <= 1e-11
+        makes = motion != "parabola" or walls in ("fold", "clamp")
+        assert (abs(box.numerical_heat) > 1e-4 * box.energy()[0]) == makes, motion
 
 
 @many_steps
@@ -201,9 +202,8 @@ def reach_through(box):
 
 
 @many_steps
-@pytest.mark.parametrize("dt", [1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.2])
 @pytest.mark.parametrize("walls", ["mirror", "fold", "clamp", "rewind"])
-def test_nobody_is_ever_outside_however_long_the_step(dt, walls):
+def test_nobody_is_ever_outside_however_long_the_step(walls):
     sides = (9.0, 9.0, 9.0)
     sizes = {key: mixture(100)[key] for key in ("mass", "diameter")}
     boxes = (
@@ -211,7 +211,7 @@ def test_nobody_is_ever_outside_however_long_the_step(dt, walls):
         {"walls": (HeatBath(1.0), S, P, P, HeatBath(0.5), Piston()), "gravity": 0.3, "rotation": 2.0} | sizes,
         {"walls": (P,) * 6} | sizes,
     )
-    for made in boxes:
+    for made, dt in itertools.product(boxes, (1e-3, 0.1, 1.2)):
         box = gas(100, sides, dt=dt, smooth_walls=walls, seed=8, **made)
         for _ in range(100):
             box.advance(box.time + max(dt, 0.02))
@@ -331,28 +331,6 @@ def test_the_step_is_what_was_asked_for():
     assert (asked.time_step, asked.delta) == (0.01, 0.0)
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"delta": 0.0}, "delta"),
-        ({"delta": math.nan}, "delta"),
-        ({"dt": -1.0}, "dt"),
-        ({"motion": "verlet"}, "parabola, euler, semi-implicit"),
-        ({"smooth_walls": "sticky"}, "mirror, fold, flip, clamp, rewind"),
-        ({"threads": 0}, "threads"),
-        ({"threads": 1.5}, "threads"),
-        ({"diameter": 0.0}, "give the length of a step as dt"),
-        ({"dt": 4.0}, r"cross the box along x in one step: give dt = 0.05 or less"),
-        ({"length": (4, 1, 4), "velocity": [[1, 1e-3, 0]], "position": [[1, 0.5, 1]]}, "no longer than itself"),
-        ({"length": (2.1, 4, 4), "walls": (P,) * 6}, "too short"),
-    ],
-)
-def test_what_cannot_be_is_refused_with_a_sentence(options, said):
-    given = {"position": [[1, 2, 2]], "velocity": [[1, 0, 0]], "length": (4, 4, 4)} | options
-    with pytest.raises(RefusedError, match=said):
-        parcel(given.pop("position"), given.pop("velocity"), **given)
-
-
 @many_steps
 def test_one_giant_among_thousands_of_dwarfs_is_refused():
     rng = np.random.default_rng(1)
@@ -396,26 +374,28 @@ SIDES = [
 
 @many_steps
 @pytest.mark.parametrize(("periodic", "mixed"), SIDES)
-@pytest.mark.parametrize("length", [(2.4, 2.5, 2.6), (3.2, 4.0, 9.0), (7.0, 7.0, 7.0), (3.0, 30.0, 3.0)])
-@pytest.mark.parametrize("planar", [False, True])
-def test_every_pair_in_overlap_is_found_once(monkeypatch, periodic, length, mixed, planar):
+def test_every_pair_in_overlap_is_found_once(monkeypatch, periodic, mixed):
     found = []
     monkeypatch.setattr("atmosbox.engine.stepped.stepped_parcel.judge_overlap", lambda pairs, *_: found.append(pairs))
-    rng = np.random.default_rng(2)
-    x = 0.5 + rng.random((200, 3)) * (np.array(length) - 1.0)
-    if planar:
-        x[:, 1] = 1.2
-    diameter = rng.choice([0.2, 0.6, 1.0], 200) if mixed else np.ones(200)
     walls = [wall for turn in periodic for wall in ((P, P) if turn else (S, S))]
-    box = parcel(x, np.zeros_like(x), length=length, walls=walls, diameter=diameter, dt=0.01, planar=planar)
     i, j = np.triu_indices(200, 1)
-    apart = x[i] - x[j]
-    apart -= np.where(box.periodic, box.length * np.rint(apart / box.length), 0.0)
-    gap = np.sqrt(np.sum(apart**2, axis=1)) - 0.5 * (diameter[i] + diameter[j])
-    pairs = [tuple(sorted(pair)) for pair in found[0].tolist()]
-    assert len(pairs) == len(set(pairs)) > 20
-    assert set(zip(i[gap < 0.0], j[gap < 0.0], strict=True)) <= set(pairs)
-    assert set(pairs) <= set(zip(i[gap < 1e-4], j[gap < 1e-4], strict=True))
+    boxes = [(2.4, 2.5, 2.6), (3.2, 4.0, 9.0), (7.0, 7.0, 7.0), (3.0, 30.0, 3.0)]
+    # unlike discs that turn along y alone would need kernels of their own
+    plane = (False,) if mixed and periodic == (False, True, False) else (False, True)
+    for length, planar in itertools.product(boxes, plane):
+        rng = np.random.default_rng(2)
+        x = 0.5 + rng.random((200, 3)) * (np.array(length) - 1.0)
+        if planar:
+            x[:, 1] = 1.2
+        diameter = rng.choice([0.2, 0.6, 1.0], 200) if mixed else np.ones(200)
+        box = parcel(x, np.zeros_like(x), length=length, walls=walls, diameter=diameter, dt=0.01, planar=planar)
+        apart = x[i] - x[j]
+        apart -= np.where(box.periodic, box.length * np.rint(apart / box.length), 0.0)
+        gap = np.sqrt(np.sum(apart**2, axis=1)) - 0.5 * (diameter[i] + diameter[j])
+        pairs = [tuple(sorted(pair)) for pair in found.pop().tolist()]
+        assert len(pairs) == len(set(pairs)) > 20
+        assert set(zip(i[gap < 0.0], j[gap < 0.0], strict=True)) <= set(pairs)
+        assert set(pairs) <= set(zip(i[gap < 1e-4], j[gap < 1e-4], strict=True))
 
 
 @many_steps

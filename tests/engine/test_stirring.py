@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, ParcelSet, Periodic, Piston, RefusedError, Specular, Stirring
+from atmosbox.engine import HeatBath, ParcelSet, Periodic, Specular, Stirring
 from atmosbox.engine.dsmc.stirred_dsmc_parcel import StirredDsmcParcel
 
 N = 600
@@ -122,23 +122,6 @@ def test_a_column_that_is_not_stirred_moves_as_any_other():
     plain.set_stirring(10.0)
     plain.advance(2.0)
     assert 9 <= plain.exchanges <= 10
-
-
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"stirring": STIRRING._replace(parcel=5)}, "parcel of the stirring"),
-        ({"stirring": STIRRING._replace(least=50)}, "least lift of the stirring"),
-        ({"stirring": STIRRING._replace(most=50)}, "most lift of the stirring"),
-        ({"stirring": STIRRING._replace(most=580)}, "do not fit"),
-        ({"stirring": STIRRING._replace(rate=-1.0)}, "rate of the stirring"),
-        ({"stirring": STIRRING._replace(interval=0.0)}, "interval of the stirring"),
-        ({"walls": (*COLUMN[:5], Piston())}, "floor and a ceiling"),
-    ],
-)
-def test_what_cannot_be_stirred_is_refused_in_a_sentence(changes, sentence):
-    with pytest.raises(RefusedError, match=sentence):
-        column(**changes)
 
 
 def test_spheres_that_exclude_volume_know_no_stirring():

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from atmosbox.engine import HeatBath, Periodic, Piston, Ramp, RefusedError, Specular
-from atmosbox.engine.core.walls import WALL_NAMES, new_walls, resolve_wall_hit
+from atmosbox.engine import HeatBath, Piston, Ramp, Specular
+from atmosbox.engine.core.walls import new_walls, resolve_wall_hit
 
 NUMBER = 30_000
 KT, MASS = 2.5, 4.0
@@ -125,45 +125,3 @@ def test_walls_without_chance_draw_no_number():
     for law, wall in ((Specular(), 0), (Piston(0.1), 5)):
         resolve_wall_hit(walls_with(law, wall), wall, 0.0, 1.0, 0.0, 0.0, 0.0, MASS, 0.0, False, state)
     assert (state == before).all()
-
-
-@pytest.mark.parametrize("wall", range(5))
-def test_only_the_ceiling_can_be_a_piston(wall):
-    with pytest.raises(RefusedError, match=rf"{WALL_NAMES[wall]} cannot be a piston.*z_high"):
-        walls_with(Piston(), wall)
-
-
-@pytest.mark.parametrize("wall", range(6))
-def test_a_periodic_wall_needs_its_opposite(wall):
-    pair = f"{WALL_NAMES[wall // 2 * 2]} and {WALL_NAMES[wall // 2 * 2 + 1]}"
-    with pytest.raises(RefusedError, match=f"{pair} must both be periodic"):
-        walls_with(Periodic(), wall)
-
-
-@pytest.mark.parametrize("accommodation", [-0.1, 1.1, math.nan])
-def test_an_impossible_accommodation_is_refused(accommodation):
-    with pytest.raises(RefusedError, match="accommodation of wall z_low"):
-        walls_with(HeatBath(1.0, accommodation=accommodation))
-
-
-@pytest.mark.parametrize("kT", [0.0, -1.0, math.nan, math.inf, "hot"])
-def test_an_impossible_temperature_is_refused(kT):
-    with pytest.raises(RefusedError, match="kT of wall z_low"):
-        walls_with(HeatBath(kT))
-
-
-@pytest.mark.parametrize("velocity", [math.nan, math.inf])
-def test_an_impossible_velocity_of_the_piston_is_refused(velocity):
-    with pytest.raises(RefusedError, match="velocity of the piston"):
-        walls_with(Piston(velocity), 5)
-
-
-def test_what_is_no_wall_is_refused():
-    with pytest.raises(RefusedError, match="z_low = 'glass' is no law"):
-        walls_with("glass")
-
-
-@pytest.mark.parametrize("number", [0, 5, 7])
-def test_a_box_has_six_walls(number):
-    with pytest.raises(RefusedError, match=f"{number} walls .*six"):
-        new_walls((Specular(),) * number, 1.0)

@@ -16,9 +16,7 @@ from atmosbox.engine import (
     AttractingParcelSet,
     HeatBath,
     Periodic,
-    Piston,
     RandomBath,
-    RefusedError,
     Specular,
     SquareWell,
     random_positions,
@@ -220,33 +218,3 @@ def test_two_molecules_that_orbit_in_a_well_stay_there():
     assert pair.number_of_wells == 1
     assert pair.well_events["bounces"] > 100
     assert pair.ledger() < 1e-12
-
-
-@pytest.mark.parametrize(
-    ("change", "word"),
-    [
-        ({"well": SquareWell(0.9)}, "range"),
-        ({"well": SquareWell(1.5, -1.0)}, "depth"),
-        ({"well": SquareWell(1.5, math.nan)}, "depth"),
-        ({"well": SquareWell([[1.5, 2.0], [1.0, 1.5]]), "species": [0, 1]}, "symmetric"),
-        ({"well": SquareWell([[1.5]]), "species": [0, 1]}, "species"),
-        ({"species": [0, 0, 1]}, "species"),
-        ({"species": [0.5, 0]}, "species"),
-        ({"strength": -1.0}, "strength"),
-        ({"bath": RandomBath(1.0, -1.0)}, "rate"),
-        ({"bath": RandomBath(0.0, 1.0)}, "kT"),
-        ({"walls": (Specular(),) * 5 + (Piston(0.1),)}, "piston"),
-        ({"rotation": 2.0}, "rotation"),
-        ({"collisions": False}, "collisions"),
-        ({"length": (3.0, 8, 8), "walls": ROUND}, "length"),
-    ],
-)
-def test_what_cannot_be_is_refused_in_a_sentence(change, word):
-    box = {
-        "position": [[1, 1, 1], [2.5, 1, 1]],
-        "velocity": np.zeros((2, 3)),
-        "length": (8, 8, 8),
-        "well": SquareWell(),
-    }
-    with pytest.raises(RefusedError, match=word):
-        AttractingParcelSet(**(box | change))
