@@ -1,6 +1,7 @@
 """How accurate a run will be: what a user wishes, what is picked, what the report says, and whether the table is so."""
 
 import importlib.util
+import itertools
 import json
 import math
 import re
@@ -416,12 +417,11 @@ def test_every_way_of_the_shipped_table_can_be_run_and_every_scene_has_its_defau
             assert all(error.noise > 0.0 and error.bias_se > 0.0 for error in one.errors.values())
 
 
-@pytest.mark.parametrize("scene", accuracy.load())
-@pytest.mark.parametrize("wish", TARGETS)
-def test_every_target_has_a_pick_in_every_measured_scene(scene, wish):
-    picked = choose(scene, wish)
-    assert picked.way.errors.keys() == picked.labels.keys()
-    assert picked.met == (wish == "reference" or picked.way.excess(TARGETS[wish]) <= 1.0)
+def test_every_target_has_a_pick_in_every_measured_scene():
+    for scene, wish in itertools.product(accuracy.load(), TARGETS):
+        picked = choose(scene, wish)
+        assert picked.way.errors.keys() == picked.labels.keys()
+        assert picked.met == (wish == "reference" or picked.way.excess(TARGETS[wish]) <= 1.0)
 
 
 def hold(scene, held, members):

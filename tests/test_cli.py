@@ -2,6 +2,7 @@
 
 import functools
 import io
+import itertools
 import json
 import os
 import re
@@ -113,19 +114,13 @@ def test_the_help_of_a_command_has_examples_that_use_options_that_exist_at_every
                 assert set(re.findall(r"--[a-z-]+", examples)) <= set(re.findall(r"--[a-z-]+", options))
 
 
-def test_what_must_be_there_at_once_imports_nothing_heavy():
-    for words in [["--help"], ["run", "--help"], ["--version"], ["list"]]:
-        command = command_line(*words, capture_output=True)
-        command["args"][1:1] = ["-X", "importtime"]
-        run = subprocess.run(**command, check=True)
-        imported = {line.rpartition("|")[2].strip().partition(".")[0] for line in run.stderr.splitlines()}
-        assert "typer" in imported
-        assert imported.isdisjoint(HEAVY)
-
-
-def test_what_a_scene_says_of_itself_waits_for_nothing_heavy(folder):
+def test_what_must_be_there_at_once_waits_for_nothing_heavy(folder):
     code = (
-        "import sys\nfrom atmosbox import scenarios\nfrom atmosbox.cli import app\n"
+        "import sys\nimport atmosbox\nfrom atmosbox import errors, scenarios\nfrom atmosbox.scene import settings\n"
+        "assert 'numpy' not in sys.modules\n"
+        "from atmosbox.cli import app\n"
+        "for words in ['--help'], ['run', '--help'], ['--version'], ['list']:\n"
+        "    app(words, standalone_mode=False)\n"
         "for name in scenarios.names():\n"
         "    for words in ['info', name], ['run', name, '--dry-run']:\n"
         "        app(words, standalone_mode=False)\n"
@@ -190,10 +185,9 @@ def test_the_shell_completes_the_names_of_scenes():
     assert set(_completed("")) == set(scenarios.names())
 
 
-@pytest.mark.parametrize("name", scenarios.names())
-def test_info_shows_story_facts_and_every_parameter_at_every_width(name):
-    card = runner.card(runner.prepare(name, {}))
-    for width in (None, "40", "80", "200"):
+def test_info_shows_story_facts_and_every_parameter_at_every_width():
+    for name, width in [(SCENE, None), (SCENE, "40"), *((name, "80") for name in scenarios.names())]:
+        card = runner.card(runner.prepare(name, {}))
         shown = atmosbox_in_process("info", name, COLUMNS=width).stdout
         words = " ".join(shown.split())
         assert " ".join(card.story.replace("``", "").split()) in words
@@ -257,14 +251,6 @@ def test_json_is_one_object_and_says_the_same(folder):
 def test_quiet_prints_the_path_alone(folder):
     result = atmosbox_in_process(*SHORT, "--quiet")
     assert (result.stdout, result.stderr) == (f"{SCENE}.nc\n", "")
-
-
-def test_a_file_that_is_there_is_kept_and_both_ways_out_are_named(folder, no_computing):
-    Path(f"{SCENE}.nc").write_text("mine", encoding="utf-8")
-    sentence = refused(atmosbox_in_process(*SHORT))
-    assert "--force" in sentence
-    assert "--out" in sentence
-    assert Path(f"{SCENE}.nc").read_text(encoding="utf-8") == "mine"
 
 
 def test_force_replaces_a_file(folder):
@@ -371,60 +357,48 @@ def test_a_file_for_another_scene_is_refused(folder, finished, option):
 # Refusals
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["run"], "No scene"),
-        (["run", "no-such-scene"], "atmosbox list"),
-        (["run", "./no_such.py"], "no_such.py"),
-        (["run", SCENE, "--set", "duration"], '"="'),
-        (["run", SCENE, "--set", "duration="], "value"),
-        (["run", SCENE, "--set", "durration=2s"], "duration"),
-        (["run", SCENE, "--set", "duration=2degC"], "--set duration="),
-        (["run", SCENE, "--set", "duration=nan"], "duration"),
-        (["run", SCENE, "--seed", "x"], "--set seed="),
-        (["run", SCENE, "--seed", "-1"], "seed"),
-        (["run", SCENE, "--out", "no/such/folder/x.nc"], "mkdir"),
-        (["run", SCENE, "--out", ""], "folder"),
-        (["run", SCENE, "--out", "lift.png"], "atmosbox plot lift.nc --out lift.png"),
-        (["run", SCENE, "--config", "no.toml"], "no.toml"),
-        (["run", "--from", "no.nc"], "no.nc"),
-        (["run", "--from", "foreign.nc"], "foreign.nc"),
-        (["plot", "no.nc"], "no.nc"),
-        (["plot", "foreign.nc"], "foreign.nc"),
-        (["check", "no.nc"], "no.nc"),
-        (["check", "."], "folder"),
-    ],
-)
-def test_bad_input_is_one_sentence_and_leaves_nothing_behind(folder, no_computing, words, said):
-    Path("foreign.nc").write_bytes(b"\x89HDF and then nothing")
-    assert said in refused(atmosbox_in_process(*words))
-    assert [path.name for path in folder.iterdir()] == ["foreign.nc"]
+def test_bad_input_is_one_sentence_and_leaves_nothing_behind(folder, no_computing):
+    cases = [
+        ([], "No scene"),
+        (["no-such-scene"], "atmosbox list"),
+        (["./no_such.py"], "no_such.py"),
+        ([SCENE, "--set", "duration"], '"="'),
+        ([SCENE, "--set", "duration=2degC"], "--set duration="),
+        ([SCENE, "--seed", "x"], "--set seed="),
+        ([SCENE, "--out", "no/such/folder/x.nc"], "mkdir"),
+        ([SCENE, "--out", "lift.png"], "atmosbox plot lift.nc --out lift.png"),
+        ([SCENE, "--config", "no.toml"], "no.toml"),
+        (["--from", "no.nc"], "no.nc"),
+    ]
+    for words, said in cases:
+        assert said in refused(atmosbox_in_process("run", *words))
+    assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["info", "{}"],
-        ["run", "{}"],
-        ["run", "./{}"],
-        ["run", "--from", "{}"],
-        ["run", "--config", "{}"],
-        ["plot", "{}"],
-        ["animate", "{}"],
-        ["check", "{}"],
-        ["view", "{}"],
-        ["view", "whole.nc", "{}"],
-        ["compare", "{}", "whole.nc"],
-        ["compare", "whole.nc", "{}"],
-        ["live", "--no-browser", "{}"],
-        ["live", "--no-browser", "--from", "{}"],
-        ["sheet", "./{}"],
-        ["tradeoff", "./{}"],
-        ["sweep", "./{}", "--vary", "duration=1,2"],
-    ],
-)
-def test_no_path_is_a_bug(folder, no_computing, finished, words):
+READERS = [
+    ["info", "{}"],
+    ["run", "{}"],
+    ["run", "./{}"],
+    ["run", "--from", "{}"],
+    ["run", "--config", "{}"],
+    ["plot", "{}"],
+    ["animate", "{}"],
+    ["check", "{}"],
+    ["export", "{}"],
+    ["view", "{}"],
+    ["view", "whole.nc", "{}"],
+    ["compare", "{}", "whole.nc"],
+    ["compare", "whole.nc", "{}"],
+    ["live", "--no-browser", "{}"],
+    ["live", "--no-browser", "--from", "{}"],
+    ["sheet", "./{}"],
+    ["tradeoff", "./{}"],
+    ["sweep", "./{}", "--vary", "duration=1,2"],
+]
+"""Commands that read a file."""
+
+
+def test_no_path_is_a_bug(folder, no_computing, finished):
     """Whatever stands where a file is read, the answer is one sentence, and nothing is written."""
     Path("folder").mkdir()
     Path("empty.nc").touch()
@@ -432,9 +406,9 @@ def test_no_path_is_a_bug(folder, no_computing, finished, words):
     shutil.copy(finished, "whole.nc")
     Path("cut.nc").write_bytes(Path("whole.nc").read_bytes()[:3000])
     before = sorted(folder.rglob("*"))
-    for name in ("", ".", "..", "folder", "no.nc", "empty.nc", "text.nc", "cut.nc"):
+    for words, name in itertools.product(READERS, ("", ".", "folder", "no.nc", "empty.nc", "text.nc", "cut.nc")):
         refused(atmosbox_in_process(*(word.format(name) for word in words)))
-        assert sorted(folder.rglob("*")) == before, name
+        assert sorted(folder.rglob("*")) == before, (words, name)
 
 
 @pytest.mark.parametrize(
@@ -457,43 +431,47 @@ def test_a_file_with_odd_content_is_no_bug(folder, finished, monkeypatch, attrib
     assert "file" in sentence or "odd.nc" in sentence
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["run", SCENE],
-        ["live", SCENE, "--no-browser"],
-        ["sweep", SCENE, "--vary", "duration=1,2"],
-        ["tradeoff", SCENE],
-        ["sheet", SCENE],
-        ["sheet", SCENE, "--format", "md"],
-        ["plot", "whole.nc"],
-        ["plot", "whole.nc", "--format", "png"],
-        ["animate", "whole.nc"],
-        ["view", "whole.nc"],
-        ["compare", "whole.nc", "whole.nc"],
-        ["compare", "whole.nc", "whole.nc", "--format", "html"],
-    ],
-)
-def test_no_output_path_is_a_bug(folder, no_computing, finished, words):
+WRITERS = [
+    ("nc", ["run", SCENE]),
+    ("nc", ["sweep", SCENE, "--vary", "duration=1,2"]),
+    ("nc", ["tradeoff", SCENE]),
+    ("pdf", ["sheet", SCENE]),
+    ("md", ["sheet", SCENE, "--format", "md"]),
+    ("png", ["plot", "whole.nc"]),
+    ("gif", ["animate", "whole.nc", "--graphs"]),
+    ("csv", ["export", "whole.nc"]),
+    ("html", ["view", "whole.nc"]),
+    ("svg", ["compare", "whole.nc", "whole.nc"]),
+]
+"""Commands that write a file, and the ending of its name."""
+
+
+def test_no_output_path_is_a_bug(folder, no_computing, finished):
     """Whatever stands where a file is written, the answer is one sentence, and nothing is written."""
     Path("folder").mkdir()
     shutil.copy(finished, "whole.nc")
     before = sorted(folder.rglob("*"))
-    for name in ("", "..", "folder", "whole.nc/x.nc"):
+    commands = [*(words for _, words in WRITERS), ["live", SCENE, "--no-browser"]]
+    for words, name in itertools.product(commands, ("", "..", "folder", "whole.nc/x.nc")):
         assert "bug" not in refused(atmosbox_in_process(*words, "-o", name))
-        assert sorted(folder.rglob("*")) == before, name
+        assert sorted(folder.rglob("*")) == before, (words, name)
+
+
+@pytest.mark.parametrize(("ending", "words"), WRITERS, ids=lambda part: part[0] if isinstance(part, list) else part)
+def test_no_command_replaces_a_file_unasked(folder, no_computing, finished, ending, words):
+    shutil.copy(finished, "whole.nc")
+    made = Path("mine-headlines.csv" if ending == "csv" else f"mine.{ending}")  # a spreadsheet has several files
+    made.write_text("mine", encoding="utf-8")
+    before = sorted(folder.iterdir())
+    assert "--force" in refused(atmosbox_in_process(*words, "-o", f"mine.{ending}"))
+    assert made.read_text(encoding="utf-8") == "mine"
+    assert sorted(folder.iterdir()) == before
 
 
 def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):
     attributes = provenance.global_attributes({"scene": SCENE}, title="A box", command="a test")
     output.write(xr.Dataset(attrs=attributes), "old.nc")
     assert "does not say" in refused(atmosbox_in_process("run", "--from", "old.nc"))
-
-
-@posix
-def test_a_run_that_could_not_be_saved_is_not_begun(folder, no_computing, monkeypatch):
-    monkeypatch.setattr(os, "access", lambda *args, **kwargs: False)
-    assert "folder" in refused(atmosbox_in_process(*SHORT))
 
 
 # Failures
@@ -832,7 +810,6 @@ def test_plot_puts_the_figure_beside_the_run_and_prints_its_path(folder, finishe
     result = atmosbox_in_process("plot", "x.nc", "--format", "svg")
     assert (result.exit_code, result.stdout) == (0, "x.svg\n"), result.output
     assert Path("x.svg").read_bytes().startswith(b"<?xml")
-    assert "--force" in refused(atmosbox_in_process("plot", "x.nc", "--format", "svg"))
     again = atmosbox_in_process("plot", "x.nc", "--out", "x.svg", "--force", "--theme", "slides")
     assert again.exit_code == 0
 

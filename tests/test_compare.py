@@ -215,7 +215,6 @@ def test_the_command_says_what_differs_and_by_how_much(files, tmp_path):
     assert "σ)" in result.stdout
     assert result.stdout.splitlines()[-1] == f"file: {path}"
     assert path.read_bytes()[1:4] == b"PNG"
-    assert "add --force" in refused(command(files, "cold.nc", "mild.nc", "--out", str(path)))
 
 
 def test_json_holds_the_same_numbers_and_nothing_else_is_printed(files, tmp_path):
@@ -266,14 +265,6 @@ def test_a_page_needs_the_molecules_of_both_runs(files, tmp_path):
     result = command(tmp_path, "5.0.nc", "15.0.nc", "--out", str(path))
     assert result.exit_code == 0, result.output
     assert path.read_text(encoding="utf-8").lower().startswith("<!doctype html")
-
-
-def test_foreign_and_empty_files_are_refused(files, tmp_path):
-    foreign, empty = tmp_path / "foreign.nc", tmp_path / "empty.nc"
-    xr.Dataset({"t": 1.0}).to_netcdf(foreign)
-    empty.touch()
-    assert "written by another program" in refused(command(files, "mild.nc", str(foreign)))
-    assert "is empty" in refused(command(files, str(empty), "mild.nc"))
 
 
 def test_the_figure_stands_beside_the_first_file():

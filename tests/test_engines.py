@@ -26,46 +26,37 @@ def test_an_engine_is_what_it_says_and_knows_its_options(name):
             assert known[option.name].default == option.default
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+def test_a_choice_is_spelled_as_it_is_read():
+    for text in (
         "exact",
         "exact:collisions=off",
         "stepped:delta=0.02,motion=euler",
         "dsmc:dt=0.5,threads=2",
         "classic:closing_only=off",
-    ],
-)
-def test_a_choice_is_spelled_as_it_is_read(text):
-    assert str(choose(text)) == text
-    assert choose(choose(text)) == choose(text)
+    ):
+        assert str(choose(text)) == text
+        assert choose(choose(text)) == choose(text)
 
 
-@pytest.mark.parametrize(
-    ("text", "fix"),
-    [
-        ("exakt", "give --engine exact"),
-        ("", "give --engine exact"),
-        ("stepped:", "give --engine stepped"),
-        ("exact:delta=1", "give one of collisions"),
-        ("stepped:delt=1", "give --engine stepped:delta=1"),
-        ("stepped:delta", "give --engine stepped:delta=value"),
-        ("stepped:delta=soon", "give --engine stepped:delta="),
-        ("stepped:delta=-1", "give --engine stepped:delta="),
-        ("stepped:delta=0.1,delta=0.2", "give --engine stepped:delta once"),
-        ("stepped:motion=eule", "give --engine stepped:motion=euler"),
-        ("dsmc:threads=0", "give --engine dsmc:threads=1"),
-    ],
-)
-def test_what_is_no_engine_or_option_is_refused_with_what_to_type(text, fix):
-    with pytest.raises(SettingError) as refusal:
-        choose(text)
-    assert fix in str(refusal.value)
-
-
-def test_an_unknown_option_is_an_unknown_setting():
-    with pytest.raises(UnknownSettingError, match="epsilon"):
-        choose("stepped:epsilon=3")
+def test_what_is_no_engine_or_option_is_refused_with_what_to_type():
+    cases = [
+        ("exakt", "exact"),
+        ("", "exact"),
+        ("stepped:", "stepped"),
+        ("stepped:delta", "stepped:delta=value"),
+        ("stepped:delta=soon", "stepped:delta="),
+        ("stepped:delta=-1", "stepped:delta="),
+        ("stepped:delta=0.1,delta=0.2", "stepped:delta once"),
+        ("stepped:motion=eule", "stepped:motion=euler"),
+        ("dsmc:threads=0", "dsmc:threads=1"),
+    ]
+    for text, fix in cases:
+        with pytest.raises(SettingError, match=f"give --engine {fix}"):
+            choose(text)
+    with pytest.raises(UnknownSettingError, match="give --engine stepped:delta=1"):
+        choose("stepped:delt=1")
+    with pytest.raises(UnknownSettingError, match="give one of collisions"):
+        choose("exact:delta=1")
 
 
 def test_a_file_knows_its_engine():

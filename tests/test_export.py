@@ -127,9 +127,6 @@ def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path, mon
     assert export("--format", "csv").stdout.split() == [
         f"box-{name}.csv" for name in tables(ab.open(tmp_path / "box.nc"))
     ]
-    again = export()
-    assert (again.exit_code, again.stdout) == (2, "")
-    assert "add --force" in again.stderr
     assert export("-o", "box.pdb").exit_code == 2
 
 

@@ -4,7 +4,6 @@ import ast
 import doctest
 import importlib
 import inspect
-import json
 import os
 import re
 import shutil
@@ -20,8 +19,6 @@ from atmosbox import scenarios
 
 ROOT = Path(__file__).resolve().parents[1]
 
-HEAVY = {"numba", "xarray", "netCDF4", "matplotlib", "metpy", "pint", "scipy", "pandas"}
-
 
 def python(code, **options):
     """Return what a fresh Python prints when it runs this code in the checkout."""
@@ -36,25 +33,6 @@ def block_after(heading):
     _, found, rest = (ROOT / "README.md").read_text(encoding="utf-8").partition(f"\n## {heading}\n")
     assert found
     return re.search(r"```(?:sh|console)\n(.*?)```", rest, re.DOTALL).group(1).splitlines()
-
-
-@pytest.mark.parametrize("name", ["atmosbox", "atmosbox.scenarios", "atmosbox.errors"])
-def test_a_light_import_loads_no_heavy_library(name):
-    loaded = python(f"import json, sys, {name}; print(json.dumps(sorted(sys.modules)))")
-    assert HEAVY & set(json.loads(loaded)) == set()
-
-
-def test_the_help_of_the_command_line_loads_no_heavy_library():
-    code = """
-import contextlib, io, json, sys
-from atmosbox.cli import main
-sys.argv = ["atmosbox", "--help"]
-with contextlib.redirect_stdout(io.StringIO()) as text, contextlib.suppress(SystemExit):
-    main()
-assert "run" in text.getvalue()
-print(json.dumps(sorted(sys.modules)))
-"""
-    assert HEAVY & set(json.loads(python(code))) == set()
 
 
 def test_python_m_atmosbox_is_the_command_line():

@@ -200,11 +200,6 @@ def test_a_file_is_read_as_it_was_written(tmp_path, make):
         assert opened.elapsed_time.dtype == float
 
 
-def test_steps_below_a_nanosecond_stay_apart(tmp_path):
-    with xr.open_dataset(output.write(lifting(), tmp_path / "run.nc"), engine="netcdf4") as opened:
-        assert np.unique(opened.elapsed_time).size == 50
-
-
 def test_writing_leaves_the_dataset_alone(tmp_path):
     run = everything()
     untouched = run.copy(deep=True)  # made again, it would have another date
@@ -227,11 +222,6 @@ def test_the_paths_of_molecules_are_packed(tmp_path):
 def test_a_run_without_frames_can_be_written(tmp_path):
     empty = dataset({"air_temperature": []}, {"elapsed_time": []}, attributes())
     assert output.read(output.write(empty, tmp_path / "run.nc")).sizes["elapsed_time"] == 0
-
-
-def test_the_parameters_come_back_from_the_file(tmp_path):
-    found = provenance.parameters(output.read(output.write(lifting(), tmp_path / "run.nc")))
-    assert found == {"scene": "lifting-dry", "settings": {"seed": 7, "temperature": 25.0}, "engine": "exact"}
 
 
 def test_the_same_run_with_a_set_date_has_the_same_content(tmp_path, monkeypatch):
@@ -317,16 +307,17 @@ def test_a_symbolic_link_keeps_pointing_to_the_file(tmp_path):
     assert output.read(tmp_path / "disk" / "real.nc").title == "Lifted air"
 
 
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
 @pytest.mark.parametrize("place", [(os, "fsync"), (os, "replace"), (Path, "write_bytes")])
-def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch, place, number):
-    path = output.write(lifting(), tmp_path / "run.nc")
+def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch, place):
+    path, new = output.write(lifting(), tmp_path / "run.nc"), everything()
     before = path.read_bytes()
-    monkeypatch.setattr(*place, failing(number))
-    with pytest.raises(DiskFullError, match=r"no room.*stays as it was") as refusal:
-        output.write(everything(), path, force=True)
-    assert refusal.value.exit_code == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+    for number in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        monkeypatch.setattr(*place, failing(number))
+        with pytest.raises(DiskFullError, match=r"no room.*stays as it was") as refusal:
+            output.write(new, path, force=True)
+        assert refusal.value.exit_code == 1
+        assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+    monkeypatch.undo()
     assert path.read_bytes() == before
 
 

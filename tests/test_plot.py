@@ -1,6 +1,5 @@
 """The figures: drawn from the dataset alone, the same bytes twice, legible on a page and on a wall."""
 
-import errno
 import json
 import os
 import subprocess
@@ -20,11 +19,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 
 from atmosbox import plot, scenarios
-from atmosbox.errors import DiskFullError, FileError, SettingError
+from atmosbox.errors import FileError, SettingError
 from atmosbox.plot import caption, tick, unit
 from atmosbox.plot.curve import curve
 from atmosbox.plot.layout import panels_of
-from atmosbox.plot.theme import OKABE_ITO
 from atmosbox.scene.panels import Line, Panel, to_json
 
 K_B = 1.380649e-23  # J/K
@@ -528,13 +526,6 @@ def test_theory_is_dashed_and_dark_and_data_solid_with_a_band(drawings):
     assert to_rgb(band.get_facecolor()[0][:3]) == pytest.approx(to_rgb(parcel.get_color()))
 
 
-def test_the_colours_are_those_of_okabe_and_ito(drawings):
-    palette = [to_rgb(colour) for colour in OKABE_ITO]
-    for axes in drawings["elastic-collisions", "notes"].axes[1:]:
-        for line in (line for line in lines_of(axes) if not line.is_dashed()):
-            assert any(to_rgb(line.get_color()) == pytest.approx(colour) for colour in palette)
-
-
 @each_drawing
 def test_curves_differ_by_more_than_their_colour(drawings, scene, theme):
     for axes in drawings[scene, theme].axes:
@@ -937,16 +928,6 @@ def test_a_figure_carries_the_settings_of_its_run(tmp_path):
     assert "&quot;seed&quot;: 1" in svg or '"seed": 1' in svg
 
 
-def test_a_file_is_replaced_only_by_force(tmp_path):
-    path = tmp_path / "figure.png"
-    path.write_text("precious")
-    with pytest.raises(FileError, match=r"exists already: add --force to replace it"):
-        plot.save(small([280.0, 290.0]), path)
-    assert path.read_text() == "precious"
-    assert plot.save(small([280.0, 290.0]), path, force=True) == path
-    assert path.read_bytes().startswith(b"\x89PNG")
-
-
 @pytest.mark.parametrize(
     ("name", "format", "words"),
     [
@@ -966,31 +947,6 @@ def test_an_unknown_theme_is_refused_with_those_that_are_known(tmp_path):
         plot.figure(small([280.0]), "poster")
     with pytest.raises(SettingError, match="theme = poster"):
         plot.save(small([280.0]), tmp_path / "figure.png", theme="poster")
-
-
-def test_a_folder_that_is_missing_or_in_the_way_is_named(tmp_path):
-    with pytest.raises(FileError, match="does not exist"):
-        plot.save(small([280.0]), tmp_path / "nowhere" / "figure.png")
-    (tmp_path / "folder.png").mkdir()
-    with pytest.raises(FileError, match="is a folder"):
-        plot.save(small([280.0]), tmp_path / "folder.png", force=True)
-
-
-@pytest.mark.parametrize(
-    ("number", "kind", "words"),
-    [(errno.ENOSPC, DiskFullError, "disk has no room"), (errno.EACCES, FileError, "could not be")],
-)
-def test_a_figure_that_cannot_be_written_leaves_nothing_behind(tmp_path, monkeypatch, number, kind, words):
-    def refuse(*_):
-        raise OSError(number, os.strerror(number))
-
-    path = tmp_path / "figure.png"
-    path.write_text("precious")
-    monkeypatch.setattr(os, "replace", refuse)
-    with pytest.raises(kind, match=words):
-        plot.save(small([280.0]), path, force=True)
-    assert [each.name for each in tmp_path.iterdir()] == ["figure.png"]
-    assert path.read_text() == "precious"
 
 
 def broken(**changes):

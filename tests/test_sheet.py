@@ -94,8 +94,7 @@ def own(tmp_path):
     return path
 
 
-@pytest.mark.parametrize("paper", PAPERS)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("name", "paper"), [*((name, "a4") for name in NAMES), ("lifting-dry", "letter")])
 def test_the_sheet_of_every_scene_is_two_pages_whose_type_is_embedded(name, paper):
     sheet = sheets.worksheet(name)
     content, pages = pdf(sheet, paper)
@@ -155,17 +154,17 @@ def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
         assert filled(row.label, {"A": made}).startswith(found.label)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_every_question_has_an_answer_and_a_place_for_it(name):
-    words = read(text_of(scenarios.load(name)))
-    for section in (words.notice, words.try_, words.differ, words.further):
-        assert section
-        assert all(question.answer and question.lines != 0 for question in section)
-    assert words.predict
-    for prediction in words.predict:
-        assert prediction.answer
-        assert bool(prediction.choices) == bool(prediction.right)
-    assert words.leaves_out
+def test_every_question_has_an_answer_and_a_place_for_it():
+    for name in NAMES:
+        words = read(text_of(scenarios.load(name)))
+        for section in (words.notice, words.try_, words.differ, words.further):
+            assert section, name
+            assert all(question.answer and question.lines != 0 for question in section)
+        assert words.predict
+        for prediction in words.predict:
+            assert prediction.answer
+            assert bool(prediction.choices) == bool(prediction.right)
+        assert words.leaves_out
 
 
 def test_the_words_of_a_sheet_stand_beside_every_scene_and_the_file_of_no_scene_is_left():
@@ -426,31 +425,15 @@ def test_numbers_and_units_are_printed_as_in_print():
     assert spelled("K km-1") == "K km⁻¹"
 
 
-def test_a_file_appears_whole_and_replaces_nothing_unasked(tmp_path, monkeypatch):
+def test_a_sheet_is_kept_in_the_format_and_on_the_paper_that_are_asked_for(tmp_path):
     sheet = sheets.worksheet("temperature")
     path = sheets.save(sheet, tmp_path / "sheet", "md")
     assert path.name == "sheet.md"
     assert path.read_text(encoding="utf-8") == sheet.text
-    with pytest.raises(FileError, match="exists already: add --force"):
-        sheets.save(sheet, path)
-    sheets.save(sheet, path, force=True)
     with pytest.raises(SettingError, match="does not go with the file name"):
         sheets.check(path, "pdf", force=True)
     with pytest.raises(SettingError, match="paper = a5 is unknown"):
         sheets.check(tmp_path / "a.pdf", paper="a5")
-    (tmp_path / "b.pdf").mkdir()
-    with pytest.raises(FileError, match="is a folder"):
-        sheets.check(tmp_path / "b.pdf")
-    with pytest.raises(FileError, match="does not exist"):
-        sheets.check(tmp_path / "no" / "a.pdf")
-
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(FileError, match="disk has no room"):
-        sheets.save(sheet, tmp_path / "c.md")
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["b.pdf", "sheet.md"]
 
 
 def test_the_command_says_the_path_and_refuses_in_a_sentence(tmp_path, monkeypatch):
@@ -462,9 +445,6 @@ def test_the_command_says_the_path_and_refuses_in_a_sentence(tmp_path, monkeypat
     done = command("lifting-dry", "--format", "md", "--seed", "7")
     assert (done.exit_code, done.stdout) == (0, "lifting-dry-sheet.md\n")
     assert "--seed 7" in (tmp_path / "lifting-dry-sheet.md").read_text(encoding="utf-8")
-    again = command("lifting-dry", "--format", "md")
-    assert again.exit_code == 2
-    assert again.stderr.startswith("error: lifting-dry-sheet.md exists already: add --force to replace it")
     wrong = command("lifting-dry", "--set", "temperature=25m")
     assert (wrong.exit_code, wrong.stdout) == (2, "")
     assert "is a length" in wrong.stderr

@@ -3,13 +3,11 @@
 That every variable has a unit, words and a name that CF knows is checked by CF's own program in tests/test_output.py.
 """
 
-import numpy as np
 import pytest
 
 from atmosbox.file.declaration import SUFFIXES, Variable, derived
 from atmosbox.file.variables import VARIABLES, variable
 
-PATH = Variable("molecule_position", ("elapsed_time", "molecule", "axis"), "m", "position of the molecule", dtype="f4")
 HEIGHT = Variable("height", ("height",), "m", "height of the middle of the layer", "height", axis="Z", positive="up")
 
 
@@ -67,23 +65,6 @@ def test_every_temperature_says_whether_it_is_a_difference():
 def test_an_error_bar_of_nothing_is_refused():
     with pytest.raises(KeyError, match="nothing_se"):
         variable("nothing_se")
-
-
-def test_the_paths_of_molecules_are_packed_in_blocks_of_many_frames_and_few_megabytes():
-    for frames, molecules, chunks in [
-        (1000, 800, (100, 800, 3)),
-        (7, 800, (7, 800, 3)),
-        (1000, 100_000, (100, 3333, 3)),
-        (0, 0, (1, 1, 3)),
-    ]:
-        assert PATH.encoding((frames, molecules, 3)) == {
-            "dtype": "f4",
-            "_FillValue": pytest.approx(np.nan, nan_ok=True),
-            "zlib": True,
-            "complevel": 4,
-            "shuffle": True,
-            "chunksizes": chunks,
-        }
 
 
 def test_a_standard_name_stands_at_one_variable_so_that_it_is_found_without_a_doubt():

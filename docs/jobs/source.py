@@ -81,7 +81,8 @@ def _entered(node: ast.stmt) -> str | None:
     return None
 
 
-def statements(source: str, job: str | None = None) -> set[str]:
+@functools.cache
+def statements(source: str, job: str | None = None) -> frozenset[str]:
     r"""Return digests of what a file does, statement by statement; of its jobs only one, if any.
 
     Examples
@@ -91,7 +92,7 @@ def statements(source: str, job: str | None = None) -> set[str]:
     (True, 2)
     """
     body = [node for node in ast.parse(source).body if _entered(node) in (None, job) and not _is_list_of_names(node)]
-    return {_digest([_told(bare)]) for bare in map(_Bare().visit, body) if bare is not None}
+    return frozenset(_digest([_told(bare)]) for bare in map(_Bare().visit, body) if bare is not None)
 
 
 def _is_list_of_names(node: ast.stmt) -> bool:
@@ -106,7 +107,7 @@ def _digest(texts: Iterable[str]) -> str:
 def room(folder: Path, without: frozenset[Path] = frozenset()) -> frozenset[str]:
     """Return digests of all that a folder, or a single module, does, with the tables that it reads."""
     files = sorted(folder.rglob("*")) if folder.is_dir() else [folder.with_suffix(".py")]
-    found = set()
+    found: set[str] = set()
     for file in files:
         if not without.isdisjoint((file, *file.parents)):
             continue
