@@ -77,10 +77,9 @@ def test_every_library_the_package_imports_is_a_dependency():
     assert declared.isdisjoint(extras)
 
 
-@pytest.mark.parametrize("name", scenarios.names())
-def test_the_examples_in_the_docstrings_of_a_scenario_hold(name):
-    flags = doctest.NORMALIZE_WHITESPACE
-    assert doctest.testmod(scenarios.load(name), optionflags=flags).failed == 0
+def test_the_examples_in_the_docstrings_of_scenarios_hold():
+    for module in map(scenarios.load, scenarios.names()):
+        assert doctest.testmod(module, optionflags=doctest.NORMALIZE_WHITESPACE).failed == 0, module
 
 
 @pytest.mark.parametrize("heading", ["Install and run", "Run the tests"])

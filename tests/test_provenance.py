@@ -1,6 +1,5 @@
 """What a file says of where it comes from."""
 
-import json
 import time
 
 import pytest
@@ -45,15 +44,14 @@ def test_without_a_set_date_the_time_is_now(monkeypatch):
     assert history_line("x")[:10] in {time.strftime("%Y-%m-%d", time.gmtime(time.time() + s)) for s in (-9, 0)}
 
 
-@pytest.mark.parametrize("epoch", ["yesterday", "1e9", "9" * 30])
-def test_a_set_date_that_is_none_is_refused(monkeypatch, epoch):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
-    with pytest.raises(SettingError, match="SOURCE_DATE_EPOCH"):
-        history_line("x")
+def test_a_set_date_that_is_none_is_refused(monkeypatch):
+    for epoch in ("yesterday", "1e9", "9" * 30):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+        with pytest.raises(SettingError, match="SOURCE_DATE_EPOCH"):
+            history_line("x")
 
 
-@pytest.mark.parametrize("text", [None, "", "{", "[1, 2]", json.dumps("words"), 7])
-def test_parameters_that_are_damaged_are_refused(text):
-    attrs = {} if text is None else {"atmosbox_parameters": text}
-    with pytest.raises(FileError, match="does not say which run it holds"):
-        parameters(xr.Dataset(attrs=attrs))
+def test_parameters_that_are_damaged_are_refused():
+    for attrs in ({}, *({"atmosbox_parameters": text} for text in ("", "{", "[1, 2]", '"words"', 7))):
+        with pytest.raises(FileError, match="does not say which run it holds"):
+            parameters(xr.Dataset(attrs=attrs))

@@ -165,29 +165,28 @@ def test_names_are_sorted_and_typed_with_dashes():
     assert not [name for name in found if "_" in name]
 
 
-@pytest.mark.parametrize("name", scenarios.names())
-def test_every_scenario_defines_what_a_scenario_must(name):
-    module = scenarios.load(name)
-    assert [attribute for attribute in scenarios.REQUIRED if not hasattr(module, attribute)] == []
-    assert module.__doc__
+def test_every_scenario_defines_what_a_scenario_must():
+    for module in map(scenarios.load, scenarios.names()):
+        assert [attribute for attribute in scenarios.REQUIRED if not hasattr(module, attribute)] == [], module
+        assert module.__doc__
 
 
 def test_a_scenario_may_be_named_with_underscores():
     assert scenarios.load("lifting_dry") is scenarios.load("lifting-dry")
 
 
-@pytest.mark.parametrize("name", ["lifting-dri", "Lifting-Dry", "lifting"])
-def test_an_unknown_scenario_offers_the_nearest_ones(name):
-    with pytest.raises(UnknownSceneError, match=f"{name}.*lifting-dry.*atmosbox list"):
-        scenarios.load(name)
+def test_an_unknown_scenario_offers_the_nearest_ones():
+    for name in ("lifting-dri", "Lifting-Dry", "lifting"):
+        with pytest.raises(UnknownSceneError, match=f"{name}.*lifting-dry.*atmosbox list"):
+            scenarios.load(name)
 
 
-@pytest.mark.parametrize("name", ["", "zzzz", "os", "__init__", "-", "a\0b", "x" * 10_000, "two\nlines"])
-def test_a_hopeless_name_is_pointed_to_the_list(name):
-    with pytest.raises(UnknownSceneError, match="atmosbox list") as caught:
-        scenarios.load(name)
-    assert len(str(caught.value).splitlines()) == 1
-    assert len(str(caught.value)) < 200
+def test_a_hopeless_name_is_pointed_to_the_list():
+    for name in ("", "zzzz", "os", "__init__", "-", "a\0b", "x" * 10_000, "two\nlines"):
+        with pytest.raises(UnknownSceneError, match="atmosbox list") as caught:
+            scenarios.load(name)
+        assert len(str(caught.value).splitlines()) == 1
+        assert len(str(caught.value)) < 200
 
 
 def test_the_bare_name_of_an_own_file_is_answered_with_its_path(tmp_path, monkeypatch):
@@ -237,29 +236,23 @@ def test_a_folder_is_no_scenario(tmp_path):
         scenarios.load(tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("source", "sentence"),
-    [
+def test_an_own_file_that_fails_is_refused_with_its_line(tmp_path):
+    path = tmp_path / "my_scene.py"
+    before = set(sys.modules)
+    for source, sentence in [
         ("x = 1\ny = (\n", r"line 2, .*SyntaxError: '\(' was never closed"),
-        (
-            "x = 1\nimport no_such_library\n",
-            "line 2, .*ModuleNotFoundError: No module named 'no_such_library'",
-        ),
+        ("x = 1\nimport no_such_library\n", "line 2, .*ModuleNotFoundError: No module named 'no_such_library'"),
         ("def f():\n    return 1 / 0\n\nf()\n", "line 2, .*ZeroDivisionError"),
         ("import json\n\njson.loads('{')\n", "line 3, .*JSONDecodeError"),
         ("import sys\nsys.exit()\n", "line 2, .*SystemExit"),
         ("x = '\xe9'\n", "SyntaxError"),
         ("x = 1\0\n", "cannot be run"),
-    ],
-)
-def test_an_own_file_that_fails_is_refused_with_its_line(tmp_path, source, sentence):
-    path = tmp_path / "my_scene.py"
-    path.write_bytes(source.encode("latin-1"))
-    before = set(sys.modules)
-    with pytest.raises(FileError, match=sentence) as caught:
-        scenarios.load(path)
-    assert str(path) in str(caught.value)
-    assert len(str(caught.value).splitlines()) == 1
+    ]:
+        path.write_bytes(source.encode("latin-1"))
+        with pytest.raises(FileError, match=sentence) as caught:
+            scenarios.load(path)
+        assert str(path) in str(caught.value)
+        assert len(str(caught.value).splitlines()) == 1
     assert not [name for name in set(sys.modules) - before if "my_scene" in name]
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, ValidationError
 
-from atmosbox.errors import SettingError, UnitError, UnknownSettingError
+from atmosbox.errors import SettingError, UnknownSettingError
 from atmosbox.scene.parameter import Parameter
 from atmosbox.scene.settings import SceneSettings, setting
 
@@ -145,17 +145,6 @@ def test_a_value_out_of_range_is_refused_with_range_and_fix():
         "molecules = 2e7 is above the highest allowed, 1 to 10000000: give --set molecules=4000."
     )
     assert refusal(seed=-1) == ("seed = -1 is below the lowest allowed, 0 to 9223372036854775807: give --set seed=1.")
-
-
-def test_a_wrong_dimension_is_refused_with_the_right_one_and_a_fix():
-    assert refusal(UnitError, temperature="5 m") == (
-        "temperature = 5 m is a length, but a temperature from -100 degC to 500 degC is wanted: "
-        "give --set temperature=15degC."
-    )
-    assert refusal(UnitError, molecules="4000 K") == (
-        "molecules = 4000 K is a temperature, but a whole number from 1 to 10000000 is wanted: "
-        "give --set molecules=4000."
-    )
 
 
 def test_a_text_must_be_a_text_and_not_empty_unless_its_default_is():

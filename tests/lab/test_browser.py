@@ -412,13 +412,13 @@ def test_undo_takes_the_knob_back_and_reset_begins_the_same_run(lab):
     assert shown.digest() == first
 
 
-@pytest.mark.parametrize("value", ["1e9", "", "warm"])
-def test_a_value_that_is_not_possible_is_refused_in_a_sentence_and_changes_nothing(lab, value):
+def test_a_value_that_is_not_possible_is_refused_in_a_sentence_and_changes_nothing(lab):
     shown = lab("temperature", {"molecules": 20})
     before = shown.digest()
-    shown.ask(type="set", name="temperature", value=value)
-    assert "-200 to 500 degC" in shown.note().replace("−", "-")
-    assert shown.digest() == before
+    for value in ("1e9", "", "warm"):
+        shown.ask(type="set", name="temperature", value=value)
+        assert "-200 to 500 degC" in shown.note().replace("−", "-")
+        assert shown.digest() == before
 
 
 def test_the_page_plays_by_keyboard_and_pauses(lab):

@@ -155,17 +155,14 @@ def test_axes_of_an_ascent_hold_its_way_before_it_begins():
     assert all(panel["planned"] == {"x": [], "y": []} for panel in still)
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
+def test_a_file_that_makes_no_sense_is_refused_in_a_sentence(tmp_path):
+    for text, said in [
         ("preset = 3", "preset 1 must have set, title"),
         ("[[preset]]\ntitle = 'x'", "preset 1 must have set, title"),
         ("[[tip]]\nask = 'x'", "tip is unknown"),
         ("[[challenge]]\nask = 'x'\nhint = 'y'\nreach = {parcel_pressure = ['300 K', '1 hPa']}", "cannot be read"),
         ("[[challenge]]\nask = 'x'\nhint = 'y'\nreach = {nonsense = ['300 K', '1 K']}", "nonsense of a challenge"),
         ("= 3", "is not TOML"),
-    ],
-)
-def test_a_file_that_makes_no_sense_is_refused_in_a_sentence(tmp_path, text, said):
-    with pytest.raises(ConfigError, match=said):
-        lesson_of(scene(tmp_path, text))
+    ]:
+        with pytest.raises(ConfigError, match=said):
+            lesson_of(scene(tmp_path, text))

@@ -156,10 +156,10 @@ def test_a_scene_that_draws_one_series_against_another_is_told_whole():
     assert told["values"]["a"][-1] == 5000.0**2
 
 
-@pytest.mark.parametrize("name", ["a/b", "..", ".", "/", "a\\b", "~/a", "a\nb", "a\0b", " "])
-def test_a_recording_stays_in_its_folder(tmp_path, name):
-    with pytest.raises(FileError, match="not the name of a file"):
-        file_for(name, "temperature", tmp_path, force=True)
+def test_a_recording_stays_in_its_folder(tmp_path):
+    for name in ("a/b", "..", ".", "/", "a\\b", "~/a", "a\nb", "a\0b", " "):
+        with pytest.raises(FileError, match="not the name of a file"):
+            file_for(name, "temperature", tmp_path, force=True)
 
 
 def test_a_free_name_is_found(tmp_path):

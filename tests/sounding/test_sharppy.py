@@ -1,7 +1,7 @@
 import pytest
 
 from atmosbox.errors import SoundingError
-from atmosbox.scene.sounding import read, sharppy
+from atmosbox.scene.sounding import read
 
 
 def test_a_file_is_read_without_the_level_below_the_ground(written, sharppy_lines, same_as):
@@ -41,8 +41,3 @@ def test_a_line_that_is_cut_off_is_refused(written, sharppy_lines):
     sharppy_lines[9] = sharppy_lines[9].rpartition(",")[0]
     with pytest.raises(SoundingError, match="line 10: there are 5 of 6 columns"):
         read(written(sharppy_lines))
-
-
-def test_other_texts_are_not_recognised(sharppy_lines, csv_lines):
-    assert sharppy.recognised(sharppy_lines)
-    assert not sharppy.recognised(csv_lines)

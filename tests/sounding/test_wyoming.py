@@ -74,8 +74,3 @@ def test_a_word_among_the_numbers_is_refused(written, wyoming_lines):
 def test_a_table_without_units_is_refused(wyoming_lines):
     with pytest.raises(SoundingError, match="line 2: no line of units"):
         wyoming.parse(wyoming_lines[:2], "a.txt", "a")
-
-
-def test_other_texts_are_not_recognised(wyoming_lines, csv_lines):
-    assert wyoming.recognised(wyoming_lines)
-    assert not wyoming.recognised(csv_lines)
