@@ -143,21 +143,18 @@ def test_the_version_is_that_of_the_package():
     assert atmosbox_in_process("--version").stdout == f"atmosbox {atmosbox.__version__}\n"
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def test_a_wrong_usage_ends_with_2(folder):
+    for words in [
         ["run", SCENE, "--no-such-option"],
         ["no-such-command"],
         ["info"],
         ["plot"],
         ["plot", "x.nc", "--theme", "z"],
-    ],
-)
-def test_a_wrong_usage_ends_with_2(words, folder):
-    result = atmosbox_in_process(*words)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert list(folder.iterdir()) == []
+    ]:
+        result = atmosbox_in_process(*words)
+        assert result.exit_code == 2
+        assert result.stdout == ""
+        assert list(folder.iterdir()) == []
 
 
 # The scenes

@@ -45,9 +45,9 @@ def test_what_is_allowed_is_split_into_chance_and_the_known_error():
     assert replace(found, value=13.0).known == pytest.approx(found.known - 0.25), "the bias is to the other side"
 
 
-@pytest.mark.parametrize("numbers", [{"value": math.nan}, {"theory": math.nan}])
-def test_a_headline_that_is_not_a_number_agrees_with_nothing(numbers):
-    assert headline(**numbers).verdict == "no"
+def test_a_headline_that_is_not_a_number_agrees_with_nothing():
+    for numbers in [{"value": math.nan}, {"theory": math.nan}]:
+        assert headline(**numbers).verdict == "no"
 
 
 @pytest.mark.parametrize(

@@ -179,9 +179,8 @@ def test_a_function_of_ones_own_hears_how_far_a_run_is():
 # Refusals
 
 
-@pytest.mark.parametrize(
-    ("call", "fix"),
-    [
+def test_a_refusal_says_what_to_write_in_python():
+    for call, fix in [
         (lambda: ab.run("lifting-dry", molecules=0), "give molecules=4000."),
         (lambda: ab.run("lifting-dry", temperature="5 hPa"), 'give temperature="15degC".'),
         (lambda: ab.run("lifting-dry", rotation="maybe"), "give rotation=True."),
@@ -194,13 +193,11 @@ def test_a_function_of_ones_own_hears_how_far_a_run_is():
         (lambda: ab.sweep("temperature", {"molecules": "100:x"}), 'give vary={"molecules": "'),
         (lambda: ab.compare("a.nc"), "give two to six."),
         (lambda: ab.open("a.nc"), "check the name and the folder."),
-    ],
-)
-def test_a_refusal_says_what_to_write_in_python(call, fix):
-    with pytest.raises(errors.AtmosboxError) as refused:
-        call()
-    assert fix in str(refused.value)
-    assert "--" not in str(refused.value)
+    ]:
+        with pytest.raises(errors.AtmosboxError) as refused:
+            call()
+        assert fix in str(refused.value)
+        assert "--" not in str(refused.value)
 
 
 def test_a_run_without_molecules_says_how_to_keep_them(lifted):

@@ -52,14 +52,11 @@ def test_a_name_may_be_spelled_with_a_dash():
         by_name({"box-height": 1, "box_height": 2}, KNOWN)
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "fix"),
-    [
+def test_an_unknown_name_is_refused_with_the_nearest():
+    for name, value, fix in [
         ("box_hight", "3 km", r"give --set box_height='3 km'\.$"),
         ("Molecules", 5, r"give --set molecules=4000\.$"),
         ("zzz", 1, r"give one of rotation, start, molecules, box_height\.$"),
-    ],
-)
-def test_an_unknown_name_is_refused_with_the_nearest(name, value, fix):
-    with pytest.raises(UnknownSettingError, match=fix):
-        by_name({name: value}, KNOWN)
+    ]:
+        with pytest.raises(UnknownSettingError, match=fix):
+            by_name({name: value}, KNOWN)

@@ -221,23 +221,20 @@ def refused(*words):
     return result.stderr
 
 
-@pytest.mark.parametrize(
-    ("changed", "said"),
-    [
+def test_a_run_does_not_go_on_where_what_made_it_has_changed(part):
+    for changed, said in [
         ({"version": "0.0.9"}, "version (0.0.9, now"),
         ({"format of the state": 99}, "format of the state (99, now 1)"),
         ({"sources of the engine": "other"}, "sources of the engine (other, now"),
         ({"content of the scene": "other"}, "content of the scene (other, now"),
         ({"processor": "vax"}, "processor (vax, now"),
-    ],
-)
-def test_a_run_does_not_go_on_where_what_made_it_has_changed(part, changed, said):
-    found = restart.read_state(part)
-    prepared = runner.prepared_again(found)
-    restart.check_alike(found, prepared)
-    with pytest.raises(FileError) as refusal:
-        runner.execute(prepared, restart=found._replace(about=found.about | changed))
-    assert said in str(refusal.value)
+    ]:
+        found = restart.read_state(part)
+        prepared = runner.prepared_again(found)
+        restart.check_alike(found, prepared)
+        with pytest.raises(FileError) as refusal:
+            runner.execute(prepared, restart=found._replace(about=found.about | changed))
+        assert said in str(refusal.value)
 
 
 def test_a_run_that_goes_on_keeps_its_settings(part):

@@ -277,14 +277,14 @@ def test_the_error_of_a_mean_is_from_the_scatter_where_there_is_enough_of_it():
 
 
 def test_a_sweep_holds_what_single_runs_find(tmp_path):
-    grid = plan("elastic-collisions", ["molecules=10,20", "speed=0.5,1,2"], settings=QUICK, members=2, seed=5)
+    grid = plan("elastic-collisions", ["molecules=10,20", "speed=0.5,1"], settings=QUICK, members=2, seed=5)
     found = sweep(grid, tmp_path / "discs.nc", jobs=1).dataset
-    assert dict(found.sizes) == {"molecules": 2, "speed": 3, "member": 2}
+    assert dict(found.sizes) == {"molecules": 2, "speed": 2, "member": 2}
     one = runner.execute(
-        runner.prepare("elastic-collisions", {**QUICK, "molecules": 20, "speed": 1, "seed": member_seed(5, 5, 2)})
+        runner.prepare("elastic-collisions", {**QUICK, "molecules": 20, "speed": 1, "seed": member_seed(5, 4, 2)})
     )
     here = found.sel(molecules=20.0, speed=1.0)
-    assert here.member_seed.values.tolist() == [member_seed(5, 5, 1), member_seed(5, 5, 2)]
+    assert here.member_seed.values.tolist() == [member_seed(5, 4, 1), member_seed(5, 4, 2)]
     for headline in one.headlines:
         assert here[f"{headline.name}_by_member"].values[1] == headline.value
         assert here[f"{headline.name}_by_member_se"].values[1] == headline.standard_error

@@ -47,13 +47,13 @@ def test_from_the_end_it_turns_back_at_once():
     assert [course.moment(t) for t in (8.0, 20.0, 30.0, 33.0, 40.0)] == pytest.approx([8.0, 10.0, 10.0, 7.0, 4.0])
 
 
-@pytest.mark.parametrize(("time", "towards"), [(1.0, 2.0), (9.0, -1.0), (9.0, 10.5), (math.nan, 1.0), (9.0, math.inf)])
-def test_what_no_plan_knows_is_refused(time, towards):
-    course = Course(10.0)
-    course.lead(5.0, 3.0)
-    with pytest.raises(RefusedError):
-        course.lead(time, towards)
-    assert course.moment(20.0) == 3.0
+def test_what_no_plan_knows_is_refused():
+    for time, towards in [(1.0, 2.0), (9.0, -1.0), (9.0, 10.5), (math.nan, 1.0), (9.0, math.inf)]:
+        course = Course(10.0)
+        course.lead(5.0, 3.0)
+        with pytest.raises(RefusedError):
+            course.lead(time, towards)
+        assert course.moment(20.0) == 3.0
 
 
 def test_a_parcel_that_is_led_up_and_down_follows_the_pressure_both_ways():

@@ -85,17 +85,17 @@ def test_emitted_molecules_carry_the_energy_of_a_flux(rotation, planar, energy):
     assert held(carried, energy, energy)
 
 
-@pytest.mark.parametrize(("wall", "dead"), [(0, 1), (1, 1), (4, 2), (5, 2)])
-def test_a_plane_gas_is_sent_back_into_its_plane(wall, dead):
-    gas = emitted(HeatBath(KT), wall=wall, planar=True, number=50)
-    assert (gas[:, dead] == 0.0).all()
-    assert (gas[:, 3 - dead] != 0.0).all()
+def test_a_plane_gas_is_sent_back_into_its_plane():
+    for wall, dead in [(0, 1), (1, 1), (4, 2), (5, 2)]:
+        gas = emitted(HeatBath(KT), wall=wall, planar=True, number=50)
+        assert (gas[:, dead] == 0.0).all()
+        assert (gas[:, 3 - dead] != 0.0).all()
 
 
-@pytest.mark.parametrize("wall", range(6))
-def test_every_wall_sends_molecules_back_into_the_box(wall):
-    normal = emitted(HeatBath(KT), wall=wall, number=200)[:, 0]
-    assert (normal > 0.0).all() if wall % 2 == 0 else (normal < 0.0).all()
+def test_every_wall_sends_molecules_back_into_the_box():
+    for wall in range(6):
+        normal = emitted(HeatBath(KT), wall=wall, number=200)[:, 0]
+        assert (normal > 0.0).all() if wall % 2 == 0 else (normal < 0.0).all()
 
 
 @pytest.mark.parametrize("accommodation", [0.0, 0.3, 1.0])
@@ -111,12 +111,12 @@ def test_a_heat_bath_emits_at_the_temperature_of_the_moment():
     assert late[:, :3] == pytest.approx(3.0 * early[:, :3])
 
 
-@pytest.mark.parametrize("velocity", [-2.0, 0.0, 0.5, 2.0])
-def test_a_piston_reflects_in_its_own_frame(velocity):
-    walls = walls_with(Piston(velocity), 5)
-    after = resolve_wall_hit(walls, 5, 0.0, 3.0, 0.25, 0.5, 7.0, MASS, 0.0, False, random_state())
-    assert after == (-3.0 + 2.0 * velocity, 0.25, 0.5, 7.0)
-    assert after[0] - velocity == -(3.0 - velocity)
+def test_a_piston_reflects_in_its_own_frame():
+    for velocity in [-2.0, 0.0, 0.5, 2.0]:
+        walls = walls_with(Piston(velocity), 5)
+        after = resolve_wall_hit(walls, 5, 0.0, 3.0, 0.25, 0.5, 7.0, MASS, 0.0, False, random_state())
+        assert after == (-3.0 + 2.0 * velocity, 0.25, 0.5, 7.0)
+        assert after[0] - velocity == -(3.0 - velocity)
 
 
 def test_walls_without_chance_draw_no_number():

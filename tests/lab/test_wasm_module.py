@@ -55,9 +55,9 @@ def test_every_module_is_made_of_the_sources_as_they_are():
     assert stale == [], "run python tools/wasm.py"
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.name.removesuffix(".wasm.gz"))
-def test_a_module_imports_memory_and_nothing_else(path):
-    assert imports_of(gzip.decompress(path.read_bytes())) == [("env", "memory", 2)]
+def test_a_module_imports_memory_and_nothing_else():
+    for path in MODULES:
+        assert imports_of(gzip.decompress(path.read_bytes())) == [("env", "memory", 2)]
 
 
 def test_the_modules_are_small_and_there_is_one_for_every_scene_that_has_a_lab():

@@ -115,19 +115,16 @@ def test_two_touching_clusters_are_one_drop_and_a_pair_is_vapour():
     assert drops_of(np.zeros((0, 2), np.int64), 2).tolist() == [-1] * 2
 
 
-@pytest.mark.parametrize(
-    ("settings", "word"),
-    [
+def test_what_cannot_be_is_refused():
+    for settings, word in [
         ({"start": "slab", "temperature": "200 K"}, "temperature"),
         ({"start": "slab", "attraction": 0.3}, "temperature"),
         ({"start": "slab", "density": 2.0, "molecules": 50}, "molecules"),
         ({"density": 1.9, "air": 1.0}, "density"),
         ({"substance": "water"}, "substance"),
-    ],
-)
-def test_what_cannot_be_is_refused(settings, word):
-    with pytest.raises(SettingError, match=word):
-        runner.prepare("attraction", settings)
+    ]:
+        with pytest.raises(SettingError, match=word):
+            runner.prepare("attraction", settings)
 
 
 def test_a_fluid_boils_where_it_is_measured_to_boil():

@@ -283,17 +283,14 @@ def test_surface_and_salt_are_in_what_a_box_tells():
     assert parcel.condensed_energy - flat.condensed_energy == pytest.approx(parcel.surface_energy, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("changes", "says"),
-    [
+def test_what_no_drop_can_have_is_refused():
+    for changes, says in [
         ({"tension": -1.0}, "surface tension"),
         ({"tension": 5000.0}, "give less than"),
         ({"salt": (1.0, 2.0)}, "2 numbers of dissolved particles for 1 nuclei"),
         ({"salt": (-1.0,)}, "dissolved"),
         ({"nucleus": (0.1, 0.2)}, "2 radii for 1 nuclei"),
         ({"nucleus": (0.0,)}, "must be above 0"),
-    ],
-)
-def test_what_no_drop_can_have_is_refused(changes, says):
-    with pytest.raises(RefusedError, match=says):
-        drops(10, **changes)
+    ]:
+        with pytest.raises(RefusedError, match=says):
+            drops(10, **changes)

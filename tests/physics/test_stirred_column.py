@@ -166,9 +166,8 @@ def test_what_is_not_set_suits_a_stirred_column_and_what_is_set_stays():
     assert dict(card(stirred).facts)["adiabat"] == "g/c_p = 9.76 K/km"
 
 
-@pytest.mark.parametrize(
-    ("settings", "engine", "words"),
-    [
+def test_what_cannot_be_stirred_is_refused_with_what_to_give():
+    for settings, engine, words in [
         ({}, "exact", "cannot stir.*--engine dsmc"),
         ({}, "stepped", "cannot stir.*--engine dsmc"),
         ({"floor": "isolated"}, None, "floor=heat-bath"),
@@ -176,11 +175,9 @@ def test_what_is_not_set_suits_a_stirred_column_and_what_is_set_stays():
         ({"height": 25}, None, "height=20.6 or less"),
         ({"height": 16, "rotation": False}, None, "height=14.7 or less"),
         ({"molecules": 100}, None, "molecules=200 or more"),
-    ],
-)
-def test_what_cannot_be_stirred_is_refused_with_what_to_give(settings, engine, words):
-    with pytest.raises(SettingError, match=words):
-        runner.build(runner.prepare("atmosphere", {"stirring": 10, **settings}, engine=engine))
+    ]:
+        with pytest.raises(SettingError, match=words):
+            runner.build(runner.prepare("atmosphere", {"stirring": 10, **settings}, engine=engine))
 
 
 def test_discs_do_not_rotate():

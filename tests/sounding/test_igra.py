@@ -76,10 +76,10 @@ def test_of_a_file_of_years_the_first_sounding_is_taken(written, lines):
     assert sounding.remarks[0] == "The first of 2 soundings in the file taken."
 
 
-@pytest.mark.parametrize("cut", [1, 3, 8])
-def test_a_file_that_is_cut_off_is_refused(written, lines, cut):
-    with pytest.raises(SoundingError, match=f"the header tells of 9 levels, and {9 - cut} are there"):
-        read(written(lines[:-cut]))
+def test_a_file_that_is_cut_off_is_refused(written, lines):
+    for cut in [1, 3, 8]:
+        with pytest.raises(SoundingError, match=f"the header tells of 9 levels, and {9 - cut} are there"):
+            read(written(lines[:-cut]))
 
 
 def test_a_line_that_is_cut_off_or_no_number_is_refused(written, lines):
