@@ -1,8 +1,10 @@
 """Files: complete or absent, CF throughout, and read again as they were written."""
 
+import ast
 import errno
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,6 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from atmosbox import film, page, plot, sheet
 from atmosbox.errors import DiskFullError, FileError
 from atmosbox.file import netcdf as output
 from atmosbox.file import output_path, provenance, validity
@@ -251,6 +254,22 @@ def test_a_file_is_replaced_only_by_force(tmp_path):
     assert "height" in output.read(path).dims
 
 
+def test_no_function_that_saves_replaces_a_file_unasked(tmp_path):
+    """Commands ask before they begin (test_cli), and each function for itself, before it looks at what it is given."""
+    for save, ending in [
+        (output.write, "nc"),
+        (plot.save, "svg"),
+        (film.save, "gif"),
+        (page.save, "html"),
+        (sheet.save, "md"),
+    ]:
+        path = tmp_path / f"mine.{ending}"
+        path.write_text("mine")
+        with pytest.raises(FileError, match=r"exists already: add --force"):
+            save(None, path)
+        assert path.read_text() == "mine"
+
+
 @pytest.mark.parametrize("force", [False, True])
 def test_a_place_that_cannot_be_written_is_refused_with_a_way_out(tmp_path, force):
     (tmp_path / "file").write_text("text")
@@ -375,11 +394,20 @@ def test_whatever_a_file_is_made_of_it_is_there_whole_or_not_at_all(tmp_path):
     assert [each.name for each in tmp_path.iterdir()] == ["film.mp4"]
 
 
+WRITES = re.compile(r"^os\.replace$|\.(write_bytes|write_text|to_netcdf)$")
+
+
 def test_nothing_in_the_package_puts_a_file_in_its_place_on_its_own():
-    """A second way to write a file whole would be one that forgets something."""
+    """A second way to write a file whole would be one that forgets something; what only caches keep may be lost."""
     package = Path(output_path.__file__).parents[1]
-    ways = {path.relative_to(package).as_posix() for path in package.rglob("*.py") if "os.replace(" in path.read_text()}
-    assert ways == {"file/output_path.py", "file/checkpoint.py"}
+    ways = {
+        path.relative_to(package).as_posix()
+        for path in package.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and WRITES.search(ast.unparse(node.func))
+    }
+    caches = {"engine/core/kernel_cache.py", "simulation/compilation.py", "simulation/expected_time.py"}
+    assert ways - caches == {"file/output_path.py", "file/checkpoint.py"}
 
 
 def test_the_part_has_the_name_of_the_file():
