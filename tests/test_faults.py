@@ -75,10 +75,6 @@ TURKISH = "tr_TR.UTF-8"
 """Its numbers have commas, as German ones, and its capital i has a dot."""
 
 
-PLAIN = {"NUMBA_DISABLE_JIT": "1"}
-"""Python itself ends in the same bits (test_same_bits), and compiles nothing where no machine code is found."""
-
-
 @pytest.mark.parametrize(
     ("flags", "variables"),
     [
@@ -88,7 +84,7 @@ PLAIN = {"NUMBA_DISABLE_JIT": "1"}
     ids=["-O, -W error, Turkish, far zone", "C, no home"],
 )
 def test_an_odd_environment_changes_no_number(usual, tmp_path, flags, variables):
-    status, _, said = command(SHORT, tmp_path, *flags, **variables, **PLAIN)
+    status, _, said = command(SHORT, tmp_path, *flags, **variables)
     assert status == 0, said
     assert same(tmp_path, usual)
 
@@ -133,9 +129,9 @@ def test_a_checkout_that_was_moved_runs_and_finds_the_same(usual, tmp_path):
     for name in ("atmosbox", "scenarios"):
         shutil.copytree(ROOT / name, here / name, ignore=shutil.ignore_patterns("__pycache__"))
     (here / "pyproject.toml").write_text((ROOT / "pyproject.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    assert command(SHORT, tmp_path / "one", package=here, **PLAIN)[0] == 0
+    assert command(SHORT, tmp_path / "one", package=here)[0] == 0
     here.rename(there)
-    assert command(SHORT, tmp_path / "two", package=there, **PLAIN)[0] == 0
+    assert command(SHORT, tmp_path / "two", package=there)[0] == 0
     assert same(tmp_path / "one", usual)
     assert same(tmp_path / "two", usual)
 

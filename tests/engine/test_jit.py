@@ -96,7 +96,6 @@ def test_an_edit_in_another_file_is_seen_at_once_and_one_of_a_comment_compiles_n
     assert ask(tree, **cache) == (15.0, 0)
     edit(tree, "probe_constant.py", "3.0", "2.0")
     assert ask(tree, **cache) == (10.0, 1)
-    assert ask(tree.rename(tmp_path / "moved"), **cache)[0] == 10.0
 
 
 @needs_numba
