@@ -316,7 +316,6 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
         assert state(parcel) == state(whole)
 
 
-@pytest.mark.validate  # without air: kernels of its own
 @many_events
 def test_cutting_changes_nothing_while_all_water_is_in_the_liquid():
     # no air, and vapour only now and then: the molecules alone know of no next event
