@@ -48,6 +48,10 @@ class Asked(NamedTuple):
     save_molecules: bool = False
     accuracy: str | None = None
 
+    def for_a_page(self) -> Asked:
+        """Return it on the exact engine, which is the one that a page holds, unless it asks for another itself."""
+        return self._replace(engine="exact") if self.engine is None and self.accuracy is None else self
+
 
 def load_config(path: str | os.PathLike[str]) -> Asked:
     r"""Return the scene, the settings, and the engine or the accuracy that a TOML file asks for.

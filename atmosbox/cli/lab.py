@@ -57,9 +57,7 @@ def lab(
     """
     from atmosbox.simulation import runner
 
-    asked = gather(scene, values or (), config, source, seed, False, engine, accuracy)
-    if asked.engine is None and asked.accuracy is None:
-        asked = asked._replace(engine="exact")  # the one that a page holds
+    asked = gather(scene, values or (), config, source, seed, False, engine, accuracy).for_a_page()
     with progress("lab", quiet=False) as show:
         with prints_to_stderr():
             prepared = runner.prepare(**asked._asdict())

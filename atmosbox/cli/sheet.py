@@ -73,8 +73,8 @@ def sheet(
     from atmosbox import sheet as sheets
 
     asked = gather(scene, values or (), seed=seed, engine=engine)
-    if lab and asked.engine is None:
-        asked = asked._replace(engine="exact")  # the one that a page holds
+    if lab:
+        asked = asked.for_a_page()
     kind = "pdf" if format is None else format.value
     path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{kind}") if out is None else Path(out)
     path = sheets.check(path, format and format.value, paper=paper.value, force=force)

@@ -82,6 +82,35 @@ def answer(found: Findings) -> None:
     found.table(["scene", "for", "type", "what runs", "seconds", "error"], rows)
 
 
+@job("exact-beside", quick=True)
+def exact_beside(found: Findings) -> None:
+    """Lay the exact engine beside dsmc, in the scenes that run on dsmc, at the longest run measured of both."""
+    rows = []
+    for scene, table in accuracy.load().items():
+        pairs = [
+            (exact, other)
+            for exact in table.ways
+            for other in table.ways
+            if (exact.engine, other.engine) == ("exact", "dsmc") and exact.settings == other.settings
+        ]
+        if not (pairs and any(way.engine == "dsmc" and way.cost == 1.0 for way in table.ways)):  # the default costs 1
+            continue
+        exact, other = max(pairs, key=lambda pair: pair[1].cost)
+        found.number(scene, rounded(exact.cost / other.cost))
+        apart = {
+            name: (one.bias - other.errors[name].bias, math.hypot(one.bias_se, other.errors[name].bias_se))
+            for name, one in exact.errors.items()
+        }
+        name, (difference, error) = max(apart.items(), key=lambda each: abs(each[1][0]) / each[1][1])
+        share, unit = (1.0, "K") if exact.errors[name].unit == "K" else (100.0, "%")
+        rows.append(
+            [scene, f"`{exact.label}`", f"{exact.members} and {other.members}", rounded(exact.cost / other.cost),
+             f"{table.labels[name]}: {rounded(share * difference)} ± {rounded(share * error, 1)} {unit}"]
+        )  # fmt: skip
+    head = ["scene", "compared at", "runs", "times as long", "what differs most, in units of its error"]
+    found.table(head, rows)
+
+
 @job("approaching")
 def approaching(found: Findings) -> None:
     """Leave out the test whether a pair approaches, and count its collisions as time goes on."""

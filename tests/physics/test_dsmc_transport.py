@@ -86,7 +86,7 @@ def test_conductivity_is_that_of_chapman_and_enskog_and_grows_with_the_square_of
     box.advance(1500 * step)
     middle = (np.arange(layers) + 0.5) / layers * height
     inner = slice(layers // 4, layers - layers // 4)
-    looks, each, kept = 50, 20, box.steps
+    looks, each, kept = 100, 20, box.steps
     temperature, heat = np.empty((BLOCKS, layers)), np.empty(BLOCKS)
     for block in range(BLOCKS):
         before, began = box.wall_heat.copy(), box.time
