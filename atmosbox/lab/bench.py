@@ -168,6 +168,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
         Book(
             np.array([parcel._now]),
             np.array([parcel._epoch_length]),
+            parcel._clocks,
             np.array([parcel._start_energy]),
             moisture(parcel),
         ),

@@ -38,9 +38,7 @@ def moisture(parcel: Any) -> Any:
     """Return the liquid of a box, 0 if it has none."""
     if not hasattr(parcel, "vapour"):
         return 0
-    reservoir = parcel._reservoir
-    cover = np.array([reservoir.sticking, reservoir.log_rate])
-    return Moisture(reservoir, cover, parcel._vapours, parcel._rotations, getattr(parcel, "_drops", 0))
+    return Moisture(parcel._reservoir, parcel._vapours, parcel._rotations, getattr(parcel, "_drops", 0))
 
 
 def hygrometer(prepared: Prepared, setup: Setup) -> Any:

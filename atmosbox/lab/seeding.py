@@ -39,7 +39,8 @@ def without_molecules(box: Bench) -> Bench:
     if box.modes.ascends:
         blank["walls"] = gas.walls._replace(piston=gas.walls.piston * [1.0, 0.0, 1.0])
     if box.attracts:
-        blank["bath"] = gas.bath._replace(clock=np.full(1, math.inf))
+        clock = np.full(1, math.inf)
+        blank["bath"] = gas.bath._replace(clock=clock)
         blank["wells"] = gas.wells._replace(number=np.zeros_like(gas.wells.number))
     else:
         copies, boundary = gas.cells.copies._replace(epoch=np.zeros_like(gas.cells.copies.epoch)), gas.cells.boundary
@@ -50,11 +51,13 @@ def without_molecules(box: Bench) -> Bench:
             boundary[:, 2, : 2 * gas.cells.number_z] = 0.0
         blank["cells"] = gas.cells._replace(copies=copies, boundary=boundary)
     book = box.book._replace(epoch_length=np.zeros(1), energy=np.zeros(1))
+    if box.attracts:
+        book = book._replace(clocks=clock)
     if box.modes.phases:
         reservoir = book.moisture.reservoir
         clock = np.where(np.isinf(reservoir.clock), math.inf, 0.0)  # what never happens does so for every seed
         reservoir = reservoir._replace(clock=clock, bound=reservoir.bound * [0.0, 1.0])
-        book = book._replace(moisture=book.moisture._replace(reservoir=reservoir))
+        book = book._replace(clocks=clock, moisture=book.moisture._replace(reservoir=reservoir))
     return box._replace(gas=gas._replace(**blank), book=book)
 
 

@@ -32,6 +32,7 @@ from atmosbox.engine.liquid.reservoir import (
     exchange,
     leave,
     rain_out,
+    stays,
     wait,
 )
 
@@ -91,7 +92,7 @@ def touch(p, flow, air, features):
     vx, vy, vz = columns.vx[p], columns.vy[p], columns.vz[p]
     spin = columns.spin[p] if features.rotates else 0.0
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
-    if kind == reservoir.kind and (reservoir.sticking >= 1.0 or uniform(state) < reservoir.sticking):
+    if kind == reservoir.kind and stays(reservoir, state):
         condense(reservoir, energy)
         return True
     relative = energy - 0.5 * mass * (vz * vz - (vz - flow) * (vz - flow))

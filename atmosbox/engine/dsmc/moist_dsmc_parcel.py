@@ -115,9 +115,6 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         self._water = new_water(self._reservoir, self._room if self._pool else 1)
         self._spare_kind = np.empty_like(self._columns.kind)
 
-    def _reservoir_changes(self) -> None:
-        self._water = self._water._replace(reservoir=self._reservoir)
-
     def _classify(self) -> tuple[MoleculeKinds, Any]:
         """Return what the molecules of gas and liquid are, and of which kind each is."""
         self._append_liquid()

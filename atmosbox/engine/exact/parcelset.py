@@ -21,6 +21,7 @@ from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas,
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, POOL
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, Grid, choose_grid, new_cells, new_rows
+from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.rows import MOST, copies_of, row_stride
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
@@ -234,34 +235,24 @@ class ParcelSet(Parcel):
         )  # fmt: skip
 
     def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
-        """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all.
-
-        By how much depends on events alone, never on where a run is cut.
-        """
+        """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all."""
         if self._now < self._epoch_length:
             self._resolve(self._epoch_length, watch)
-        ahead = self._next_time()
-        ahead = min(ahead, self._next_turn() - float(self._walls.epoch[0]))
-        if math.isinf(ahead):
-            return False
-        self._rebase(max(1.0, math.floor(ahead / self._epoch_length)) * self._epoch_length)
-        return True
+        ahead = min(self._next_time(), self._next_turn() - float(self._walls.epoch[0]))
+        step = float(whole_epochs(ahead, self._epoch_length))
+        if step > 0.0:
+            set_back(step, self._gas(), self._clocks, self._modes)
+            self._now -= step
+        return step > 0.0
 
     def _next_time(self) -> float:
-        """Return the local time of the next event."""
-        return float(self._calendar.time[1])
+        """Return the local time of what happens next."""
+        return float(next_time(self._gas(), self._clocks))
 
-    def _rebase(self, step: float) -> None:
-        """Let all clocks read small numbers again, so that time keeps its digits for ever."""
-        self._fields["clock"] -= step
-        self._events["contact_time"] -= step
-        times = self._calendar.time
-        times -= step
-        self._cells.copies.epoch[:2] -= step
-        self._walls.piston[2] -= step
-        self._tallies.progress[0] -= step
-        self._walls.epoch[0] += step
-        self._now -= step
+    @property
+    def _clocks(self) -> Array:
+        """The clocks of what is no event of a molecule: none ever strikes."""
+        return np.full(1, math.inf)
 
     def _grow_rows(self) -> None:
         """Make the rows of all cells longer."""

@@ -31,7 +31,7 @@ from atmosbox.engine.liquid.drop_shape import DropRecords, about, placed, radius
 from atmosbox.engine.liquid.insertion import Place, has_room, move_to, place_at
 from atmosbox.engine.liquid.moist import ceiling_at, renew
 from atmosbox.engine.liquid.phase import enter, take_out, withdraw
-from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, wait
+from atmosbox.engine.liquid.reservoir import AIR_MET, THERMAL, condense, evaporate, exchange, leave, stays, wait
 
 __all__ = ["DropRecords", "specialise"]
 
@@ -126,7 +126,7 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
     spin = kinds.rotational_energy[i] if modes.rotation else 0.0
     energy = 0.5 * reduced * (ux * ux + uy * uy + uz * uz) + spin
     is_vapour = np.int64(gas.molecules[i].kind) == reservoir.kind
-    sticks = is_vapour and (reservoir.sticking >= 1.0 or uniform(state) < reservoir.sticking)
+    sticks = is_vapour and stays(reservoir, state)
     wx, wy, wz = cx, cy, cz
     if sticks and _may_grow(i, j, k, t, drop, gas, drops, modes):
         condense(reservoir, energy)

@@ -36,6 +36,7 @@ from atmosbox.engine.liquid.reservoir import (
     exchange,
     leave,
     rain_out,
+    stays,
     wait,
 )
 
@@ -114,7 +115,7 @@ def _touch(i, t, at, flow, gas, reservoir, modes):
         tallies.impulse[4] -= mass * at.vz
     # vapour sticks, always or with a chance
     is_vapour = np.int64(gas.molecules[i].kind) == reservoir.kind
-    if is_vapour and (reservoir.sticking >= 1.0 or uniform(tallies.random) < reservoir.sticking):
+    if is_vapour and stays(reservoir, tallies.random):
         condense(reservoir, energy)
         withdraw(i, gas, reservoir, modes)
         renew(t, tallies.random, reservoir)

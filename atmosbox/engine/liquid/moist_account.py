@@ -1,12 +1,10 @@
 """What a box with liquid in it holds and tells, however it lets time pass."""
 
 import math
-from abc import abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.elementary import log
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.parcel import Array, Parcel
 from atmosbox.engine.core.refusal import RefusedError
@@ -19,14 +17,12 @@ from atmosbox.engine.liquid.reservoir import (
     RAINED_ENERGY,
     THERMAL,
     Reservoir,
+    cover,
     new_reservoir,
 )
 from atmosbox.engine.liquid.substance import Liquid, Mist, Pool
 
 __all__ = ["MoistAccount"]
-
-_NEVER = -600.0
-"""Logarithm of the share of its rate at which a covered pool evaporates: never, in any time that there is."""
 
 
 class MoistAccount(Parcel):
@@ -40,7 +36,6 @@ class MoistAccount(Parcel):
     _reservoir: Reservoir
     _vapours: int
     _rotations: float
-    _uncovered: tuple[float, float]
 
     def _refuse_what_no_liquid_bears(self) -> None:
         """Refuse a plane gas, gravity, and a pool that is not the floor; make the floor a pool."""
@@ -83,9 +78,7 @@ class MoistAccount(Parcel):
             area = float(sides[0] * sides[1])
         present = len(kind) - int(liquid.number)
         rotation = float(substance.rotation) if self._rotates else 0.0
-        reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)
-        self._reservoir = reservoir._replace(rotation=rotation)
-        self._uncovered = reservoir.sticking, reservoir.log_rate
+        self._reservoir = new_reservoir(liquid, area, len(kind), present, vapour, cube)._replace(rotation=rotation)
         self._rotations = float(self._rotation.sum())
 
     def set_open_pool(self, share: float) -> None:
@@ -118,15 +111,11 @@ class MoistAccount(Parcel):
         """
         if not isinstance(self._liquid, Pool):
             raise RefusedError("the liquid of this box is no pool that could be covered: make it a Pool")
-        share = number(share, "open share of the pool", least=0.0, most=1.0)
-        sticking, log_rate = self._uncovered
-        leaves = max(float(log(share)), _NEVER) if share > 0.0 else _NEVER
-        self._reservoir = self._reservoir._replace(sticking=sticking * share, log_rate=log_rate + leaves)
+        cover(self._reservoir, number(share, "open share of the pool", least=0.0, most=1.0))
         self._reservoir_changes()
 
-    @abstractmethod
     def _reservoir_changes(self) -> None:
-        """Take note that the liquid takes and gives at other rates from now on."""
+        """Take note that the liquid takes and gives at other rates from now on, where times have been drawn already."""
 
     @property
     def number(self) -> int:

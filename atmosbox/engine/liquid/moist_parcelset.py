@@ -70,12 +70,13 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     def _piston_turned(self) -> None:
         super()._piston_turned()
-        speed = 2.0 * abs(self.piston_velocity)
-        if speed > float(self._reservoir.bound[0]):  # it may wake molecules at rest
-            self._draw(speed)
+        self._wake(2.0 * abs(self.piston_velocity))
 
     def _bath_changes(self, kT: float) -> None:
-        speed = math.sqrt(8.0 * kT / self._liquid.substance.mass)
+        self._wake(math.sqrt(8.0 * kT / self._liquid.substance.mass))
+
+    def _wake(self, speed: float) -> None:
+        """Draw anew if something now moves so fast that molecules may become faster than has been reckoned with."""
         if speed > float(self._reservoir.bound[0]):
             self._draw(speed)
 
@@ -112,9 +113,8 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         super()._find_kernels()
         self._moist_begin, self._moist_advance = moist.specialise(self._modes)
 
-    def _next_time(self) -> float:
-        return min(super()._next_time(), float(self._reservoir.clock.min()))
-
-    def _rebase(self, step: float) -> None:
-        super()._rebase(step)
-        self._reservoir.clock[:] -= step
+    @property
+    def _clocks(self) -> Array:
+        """When the liquid does something."""
+        clock: Array = self._reservoir.clock
+        return clock

@@ -42,6 +42,7 @@ __all__ = [
     "EVAPORATED",
     "LIQUID",
     "RAINED",
+    "STICKING",
     "Drops",
     "Liquid",
     "Mist",
@@ -49,6 +50,7 @@ __all__ = [
     "Reservoir",
     "Substance",
     "condense",
+    "cover",
     "direction",
     "evaporate",
     "evaporation_flux",
@@ -58,17 +60,23 @@ __all__ = [
     "leave",
     "new_reservoir",
     "rain_out",
+    "stays",
     "wait",
 ]
 
 LIQUID, CONDENSED, EVAPORATED, RAINED, AIR_MET = range(5)
 """What is counted: molecules in the liquid now; since the start, those that came, left and rained; other hits."""
 
+STICKING, LOG_RATE = range(2)
+"""The rates of a liquid whose surface is covered as it is now: which part of the vapour sticks, and ln Q."""
+
 THERMAL, RAINED_ENERGY = range(2)
 """The energies of a reservoir [energy]: of the liquid now, and what the rain took away."""
 
 _BINS = 60
 _WIDEST = 12.0
+_NEVER = -600.0
+"""Logarithm of the share of its rate at which a covered pool evaporates: never, in any time that there is."""
 
 
 class Reservoir(NamedTuple):
@@ -79,7 +87,8 @@ class Reservoir(NamedTuple):
     for which the first was drawn; ``absent : (molecule,)`` the numbers of molecules that are not in the box, of
     which the last to go is ``absent[top[0] - 1]``; ``spectrum : (bin,)`` how many left with which energy beyond
     the binding energy; ``surface : (1,)`` the area of the liquid over ``area``, which
-    changes for drops alone; ``log_rate`` the logarithm of Q for ``area``; then what `Substance` and `Liquid` say.
+    changes for drops alone; ``rates : (2,)`` see `STICKING`; ``log_rate`` the logarithm of Q for ``area`` that is open;
+    then what `Substance` and `Liquid` say.
     """
 
     energy: Any
@@ -90,6 +99,7 @@ class Reservoir(NamedTuple):
     top: Any
     spectrum: Any
     surface: Any
+    rates: Any
     bin_width: float
     log_rate: float
     area: float
@@ -138,6 +148,7 @@ def new_reservoir(
     count[LIQUID] = liquid.number
     heat = (substance.heat_capacity * liquid.number + liquid.nuclei) * liquid.kT
     flux = liquid.sticking * area * substance.volatility / math.sqrt(2.0 * math.pi * substance.mass)
+    log_rate = float(log(flux))
     return Reservoir(
         energy=np.array([heat, 0.0]),
         count=count,
@@ -147,8 +158,9 @@ def new_reservoir(
         top=np.array([missing], np.int64),
         spectrum=np.zeros(_BINS, np.int64),
         surface=np.ones(1),
+        rates=np.array([liquid.sticking, log_rate]),
         bin_width=_WIDEST / _BINS * max(liquid.kT, 1e-300),
-        log_rate=float(log(flux)),
+        log_rate=log_rate,
         area=float(area),
         binding_energy=float(substance.binding_energy),
         molecule_capacity=float(substance.heat_capacity),
@@ -184,7 +196,7 @@ def evaporation_flux(reservoir, given):
     shape = 2.0 + 0.5 * reservoir.rotation
     capacity = heat_capacity(reservoir)
     rest = max(capacity - reservoir.molecule_capacity, 0.0)
-    logarithm = reservoir.log_rate + (rest + shape - 1.0) * log(left) - lgamma(rest + shape)
+    logarithm = reservoir.rates[LOG_RATE] + (rest + shape - 1.0) * log(left) - lgamma(rest + shape)
     logarithm += lgamma(capacity) - (capacity - 1.0) * log(energy)
     return exp(min(logarithm, 600.0))
 
@@ -208,6 +220,19 @@ def direction(pool, state):
     across = math.sqrt(max(1.0 - rise * rise, 0.0))
     cosine, sine = circle(uniform(state))
     return across * cosine, across * sine, rise
+
+
+@kernel(plain=True)
+def cover(reservoir, share):
+    """Leave a share of the surface of the liquid open, from 0 to 1."""
+    reservoir.rates[STICKING] = reservoir.sticking * share
+    reservoir.rates[LOG_RATE] = reservoir.log_rate + (max(log(share), _NEVER) if share > 0.0 else _NEVER)
+
+
+@kernel
+def stays(reservoir, state):
+    """Tell whether a molecule of the vapour that meets the liquid stays, always or by chance."""
+    return reservoir.rates[STICKING] >= 1.0 or uniform(state) < reservoir.rates[STICKING]
 
 
 @kernel

@@ -177,19 +177,11 @@ class AttractingParcelSet(ParcelSet):
         entry[:, : old.stride] = old.entry.reshape(n, old.stride)
         self._vicinity = old._replace(entry=entry.reshape(-1), stride=2 * old.stride)
 
-    def _next_time(self) -> float:
-        return min(super()._next_time(), float(self._bath.clock[0]))
-
-    def _rebase(self, step: float) -> None:
-        self._fields["clock"] -= step
-        self._events["contact_time"] -= step
-        times = self._calendar.time
-        times -= step
-        self._bath.clock[0] -= step
-        self._walls.piston[2] -= step
-        self._tallies.progress[0] -= step
-        self._walls.epoch[0] += step
-        self._now -= step
+    @property
+    def _clocks(self) -> Array:
+        """When the bath acts."""
+        clock: Array = self._bath.clock
+        return clock
 
     def memory(self) -> int:
         """Return the bytes that molecules, events, lists and calendar take."""

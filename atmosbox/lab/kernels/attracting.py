@@ -11,10 +11,11 @@ from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
+from atmosbox.engine.exact.epoch import next_time
 from atmosbox.engine.exact.exact import Status
 from atmosbox.engine.wells.vicinity import Vicinity
 from atmosbox.engine.wells.well_events import WellGas, specialise
-from atmosbox.lab.kernels.passing import Passed, shift_clocks
+from atmosbox.lab.kernels.passing import Passed, epochs
 
 __all__ = ["Lists", "attracting", "energy_of_wells", "warm_bath"]
 
@@ -83,32 +84,19 @@ def _longer_lists(gas, lists):
     return True
 
 
-@kernel
-def _next_time(gas):
-    """Return the local time of what comes next: an event, or the bath."""
-    return min(gas.calendar.time[1], gas.bath.clock[0])
-
-
-@kernel
-def _rebase(step, gas, book):
-    """Let all clocks read small numbers again: see `AttractingParcelSet._rebase`."""
-    shift_clocks(step, gas, book)
-    gas.bath.clock[0] -= step
-
-
 @functools.cache
 def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``pass_time``, ``place`` and ``attract`` of one set of modes."""
     place_all, advance, replan, _ = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
 
     @kernel
-    def resolve(gas, book, lists, stop, most):
+    def resolve(gas, ascent, book, lists, stop, most):
         """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
         done = 0
         while True:
             status, some = advance(_as_listed(gas, lists), stop, most - done)
             done += some
-            book.now[0] = max(book.now[0], min(stop, _next_time(gas)))
+            book.now[0] = max(book.now[0], min(stop, next_time(gas, book.clocks)))
             if status == _DONE:
                 book.now[0] = stop
                 return Passed.DONE, done
@@ -118,28 +106,6 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 return Passed.STALLED, done
             if not _longer_lists(gas, lists):
                 return Passed.FULL, done
-
-    @kernel
-    def pass_time(gas, ascent, book, lists, until, most):
-        """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
-        done = 0
-        while True:
-            local = until - gas.walls.epoch[0]
-            goal = local
-            shifts = local > book.epoch_length[0]
-            if shifts and book.now[0] >= book.epoch_length[0]:
-                ahead = _next_time(gas)
-                shifts = not math.isinf(ahead)  # or nothing is left to happen at all
-                if shifts:
-                    length = book.epoch_length[0]
-                    _rebase(max(1.0, math.floor(ahead / length)) * length, gas, book)
-                    continue
-            if shifts:
-                goal = book.epoch_length[0]
-            status, some = resolve(gas, book, lists, goal, most - done)
-            done += some
-            if status != Passed.DONE or not shifts:
-                return status.value, done
 
     @kernel
     def place(gas, book, lists):
@@ -166,4 +132,4 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
         replan(gas, book.now[0])
         return 0
 
-    return pass_time, place, attract
+    return epochs(resolve, modes), place, attract

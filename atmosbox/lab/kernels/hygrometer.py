@@ -17,6 +17,7 @@ from atmosbox.engine.liquid.reservoir import (
     LIQUID,
     RAINED,
     RAINED_ENERGY,
+    STICKING,
     THERMAL,
     heat_capacity,
 )
@@ -277,7 +278,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         reading[WaterReading.LIQUID] = count[LIQUID]
         reading[WaterReading.RAINED] = count[RAINED]
         reading[WaterReading.MOLECULES] = number_in_gas(gas, modes)
-        reading[WaterReading.OPEN] = wet.cover[0]
+        reading[WaterReading.OPEN] = reservoir.rates[STICKING]
         reading[WaterReading.LIQUID_SATURATION] = saturation_pressure(liquid, water) if liquid >= 0.0 else math.nan
         # how warm the liquid was when molecules left it; where it was gone for a while, the gas tells
         rate = reading[WaterReading.EVAPORATING]

@@ -1,4 +1,4 @@
-"""What passes time in a box, with liquid in it or without: the loop of the engine for one set of modes, and its clocks.
+"""What passes time in a box, with liquid in it or without: the loop of the engine for one set of modes.
 
 In Python `ParcelSet`, `MoistParcelSet` and `DropParcelSet` each say how time passes in them. Here it is said once for
 each set of modes, in kernels that all take the same arguments.
@@ -9,51 +9,33 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from atmosbox.engine.core.elementary import log
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.core.walls import HEAT_BATH, SPECULAR
 from atmosbox.engine.exact.exact import specialise
 from atmosbox.engine.liquid import drop, moist
 from atmosbox.engine.liquid.moist import MoistAscent
-from atmosbox.engine.liquid.reservoir import Reservoir
+from atmosbox.engine.liquid.reservoir import Reservoir, cover
 
-__all__ = ["Moisture", "liquid_now", "moist_knobs", "moist_passing"]
-
-_NEVER = -600.0
-_CLOCKS = 3
+__all__ = ["Moisture", "moist_knobs", "moist_passing"]
 
 
 class Moisture(NamedTuple):
     """What a box knows of its liquid.
 
-    ``reservoir`` the liquid when the pool is open; ``cover : (2,)`` which part of the vapour sticks, and the logarithm
-    of the rate of leaving, as the pool is covered now. ``vapours`` molecules of water in vapour and liquid, and
-    ``rotations`` rotational degrees of freedom of all molecules, together. ``drops`` what is known of those that can be
-    seen, 0 if there are none.
+    ``reservoir`` the liquid; ``vapours`` molecules of water in vapour and liquid, and ``rotations`` rotational degrees
+    of freedom of all molecules, together; ``drops`` what is known of those that can be seen, 0 if there are none.
     """
 
     reservoir: Reservoir
-    cover: Any
     vapours: int
     rotations: float
     drops: Any
 
 
-@kernel
-def liquid_now(moisture):
-    """Return the reservoir with the rates of a pool that is covered as it is now."""
-    r, cover = moisture.reservoir, moisture.cover
-    return Reservoir(
-        r.energy, r.count, r.clock, r.bound, r.absent, r.top, r.spectrum, r.surface, r.bin_width, cover[1], r.area,
-        r.binding_energy, r.molecule_capacity, r.nuclei, cover[0], r.rain, r.keeps, r.rotation, r.diameter,
-        r.mean_cube, r.kind,
-    )  # fmt: skip
-
-
 @functools.cache
 def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``advance``, ``soonest``, ``shift``, ``draw`` and ``wake`` of one set of modes."""
+    """Return the kernels ``advance``, ``draw`` and ``wake`` of one set of modes."""
     if not modes.phases:
         return _dry(modes)
 
@@ -63,12 +45,12 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         @kernel
         def advance(gas, ascent, book, until, most):
             """Resolve events of molecules and of drops."""
-            return drop_advance(gas, book.moisture.drops, liquid_now(book.moisture), until, most)
+            return drop_advance(gas, book.moisture.drops, book.moisture.reservoir, until, most)
 
         @kernel
         def draw(gas, book, speed):
             """Draw anew when the next molecule leaves a drop."""
-            drop_begin(gas, book.moisture.drops, liquid_now(book.moisture), book.now[0])
+            drop_begin(gas, book.moisture.drops, book.moisture.reservoir, book.now[0])
 
     else:
         moist_begin, moist_advance = (kernel(getattr(each, "py_func", each)) for each in moist.specialise(modes))
@@ -80,34 +62,19 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 """Resolve events of molecules and of the liquid, and turn the piston as it is due."""
                 wet = book.moisture
                 here = MoistAscent(ascent, wet.vapours, wet.rotations)
-                return moist_advance(gas, liquid_now(wet), here, until, most)
+                return moist_advance(gas, wet.reservoir, here, until, most)
 
         else:
 
             @kernel
             def advance(gas, ascent, book, until, most):
                 """Resolve events of molecules and of the liquid."""
-                return moist_advance(gas, liquid_now(book.moisture), until, most)
+                return moist_advance(gas, book.moisture.reservoir, until, most)
 
         @kernel
         def draw(gas, book, speed):
             """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
-            moist_begin(gas, liquid_now(book.moisture), book.now[0], speed)
-
-    @kernel
-    def soonest(gas, book):
-        """Return the local time of what happens next."""
-        time, clock = gas.calendar.time[1], book.moisture.reservoir.clock
-        for k in range(_CLOCKS):
-            time = min(time, clock[k])
-        return time
-
-    @kernel
-    def shift(step, book):
-        """Let the clocks of the liquid read small numbers again."""
-        clock = book.moisture.reservoir.clock
-        for k in range(_CLOCKS):
-            clock[k] -= step
+            moist_begin(gas, book.moisture.reservoir, book.now[0], speed)
 
     @kernel
     def wake(gas, book, speed):
@@ -115,7 +82,7 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         if speed > book.moisture.reservoir.bound[0]:
             draw(gas, book, speed)
 
-    return advance, soonest, shift, draw, wake
+    return advance, draw, wake
 
 
 def _dry(modes: Modes) -> tuple[Callable[..., Any], ...]:
@@ -138,25 +105,16 @@ def _dry(modes: Modes) -> tuple[Callable[..., Any], ...]:
             return loop(gas, until, most)
 
     @kernel
-    def soonest(gas, book):
-        """Return the local time of the next event."""
-        return gas.calendar.time[1]
-
-    @kernel
-    def shift(step, book):
-        """Do nothing: there is no liquid."""
-
-    @kernel
     def wake(gas, book, speed):
         """Do nothing: there is no liquid."""
 
-    return advance, soonest, shift, wake, wake
+    return advance, wake, wake
 
 
 @functools.cache
 def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
     """Return the kernels that knobs of a box with liquid call, by name."""
-    _, _, _, draw, wake = moist_passing(modes)
+    _, draw, wake = moist_passing(modes)
 
     @kernel
     def warm_walls(gas, book, first, last, kT):
@@ -182,10 +140,8 @@ def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
     @kernel
     def cover_pool(gas, book, share):
         """Leave a share of the pool open: see `MoistAccount.set_open_pool`."""
-        reservoir, cover = book.moisture.reservoir, book.moisture.cover
-        cover[0] = reservoir.sticking * share
-        cover[1] = reservoir.log_rate + (max(log(share), _NEVER) if share > 0.0 else _NEVER)
-        draw(gas, book, reservoir.bound[0])
+        cover(book.moisture.reservoir, share)
+        draw(gas, book, book.moisture.reservoir.bound[0])
         return 0
 
     found = {"warm_walls": warm_walls, "smooth_walls": smooth_walls}

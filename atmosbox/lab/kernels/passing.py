@@ -13,13 +13,14 @@ from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Cells, Gas, Modes
+from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.rows import START, STOP, TOP_SPEED
 from atmosbox.engine.exact.turning import Ascent
 from atmosbox.lab.kernels.laying_out import LAST, NUMBER, STRIDE, choose_cells, write_cells
 from atmosbox.lab.kernels.moist_passing import moist_passing
 
-__all__ = ["Book", "Passed", "ascent_of", "passing", "shift_clocks"]
+__all__ = ["Book", "Passed", "ascent_of", "epochs", "passing"]
 
 # The status leaves the engine's loop as a plain number, and compiled code calls no number equal to an enum.
 _DONE, _BUSY, _STALLED = Status.DONE.value, Status.BUSY.value, Status.STALLED.value
@@ -31,11 +32,13 @@ class Book(NamedTuple):
     """What a box knows beside its gas.
 
     ``now : (1,)`` the time that its clocks read [time]; ``epoch_length : (1,)`` after what time they begin anew [time];
-    ``energy : (1,)`` what it had at the start [energy]; ``moisture`` its liquid, 0 if it has none.
+    ``clocks`` of what is no event of a molecule [time]: see `epoch`; ``energy : (1,)`` what it had at the start
+    [energy]; ``moisture`` its liquid, 0 if it has none.
     """
 
     now: Any
     epoch_length: Any
+    clocks: Any
     energy: Any
     moisture: Any
 
@@ -75,29 +78,6 @@ def _as_laid_out(gas, layout):
 
 
 @kernel
-def shift_clocks(step, gas, book):
-    """Let all clocks that every box has read so much less [time]."""
-    for i in range(gas.molecules.size):
-        gas.molecules[i].clock -= step
-        gas.events[i].contact_time -= step
-    times = gas.calendar.time
-    for k in range(times.size):
-        times[k] -= step
-    gas.walls.piston[2] -= step
-    gas.tallies.progress[0] -= step
-    gas.walls.epoch[0] += step
-    book.now[0] -= step
-
-
-@kernel
-def _rebase(step, gas, book):
-    """Let all clocks read small numbers again: see `ParcelSet._rebase`."""
-    shift_clocks(step, gas, book)
-    gas.cells.copies.epoch[START] -= step
-    gas.cells.copies.epoch[STOP] -= step
-
-
-@kernel
 def _fits(gas, layout):
     """Tell whether there is memory for the rows of all cells."""
     shape = layout.shape
@@ -120,11 +100,41 @@ def _longer_rows(gas, layout, modes):
     return True
 
 
+def epochs(resolve: Callable[..., Any], modes: Modes) -> Callable[..., Any]:
+    """Return the kernel ``pass_time`` of a box whose events up to a local time ``resolve`` resolves."""
+
+    @kernel
+    def pass_time(gas, ascent, book, layout, until, most):
+        """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
+        done = 0
+        while True:
+            local = until - gas.walls.epoch[0]
+            shifts = local > book.epoch_length[0]
+            if shifts and book.now[0] >= book.epoch_length[0]:
+                ahead = next_time(gas, book.clocks)
+                if modes.ascends:
+                    ahead = min(ahead, (ascent.turns[0] + 1) * ascent.lift.interval - gas.walls.epoch[0])
+                step = whole_epochs(ahead, book.epoch_length[0])
+                shifts = step > 0.0
+                if shifts:
+                    set_back(step, gas, book.clocks, modes)
+                    book.now[0] -= step
+                    continue
+            goal = book.epoch_length[0] if shifts else local
+            status, some = resolve(gas, ascent, book, layout, goal, most - done)
+            done += some
+            if status != Passed.DONE or not shifts:
+                return status.value, done
+
+    made: Callable[..., Any] = pass_time
+    return made
+
+
 @functools.cache
 def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels ``pass_time`` and ``place`` of one set of modes."""
     place_all, _, _, _, refill = (kernel(getattr(each, "py_func", each)) for each in specialise(modes))
-    advance, soonest, shift, _, wake = moist_passing(modes)
+    advance, _, wake = moist_passing(modes)
 
     if modes.ascends:
 
@@ -134,22 +144,12 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             here = ascent_of(ascent, book, layout.filled[0])
             return advance(_as_laid_out(gas, layout), here, book, until, most)
 
-        @kernel
-        def next_turn(gas, ascent):
-            """Return the local time at which the piston turns next [time]."""
-            return (ascent.turns[0] + 1) * ascent.lift.interval - gas.walls.epoch[0]
-
     else:
 
         @kernel
         def proceed(gas, ascent, book, layout, until, most):
             """Resolve events."""
             return advance(_as_laid_out(gas, layout), ascent, book, until, most)
-
-        @kernel
-        def next_turn(gas, ascent):
-            """Return that no piston turns."""
-            return math.inf
 
     @kernel
     def refilled(gas, now, layout):
@@ -195,7 +195,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         while True:
             status, some = proceed(gas, ascent, book, layout, stop, most - done)
             done += some
-            book.now[0] = max(book.now[0], min(stop, soonest(gas, book)))
+            book.now[0] = max(book.now[0], min(stop, next_time(gas, book.clocks)))
             if status == _DONE:
                 book.now[0] = stop
                 return Passed.DONE, done
@@ -222,31 +222,8 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                     wake(gas, book, 2.0 * abs(gas.walls.piston[1]))
 
     @kernel
-    def pass_time(gas, ascent, book, layout, until, most):
-        """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
-        done = 0
-        while True:
-            local = until - gas.walls.epoch[0]
-            goal = local
-            shifts = local > book.epoch_length[0]
-            if shifts and book.now[0] >= book.epoch_length[0]:
-                ahead = min(soonest(gas, book), next_turn(gas, ascent))
-                shifts = not math.isinf(ahead)  # or nothing is left to happen at all
-                if shifts:
-                    step = max(1.0, math.floor(ahead / book.epoch_length[0])) * book.epoch_length[0]
-                    _rebase(step, gas, book)
-                    shift(step, book)
-                    continue
-            if shifts:
-                goal = book.epoch_length[0]
-            status, some = resolve(gas, ascent, book, layout, goal, most - done)
-            done += some
-            if status != Passed.DONE or not shifts:
-                return status.value, done
-
-    @kernel
     def place(gas, book, layout):
         """Place all molecules at the start; tell how that went."""
         return Passed.DONE.value if placed(gas, book.now[0], layout) else Passed.FULL.value
 
-    return pass_time, place
+    return epochs(resolve, modes), place

@@ -315,7 +315,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             """Do nothing: no piston rises."""
 
     if modes.phases:
-        _, _, _, draw, wake = moist_passing(modes)
+        _, draw, wake = moist_passing(modes)
 
         @kernel
         def begin_liquid(gas, ascent, book, begun):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from atmosbox.engine import Snapshot
+from atmosbox.engine.liquid.reservoir import STICKING
 from atmosbox.scene.instruments.instrument import Readings
 from atmosbox.scene.units import Scale
 
@@ -42,7 +43,7 @@ class Leaving:
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
         """Read how many have left with which energy, and how much of the surface is open."""
-        self._open.append(float(parcel._reservoir.sticking))
+        self._open.append(float(parcel._reservoir.rates[STICKING]))
         edges, counts = parcel.emitted_energy
         self._edges, self._counts = edges[:: self._merged], counts.reshape(-1, self._merged).sum(axis=1)
 
