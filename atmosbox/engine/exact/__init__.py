@@ -12,6 +12,7 @@
 `crossing`     from cell to cell, where rows are lists of names
 `turning`      the piston of a lift turns between events
 `exact`        the loop over events
+`epoch`        how all clocks are set back, so that they always read small numbers
 `stall`        when time can go no further
 `parcelset`    the box, advanced exactly
 `reference`    the same model, slow and simple: the tests compare with it
