@@ -10,7 +10,7 @@ import numpy as np
 from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
-from atmosbox.engine.exact.rows import MOST, row_stride
+from atmosbox.engine.exact.rows import FEWEST, MOST, row_stride
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.errors import SettingError
@@ -54,7 +54,6 @@ __all__ = ["Bench", "bench", "refuse"]
 
 _CORNERS = 4
 _SPARE = 1.5
-_PLACES = 32
 _INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _READINGS = 64
@@ -185,18 +184,14 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
 def _layout(parcel: Any) -> Layout:
     """Return how the cells are laid out now, with memory for other cells."""
     c = parcel._cells
-    shortest, longest = (row_stride(number, mixed=parcel._modes.mixed) for number in (_PLACES, MOST))
     # rows begin as short as in Python, and grow when molecules are placed
-    shape = [shortest, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
+    shape = [FEWEST, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
     most = int(_SPARE * max(shape[1:4])) + 2
     return Layout(
         np.array(shape),
         np.array([float(parcel._filled)]),
-        np.zeros(3),
         np.zeros((3, most + 1)),
         float(parcel._size_radius[0]),
-        shortest,
-        longest,
     )
 
 
@@ -214,12 +209,12 @@ def _gas(parcel: Any) -> Gas:
             slack=_larger(copies.slack, (most, 3), math.inf),
             room=_larger(copies.room, (most,), 1.0),
         )
-    row = aligned_records(many * row_stride(MOST, mixed=parcel._modes.mixed), np.dtype("u4")).view(np.ndarray)
+    row = aligned_records(many * row_stride(MOST, parcel._modes.mixed), np.dtype("u4")).view(np.ndarray)
     events = aligned_records(number, EVENT)
     slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
     place = events.view(np.ndarray).view(np.uint8)
     copies = copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
-    cells = cells._replace(row=row, stride=row_stride(_PLACES, mixed=parcel._modes.mixed), slot=slot, copies=copies)
+    cells = cells._replace(row=row, stride=row_stride(FEWEST, parcel._modes.mixed), slot=slot, copies=copies)
     gas: Gas = parcel._gas()._replace(events=events, cells=cells, calendar=new_calendar(number))
     return gas
 

@@ -22,9 +22,8 @@ from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.exact import cells
-from atmosbox.engine.exact.rows import _farthest
 from atmosbox.engine.start.overlap import _bins, _Spheres
-from atmosbox.lab.kernels.layering import Column
+from atmosbox.lab.kernels.laying_out import Column
 from atmosbox.lab.kernels.pairwise import DEPTH
 from atmosbox.lab.kernels.starting import ALONG_X, AS_PLACED, SHUFFLED, STEP, Start, can_start
 from atmosbox.scene import moisture
@@ -250,17 +249,11 @@ def _column(parcel: Any, seen: Watched) -> Any:
     if not parcel._modes.gravity:
         return 0
     grid, walls = parcel._grid, parcel._walls
-    height, number, _, thinnest = seen.layers[-1] if seen.layers else (float(parcel.length[2]), 1, 1.0, 0.0)
-    around = [
-        float(_farthest(grid.edges[axis], wraps=parcel.periodic[axis]).max())
-        for axis in (0, 1)
-        if not (parcel.planar and axis == 1)
-    ]
-    area = float(grid.edges[0][-1]) * (1.0 if parcel.planar else float(grid.edges[1][-1]))
+    _, number, _, thinnest = seen.layers[-1] if seen.layers else (0.0, 1, 1.0, 0.0)
     first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
     baths = [float(kT) for law, kT in first if law == HEAT_BATH]
     weight = float(parcel.mass.mean()) * parcel.gravity
     return Column(
-        height, weight, max(baths, default=0.0), number, thinnest, max(around), area, float(parcel._size_radius[0]),
-        np.zeros(grid.number[2] + 1),
+        weight, max(baths, default=0.0), number, thinnest, float(parcel._size_radius[0]), grid.edges[0],
+        grid.edges[1], np.zeros(grid.number[2] + 1),
     )  # fmt: skip

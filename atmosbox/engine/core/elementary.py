@@ -233,7 +233,8 @@ def cbrt(x):
     return t + t * ((r - t) / (t + t + r))
 
 
-def root(x: float, degree: int) -> float:
+@kernel(plain=True)
+def root(x, degree):
     """Return the first, second or third root of a number that is not negative.
 
     Examples
@@ -241,7 +242,7 @@ def root(x: float, degree: int) -> float:
     >>> [float(root(64.0, degree)) for degree in (1, 2, 3)]
     [64.0, 8.0, 4.0]
     """
-    return x if degree == 1 else math.sqrt(x) if degree == 2 else float(cbrt(x))
+    return x if degree == 1 else math.sqrt(x) if degree == 2 else cbrt(x)
 
 
 @kernel(plain=True)

@@ -1,5 +1,6 @@
 """The exact engine: from event to event. Read from top to bottom.
 
+`row_cells`    how many cells there are, where their rows hold copies of trajectories
 `cells`        which molecules can meet
 `calendar`     what happens next
 `encounter`    what a contact or a wall hit does

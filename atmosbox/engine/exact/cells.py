@@ -23,17 +23,26 @@ long: first how many molecules there are, then which::
                  cell 0                 cell 1
 """
 
-import itertools
 import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine.core.elementary import cbrt, expm1, log, root
+from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.jit import POSITIVE, kernel
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.state import Cells, Copies, aligned_records
+from atmosbox.engine.exact.row_cells import (
+    MARGIN,
+    MOST_CELLS,
+    cell_numbers,
+    cell_widths,
+    filled_share,
+    widths_for_rows,
+    write_layers,
+    write_slots,
+)
 
 __all__ = [
     "ROW",
@@ -48,7 +57,6 @@ __all__ = [
     "slot_at",
 ]
 
-_MARGIN = 1.0 + 1e-7
 _FEW = 4
 ROW = 32
 
@@ -138,28 +146,24 @@ def choose_grid(
     RefusedError
         If a periodic axis is so short that two molecules could touch each other on both sides at once.
     """
-    biggest = float(radii.max()) * _MARGIN
+    biggest = float(radii.max()) * MARGIN
     # the most cells along an axis that are wider than a molecule
     most = [length[axis] / (2.002 * biggest) if biggest > 0.0 else math.inf for axis in range(3)]
-    room = length[0] * (1.0 if planar else length[1]) * filled
-    typical = float(radii.min())
-    size = math.pi * typical * typical * (1.0 if planar else 4.0 / 3.0 * typical)
-    share = molecules * size / room
-    # measured (benchmarks): the pace is flat about this many molecules to a cell
-    occupancy = min(max(2.2 * float(cbrt(0.1 / share)), 1.5), 8.0) if share > 0.0 else 8.0
-    room_of = np.array([length[0], length[1], filled])
-    chosen = None
+    number: list[int] = []
     if rows and biggest > 0.0:
-        occupancy = 9.0 if share < 0.05 else 8.0
-        width = _widths(room_of, molecules / occupancy, planar)
-        chosen = _choose_for_rows(length, room_of, width, most, periodic, molecules, planar=planar)
-    if chosen is None:
-        width = _widths(room_of, molecules / occupancy, planar)
-    number = list(chosen or [])
-    spanning = not exact_radius and not chosen
+        width = widths_for_rows(length[0], length[1], filled, float(radii.min()), molecules, planar)
+        found = cell_numbers(length, filled, width, float(radii.max()), molecules, periodic, planar)
+        number = [n for n in found if n > 0]  # all of them, or none
+    else:
+        # measured (benchmarks): the pace is flat about this many molecules to a cell
+        share = filled_share(length[0], length[1], filled, float(radii.min()), molecules, planar)
+        occupancy = min(max(2.2 * float(cbrt(0.1 / share)), 1.5), 8.0) if share > 0.0 else 8.0
+        width = cell_widths(length[0], length[1], filled, molecules / occupancy, planar)
+    rows = bool(number)
+    spanning = not exact_radius and not rows
     images = False
-    for axis in range(0 if chosen else 3):
-        n = max(1, min(int(length[axis] / width[axis]), 20_000))
+    for axis in range(0 if rows else 3):
+        n = max(1, min(int(length[axis] / width[axis]), MOST_CELLS))
         if planar and axis == 1:
             n = 1
         elif periodic[axis]:
@@ -191,12 +195,10 @@ def choose_grid(
         thinnest = 0.25 * width[2] if spanning else max(2.002 * biggest, 0.05 * width[2])
         edges[2] = _layers(float(length[2]), number[2], scale_height, thinnest)
         number[2] = len(edges[2]) - 1
-    inner = spanning or (chosen is not None and not exact_radius)
+    if rows:
+        return _grid_of_rows(edges, radii, periodic, mixed=not exact_radius, open_top=open_top)
     tables = [
-        [
-            _slots(edges[axis], float(r), periodic[axis], spanning, inner=inner, open_top=open_top and axis == 2)
-            for axis in range(3)
-        ]
+        [_slots(edges[axis], float(r), periodic[axis], spanning, open_top=open_top and axis == 2) for axis in range(3)]
         for r in radii
     ]
     slots = max(len(table[1]) for row in tables for table in row)
@@ -206,96 +208,47 @@ def choose_grid(
     for size, row in enumerate(tables):
         for axis, (b, f, s) in enumerate(row):
             boundary[size, axis, : len(b)] = b
-            if chosen and periodic[axis]:  # the boundary after the last but one, a turn further
-                boundary[size, axis, len(b)] = b[1] + b[-1] - b[0]
-            if chosen and open_top and axis == 2:  # who gets there is above all cells
-                boundary[size, axis, len(b) - 1] = length[2]
             first[size, axis, : len(f)] = f
             span[size, axis, : len(s)] = s
     last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
     return Grid(
-        (number[0], number[1], number[2]), tuple(edges), chosen is not None, boundary, first, span,
+        (number[0], number[1], number[2]), tuple(edges), False, boundary, first, span,
         (last[0], last[1], last[2]), spanning, images,
     )  # fmt: skip
 
 
-def _choose_for_rows(
-    length: NDArray[np.float64], room: NDArray[np.float64], width: NDArray[np.float64], most: list[float],
-    periodic: tuple[bool, bool, bool], molecules: int, *, planar: bool,
-) -> list[int] | None:  # fmt: skip
-    """Return how many cells along each axis come nearest to a width, if rows may hold copies then, else None.
-
-    Of ``room`` [length] the cells of that width are wanted; ``length`` is what the cells cover.
-    """
-    if room.min() < 1e-6 or length.max() > 1e6:
-        return None  # single precision would need other units
-    wanted = 1.0
-    near = []
-    for axis in range(3):
-        step = 2 if periodic[axis] else 1
-        least = 4 if periodic[axis] else 1
-        ideal = length[axis] / width[axis]
-        if planar and axis == 1:
-            near.append([1])
-            continue
-        wanted *= ideal
-        lower = step * math.floor(ideal / step)
-        top = min(step * math.floor(most[axis] / step), 20_000)
-        if top < least:
-            return None
-        near.append(sorted({min(max(n, least), top) for n in (lower, lower + step)}))
-    best: tuple[int, ...] = min(
-        itertools.product(*near),
-        key=lambda n: (
-            abs(float(log(math.prod(n) / max(wanted, 1.0))))
-            + 0.5 * float(np.std([float(log(n[a] * width[a] / length[a])) for a in range(3)]))
-        ),
-    )
-    crowd = molecules / math.prod(best)
-    return list(best) if crowd <= 30.0 else None
-
-
-def _widths(length: NDArray[np.float64], number: float, planar: bool) -> NDArray[np.float64]:
-    """Return the width of a cell along each axis; an axis shorter than a cell has one."""
-    width = length.astype(np.float64).copy()
-    free = [axis for axis in range(3) if not (planar and axis == 1)]
-    cells = max(1.0, number)
-    while free:
-        size = float(root(math.prod(float(length[axis]) for axis in free) / cells, len(free)))
-        short = [axis for axis in free if length[axis] < size]
-        if not short:
-            width[free] = size
-            break
-        free = [axis for axis in free if axis not in short]
-    return width
+def _grid_of_rows(
+    edges: list[NDArray[np.float64]], radii: NDArray[np.float64], periodic: tuple[bool, bool, bool], *, mixed: bool,
+    open_top: bool,
+) -> Grid:  # fmt: skip
+    """Return the grid of cells whose rows may hold copies."""
+    boundaries = max(2 * len(edge) - 1 + wraps for edge, wraps in zip(edges, periodic, strict=True))
+    boundary = np.full((len(radii), 3, boundaries), np.inf)
+    for size, radius in enumerate(radii):
+        last = [
+            write_slots(edges[axis], radius, periodic[axis], mixed, open_top and axis == 2, boundary[size, axis])
+            for axis in range(3)
+        ]
+    none = np.zeros((len(radii), 3, 1), np.int32)
+    number = (len(edges[0]) - 1, len(edges[1]) - 1, len(edges[2]) - 1)
+    return Grid(number, tuple(edges), True, boundary, none, none, (last[0], last[1], last[2]), False, False)
 
 
 def _layers(height: float, number: int, scale_height: float, thinnest: float) -> NDArray[np.float64]:
     """Return the edges of layers that hold about equally many molecules of an isothermal column."""
-    z = np.linspace(0.0, height, 20_001)
-    a = min(height / scale_height, 700.0)
-    below = 0.9 * expm1(-a * z / height) / expm1(-a) + 0.1 * z / height
-    if scale_height < height / 5_000:
-        deep = min(40.0 * scale_height, height / 2)
-        z = np.concatenate([np.linspace(0.0, deep, 20_001)[:-1], z[z >= deep]])
-        below = 0.9 * expm1(-z / scale_height) / expm1(-height / scale_height) + 0.1 * z / height
-    share = np.linspace(0.0, 1.0, number + 1)[1:-1]
-    k = np.searchsorted(below, share, side="right") - 1
-    edges = [0.0]
-    for edge in z[k] + (z[k + 1] - z[k]) * ((share - below[k]) / (below[k + 1] - below[k])):
-        if edge - edges[-1] >= thinnest and height - edge >= thinnest:
-            edges.append(float(edge))
-    return np.array([*edges, height])
+    edge = np.zeros(number + 1)
+    return edge[: write_layers(height, number, scale_height, thinnest, edge) + 1]
 
 
 def _slots(
-    edges: NDArray[np.float64], radius: float, periodic: bool, spanning: bool, *, inner: bool, open_top: bool
+    edges: NDArray[np.float64], radius: float, periodic: bool, spanning: bool, *, open_top: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
     """Return boundaries, first cells and numbers of cells of the slots along one axis for one radius.
 
-    With ``inner`` the table holds no walls, which are then each molecule's own business: not all of a class are alike.
+    Where molecules span cells the table holds no walls, which are then each molecule's own business: not all of a class
+    are alike.
     """
-    reach = radius * _MARGIN
+    reach = radius * MARGIN
     n = len(edges) - 1
     length = float(edges[-1])
     # where a cell is entered exactly as another is left, the slot between would have no width: reach further
@@ -304,7 +257,7 @@ def _slots(
         ends = np.sort(np.mod(np.concatenate([inside - reach, inside + reach]), length))
         if np.diff(ends, append=ends[0] + length).min() > 1e-12 * length:
             break
-        reach *= _MARGIN
+        reach *= MARGIN
     if periodic:
         shifted = np.concatenate([edges[:-1] + reach, edges[1:] - reach])
         first = np.sort(np.mod(shifted, length)) if spanning else np.sort(shifted)
@@ -313,7 +266,6 @@ def _slots(
         between = np.sort(np.concatenate([edges[1:-1] - reach, edges[1:-1] + reach]))
         if spanning:
             between = between[(between > 0.0) & (between < length)]
-        if inner:
             boundary = np.concatenate([[-np.inf], between, [np.inf]])
         else:
             boundary = np.concatenate([[radius], between, [np.inf if open_top else length - radius]])

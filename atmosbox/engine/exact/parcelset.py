@@ -23,7 +23,8 @@ from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, Grid, choose_grid, new_cells, new_rows
 from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.rows import MOST, copies_of, row_stride
+from atmosbox.engine.exact.row_cells import TALLER
+from atmosbox.engine.exact.rows import FEWEST, MORE, MOST, copies_of, row_stride
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
 
@@ -279,11 +280,11 @@ class ParcelSet(Parcel):
                 return
 
     def _enlarge_rows(self) -> bool:
-        """Give the rows sixteen places more, empty; return whether that is possible."""
-        self._places += 16
+        """Give the rows more places, empty; return whether that is possible."""
+        self._places += MORE
         if self._places > MOST:
             return False
-        self._new_cells(row_stride(self._places, mixed=self._modes.mixed))
+        self._new_cells(row_stride(self._places, self._modes.mixed))
         return True
 
     def _new_cells(self, stride: int) -> None:
@@ -306,12 +307,12 @@ class ParcelSet(Parcel):
         moving = self._walls.law[5] == PISTON
         self._filled = self.ceiling
         self._lowest_ceiling = crushing_height(self._sides, self._diameter, planar=self._planar)
-        self._cells_top = 1.75 * self._filled if moving else self._filled
+        top = TALLER * self._filled if moving else self._filled
         kT = self._mean_kT()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
         contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
         grid = choose_grid(
-            np.array([self._sides[0], self._sides[1], self._cells_top]),
+            np.array([self._sides[0], self._sides[1], top]),
             self._periodic,
             self._size_radius,
             n if contacts else 1,
@@ -340,8 +341,8 @@ class ParcelSet(Parcel):
         )
         self._find_kernels()
         self._events = aligned_records(n, EVENT)
-        self._places = 32
-        self._new_cells(row_stride(self._places, mixed=self._modes.mixed) if grid.rows else ROW)
+        self._places = FEWEST
+        self._new_cells(row_stride(self._places, self._modes.mixed) if grid.rows else ROW)
         while True:
             self._calendar = new_calendar(n)
             if self._place(self._gas(), self._now) != Status.ROW_FULL:

@@ -37,13 +37,17 @@ from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
 from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, PATH, SLACK, SPEEDS, SQUARE
 
 __all__ = [
-    "MOST", "START", "STOP", "TOP_SPEED", "copies_of", "enter", "fill", "first_of_block", "has_place", "leave",
-    "members_of", "name_in", "number_of", "number_of_places", "relative", "row_stride", "start_of", "write_copy",
+    "FEWEST", "LONGEST", "MORE", "MOST", "START", "STOP", "TOP_SPEED", "copies_of", "describe_cells", "enter", "fill",
+    "first_of_block", "has_place", "leave", "members_of", "name_in", "number_of", "number_of_places", "relative",
+    "row_stride", "start_of", "write_copy",
 ]  # fmt: skip
 
 _HEAD = 16
-MOST = 64
-"""As many places as a row may have: one word of 64 bits tells which are occupied."""
+FEWEST, MORE, MOST = 32, 16, 64
+"""How many places a row has at first, how many it gets more when it is full, and as many as it may have at most.
+
+One word of 64 bits tells which are occupied.
+"""
 START, STOP, TOP_SPEED, LONGEST = range(4)
 """What is known of an epoch: its start and its end [time], V [length/time], and how long it may be at most [time]."""
 _PLACE, _SPEED, _EXTENT = LANES, 4 * LANES, 7 * LANES
@@ -51,12 +55,13 @@ _DILUTE, _DENSE = 0.05, 0.2
 """Below the first packing fraction a horizon gains nothing (measured); above the second it may be nearer."""
 
 
-def row_stride(places: int, *, mixed: bool) -> int:
+@kernel(plain=True)
+def row_stride(places, mixed):
     """Return how many words the row of a cell takes that has so many places.
 
     Examples
     --------
-    >>> row_stride(16, mixed=False), row_stride(32, mixed=True)
+    >>> row_stride(16, False), row_stride(32, True)
     (128, 272)
     """
     return _HEAD + (8 if mixed else 7) * places
@@ -83,44 +88,59 @@ def copies_of(
     planar
         Whether all centres lie in one plane y = constant.
     """
-    cells = max(len(edge) for edge in edges)
-    centre = np.zeros((3, cells))
-    width = [0.0, 0.0]
-    for axis, edge in enumerate(edges):
-        n = len(edge) - 1
-        centre[axis, :n] = 0.5 * (edge[1:] + edge[:-1])
-        if periodic[axis]:  # beyond the last cell stands the first again
-            centre[axis, n] = centre[axis, 0] + edge[-1]
-        if axis < 2 and not (planar and axis == 1):
-            width[axis] = _farthest(edge, wraps=periodic[axis]).max()
-    layer = np.maximum(_farthest(edges[2], wraps=periodic[2]), max(width))
-    slack = np.zeros((len(layer), 3))
-    slack[:, DISTANCE] = SLACK * layer
-    slack[:, SQUARE] = SLACK * layer * layer
-    slack[:, CLOSING] = 4.0 * SLACK * layer  # times V
-    area = float(edges[0][-1]) * (1.0 if planar else float(edges[1][-1]))
-    return Copies(
+    layers = len(edges[2]) - 1
+    copies = Copies(
         value=row.view(np.float32),
         occupied=row.view(np.int64),
         place=events.view(np.uint8),
-        centre=centre,
-        horizon=np.full(len(layer), math.inf),
-        slack=slack,
+        centre=np.zeros((3, max(len(edge) for edge in edges))),
+        horizon=np.full(layers, math.inf),
+        slack=np.zeros((layers, 3)),
         epoch=np.array([0.0, math.inf, 0.0, longest]),
-        room=area * np.diff(edges[2]),
+        room=np.zeros(layers),
         radius=radius,
     )
+    describe_cells(edges, periodic, planar, copies)
+    return copies
 
 
-def _farthest(edge: NDArray[np.float64], *, wraps: bool) -> NDArray[np.float64]:
-    """Return how far a member of each cell along an axis can be from its centre: W of `glance` [length].
+@kernel(plain=True)
+def _farthest(edge, k, wraps):
+    """Return how far a member of cell k along an axis can be from its centre: W of `glance` [length].
 
     It may stand in a neighbour of the cell too, anywhere.
     """
-    width = np.diff(edge)
-    around = np.concatenate([width[-1:], width, width[:1]]) if wraps else np.concatenate([[0.0], width, [0.0]])
-    farthest: NDArray[np.float64] = 0.5 * width + np.maximum(around[:-2], around[2:])
-    return farthest
+    last = edge.size - 2
+    low = k - 1 if k > 0 else last
+    high = k + 1 if k < last else 0
+    below = edge[low + 1] - edge[low] if wraps or k > 0 else 0.0
+    above = edge[high + 1] - edge[high] if wraps or k < last else 0.0
+    return 0.5 * (edge[k + 1] - edge[k]) + max(below, above)
+
+
+@kernel(plain=True)
+def describe_cells(edges, periodic, planar, copies):
+    """Write the centres of cells, and of each layer how large it is and how far the copies in it may be wrong."""
+    beside = 0.0
+    for axis in range(3):
+        edge = edges[axis]
+        n = edge.size - 1
+        for k in range(n):
+            copies.centre[axis, k] = 0.5 * (edge[k + 1] + edge[k])
+            if axis == 0 or (axis == 1 and not planar):
+                beside = max(beside, _farthest(edge, k, periodic[axis]))
+        if periodic[axis]:  # beyond the last cell stands the first again
+            copies.centre[axis, n] = copies.centre[axis, 0] + edge[n]
+    x, y, z = edges
+    area = x[x.size - 1] * (1.0 if planar else y[y.size - 1])
+    copies.slack[:] = math.inf  # where there is memory for more layers
+    copies.room[:] = 1.0
+    for k in range(z.size - 1):
+        layer = max(_farthest(z, k, periodic[2]), beside)
+        copies.slack[k, DISTANCE] = SLACK * layer
+        copies.slack[k, SQUARE] = SLACK * layer * layer
+        copies.slack[k, CLOSING] = 4.0 * SLACK * layer  # times V
+        copies.room[k] = area * (z[k + 1] - z[k])
 
 
 @kernel

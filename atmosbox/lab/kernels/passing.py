@@ -15,9 +15,9 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Cells, Gas, Modes
 from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.rows import START, STOP, TOP_SPEED
+from atmosbox.engine.exact.rows import MORE, MOST, row_stride
 from atmosbox.engine.exact.turning import Ascent
-from atmosbox.lab.kernels.laying_out import LAST, NUMBER, STRIDE, choose_cells, write_cells
+from atmosbox.lab.kernels.laying_out import LAST, NUMBER, PLACES, choose_cells, write_cells
 from atmosbox.lab.kernels.moist_passing import moist_passing
 
 __all__ = ["Book", "Passed", "ascent_of", "epochs", "passing"]
@@ -67,37 +67,31 @@ def ascent_of(ascent, book, filled):
 
 
 @kernel
-def _as_laid_out(gas, layout):
+def _as_laid_out(gas, layout, modes):
     """Return the gas with its cells as they are now."""
     c, shape = gas.cells, layout.shape
     cells = Cells(
-        c.row, shape[STRIDE], c.boundary, c.first, c.span, c.slot, shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2],
-        shape[LAST], shape[LAST + 1], shape[LAST + 2], c.copies,
+        c.row, row_stride(shape[PLACES], modes.mixed), c.boundary, c.first, c.span, c.slot,
+        shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2], shape[LAST], shape[LAST + 1], shape[LAST + 2], c.copies,
     )  # fmt: skip
     return Gas(gas.molecules, gas.events, gas.kinds, cells, gas.calendar, gas.box, gas.walls, gas.tallies)
 
 
 @kernel
-def _fits(gas, layout):
-    """Tell whether there is memory for the rows of all cells."""
+def _fits(gas, layout, modes):
+    """Tell whether there is memory for all cells and their rows."""
     shape = layout.shape
-    cells = shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2]
-    return shape[STRIDE] <= layout.longest and cells * shape[STRIDE] <= gas.cells.row.size
+    x, y, z = shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2]
+    words = x * y * z * row_stride(shape[PLACES], modes.mixed)
+    return shape[PLACES] <= MOST and words <= gas.cells.row.size and max(x, y, z) < layout.edge.shape[1]
 
 
 @kernel
 def _longer_rows(gas, layout, modes):
-    """Give the rows sixteen places more, empty; tell whether there is memory for them."""
-    layout.shape[STRIDE] += 16 * (8 if modes.mixed else 7)
-    if not _fits(gas, layout):
-        return False
-    copies = gas.cells.copies
+    """Give the rows more places, empty; tell whether there is memory for them."""
+    layout.shape[PLACES] += MORE
     gas.cells.row[:] = 0
-    copies.horizon[:] = math.inf
-    copies.epoch[START] = 0.0
-    copies.epoch[STOP] = math.inf
-    copies.epoch[TOP_SPEED] = 0.0
-    return True
+    return _fits(gas, layout, modes)
 
 
 def epochs(resolve: Callable[..., Any], modes: Modes) -> Callable[..., Any]:
@@ -142,19 +136,19 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         def proceed(gas, ascent, book, layout, until, most):
             """Resolve events, and turn the piston as it is due."""
             here = ascent_of(ascent, book, layout.filled[0])
-            return advance(_as_laid_out(gas, layout), here, book, until, most)
+            return advance(_as_laid_out(gas, layout, modes), here, book, until, most)
 
     else:
 
         @kernel
         def proceed(gas, ascent, book, layout, until, most):
             """Resolve events."""
-            return advance(_as_laid_out(gas, layout), ascent, book, until, most)
+            return advance(_as_laid_out(gas, layout, modes), ascent, book, until, most)
 
     @kernel
     def refilled(gas, now, layout):
         """Write the copies in all rows anew, in longer rows if need be; tell whether there was memory for them."""
-        while refill(_as_laid_out(gas, layout), now):
+        while refill(_as_laid_out(gas, layout, modes), now):
             if not _longer_rows(gas, layout, modes):
                 return False
         return True
@@ -165,7 +159,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         while True:
             gas.calendar.time[:] = math.inf
             gas.calendar.winner[:] = 0
-            if place_all(_as_laid_out(gas, layout), now) != _ROW_FULL:
+            if place_all(_as_laid_out(gas, layout, modes), now) != _ROW_FULL:
                 return True
             if not _longer_rows(gas, layout, modes):
                 return False
@@ -176,10 +170,11 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
         def laid_out(gas, now, layout):
             """Choose cells for the box as it is now; tell whether that was possible."""
             piston = gas.walls.piston
-            if not choose_cells(piston[0] + piston[1] * (now - piston[2]), gas.molecules.size, gas.box, layout):
+            ceiling = piston[0] + piston[1] * (now - piston[2])
+            if not (choose_cells(ceiling, gas.molecules.size, gas.box, layout) and _fits(gas, layout, modes)):
                 return False
             write_cells(gas, layout, modes)
-            return _fits(gas, layout) and placed(gas, now, layout)
+            return placed(gas, now, layout)
 
     else:
 

@@ -16,10 +16,9 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
-from atmosbox.engine.exact.rows import LONGEST, STOP, TOP_SPEED
-from atmosbox.engine.exact.rows import START as BEGUN
+from atmosbox.engine.exact.rows import LONGEST
 from atmosbox.engine.start import overlap
-from atmosbox.lab.kernels.layering import write_layers
+from atmosbox.lab.kernels.laying_out import write_column
 from atmosbox.lab.kernels.moist_passing import moist_passing
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
@@ -286,17 +285,13 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
 
     @kernel
     def prepare_cells(kinetic, gas, book, begun):
-        """Let the copies in cells be written anew, and choose layers of cells; tell whether that was possible."""
+        """Say how long copies in cells may hold, and choose layers of cells; tell whether that was possible."""
         if wells:
             return True
-        epoch = gas.cells.copies.epoch
-        epoch[BEGUN] = 0.0
-        epoch[STOP] = math.inf
-        epoch[TOP_SPEED] = 0.0
-        epoch[LONGEST] = book.epoch_length[0]
+        gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
         if modes.gravity:
             dimensions = 2.0 if begun.planar != 0 else 3.0
-            return write_layers(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.column)
+            return write_column(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.column)
         return True
 
     if modes.ascends:

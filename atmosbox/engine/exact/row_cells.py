@@ -1,0 +1,195 @@
+"""Cells whose rows hold copies of trajectories: how many there are along each axis, and where their slots begin.
+
+They are wider than any molecule. Python runs these functions as they are written, when it lays out a box; the kernels
+of a page, which must lay it out themselves, compile them.
+"""
+
+import math
+
+from atmosbox.engine.core.elementary import expm1, log, root
+from atmosbox.engine.core.jit import kernel
+
+__all__ = [
+    "MARGIN",
+    "MOST_CELLS",
+    "TALLER",
+    "cell_numbers",
+    "cell_widths",
+    "filled_share",
+    "widths_for_rows",
+    "write_layers",
+    "write_slots",
+]
+
+MARGIN = 1.0 + 1e-7
+"""How much larger than its sphere a molecule is taken to be."""
+MOST_CELLS = 20_000
+"""As many cells as there may be along an axis."""
+TALLER = 1.75
+"""How high the cells under a ceiling that moves reach, over its height when they are laid out."""
+_CROWD = 30.0
+_STEPS = 20_000
+
+
+@kernel(plain=True)
+def filled_share(x, y, z, radius, molecules, planar):
+    """Return which share of a box so many spheres, or discs, of a radius fill."""
+    size = math.pi * radius * radius * (1.0 if planar else 4.0 / 3.0 * radius)
+    return molecules * size / (x * (1.0 if planar else y) * z)
+
+
+@kernel(plain=True)
+def cell_widths(x, y, z, cells, planar):
+    """Return the width of a cell along each axis, if there are to be so many; an axis shorter than a cell has one.
+
+    Examples
+    --------
+    >>> [float(width) for width in cell_widths(8.0, 8.0, 1.0, 4, False)]
+    [4.0, 4.0, 1.0]
+    """
+    free_x, free_y, free_z = True, not planar, True
+    while True:
+        room = (x if free_x else 1.0) * (y if free_y else 1.0) * (z if free_z else 1.0)
+        size = root(room / max(1.0, cells), int(free_x) + int(free_y) + int(free_z))
+        wide_x, wide_y, wide_z = free_x and x >= size, free_y and y >= size, free_z and z >= size
+        if wide_x == free_x and wide_y == free_y and wide_z == free_z:
+            return size if free_x else x, size if free_y else y, size if free_z else z
+        free_x, free_y, free_z = wide_x, wide_y, wide_z
+
+
+@kernel(plain=True)
+def widths_for_rows(x, y, z, radius, molecules, planar):
+    """Return the widths of cells that are wanted of molecules of a radius: eight or nine of them to a cell."""
+    dilute = filled_share(x, y, z, radius, molecules, planar) < 0.05
+    return cell_widths(x, y, z, molecules / (9.0 if dilute else 8.0), planar)
+
+
+@kernel(plain=True)
+def _nearest(length, width, widest, periodic, above):
+    """Return the number of cells below, or above, that which has the width that is wanted; 0 if none is possible."""
+    step, least = (2, 4) if periodic else (1, 1)
+    top = min(step * math.floor(length / (2.002 * widest) / step), MOST_CELLS)
+    if top < least:
+        return 0
+    return min(max(step * math.floor(length / width / step) + (step if above else 0), least), top)
+
+
+@kernel(plain=True)
+def cell_numbers(length, filled, width, radius, molecules, periodic, planar):
+    """Return how many cells along each axis come nearest to a width, if rows may hold copies then, else zeros.
+
+    Parameters
+    ----------
+    length, filled
+        What the cells cover along x, y and z, and up to where there are molecules now [length].
+    width
+        That is wanted, along each axis [length].
+    radius
+        Of the largest molecule [length].
+    molecules
+        How many there will be.
+    periodic
+        Which axes are.
+    planar
+        Whether all centres lie in one plane y = constant.
+    """
+    x, y, z = length[0], length[1], length[2]
+    found = (0, 0, 0)
+    if min(x, y, filled) < 1e-6 or max(x, y, z) > 1e6:
+        return found  # single precision would need other units
+    widest = radius * MARGIN
+    wanted = x / width[0] * (1.0 if planar else y / width[1]) * (z / width[2])
+    best = math.inf
+    for k in range(8):
+        nx = _nearest(x, width[0], widest, periodic[0], k & 4)
+        ny = 1 if planar else _nearest(y, width[1], widest, periodic[1], k & 2)
+        nz = _nearest(z, width[2], widest, periodic[2], k & 1)
+        if nx * ny * nz == 0:
+            return found
+        # how far they are from the volume and the shape that are wanted
+        a, b, c = log(nx * width[0] / x), log(ny * width[1] / y), log(nz * width[2] / z)
+        mean = (a + b + c) / 3.0
+        a, b, c = a - mean, b - mean, c - mean
+        misfit = abs(log(nx * ny * nz / max(wanted, 1.0))) + 0.5 * math.sqrt((a * a + b * b + c * c) / 3.0)
+        if misfit < best:
+            best = misfit
+            found = (nx, ny, nz)
+    return found if molecules / (found[0] * found[1] * found[2]) <= _CROWD else (0, 0, 0)
+
+
+@kernel(plain=True)
+def write_slots(edge, radius, periodic, mixed, opens, boundary):
+    """Write the boundaries of the slots along one axis for molecules of a radius; return the last slot.
+
+    Where not all of them are ``mixed`` of one kind, walls are each molecule's own business. Who gets above the cells of
+    an axis that ``opens`` leaves them.
+    """
+    n = edge.size - 1
+    length, reach = edge[n], radius * MARGIN
+    for k in range(1, n):
+        boundary[2 * k - 1] = edge[k] - reach
+        boundary[2 * k] = edge[k] + reach
+    if periodic:
+        boundary[0] = reach
+        boundary[2 * n - 1] = length - reach
+        # a turn further: the first, and the one after it
+        boundary[2 * n] = reach + length
+        boundary[2 * n + 1] = boundary[1] + boundary[2 * n] - reach
+        return 2 * n - 1
+    boundary[0] = -math.inf if mixed else radius
+    boundary[2 * n - 1] = length if opens else (math.inf if mixed else length - radius)
+    return 2 * n - 2
+
+
+@kernel(plain=True)
+def write_layers(height, wanted, scale_height, thinnest, edge):
+    """Write the edges of layers that hold about equally many molecules of an isothermal column; return how many.
+
+    They are `wanted`, or fewer, so that none is thinner than `thinnest` [length]; 0 if there is no memory for them.
+    """
+    # a table of heights; where the air is shallow, it begins with as many close to the floor
+    shallow = min(40.0 * scale_height, height / 2) if scale_height < height / 5_000 else 0.0
+    begin, first = _STEPS, 0
+    if shallow > 0.0:
+        begin, first = 0, math.ceil(shallow / height * _STEPS) - 1
+        while first * (height / _STEPS) < shallow:
+            first += 1
+    whole = expm1(-height / scale_height if shallow > 0.0 else -min(height / scale_height, 700.0))
+    found = 1
+    edge[0] = 0.0
+    for j in range(1, wanted):
+        share = j * (1.0 / wanted)
+        lower, upper = begin, 2 * _STEPS + 1 - first
+        while upper - lower > 1:
+            middle = (lower + upper) >> 1
+            z = _height(middle, height, shallow, first)
+            if _share_below(z, height, scale_height, shallow, whole) <= share:
+                lower = middle
+            else:
+                upper = middle
+        z, above = _height(lower, height, shallow, first), _height(upper, height, shallow, first)
+        under = _share_below(z, height, scale_height, shallow, whole)
+        z += (above - z) * ((share - under) / (_share_below(above, height, scale_height, shallow, whole) - under))
+        if z - edge[found - 1] >= thinnest and height - z >= thinnest:
+            if found == edge.size - 1:
+                return 0
+            edge[found] = z
+            found += 1
+    edge[found] = height
+    return found
+
+
+@kernel(plain=True)
+def _height(k, height, shallow, first):
+    """Return a height of the table: steps up to ``shallow``, and then those of the whole, from the first above it."""
+    if k < _STEPS:
+        return k * (shallow / _STEPS)
+    k += first - _STEPS
+    return height if k == _STEPS else k * (height / _STEPS)
+
+
+@kernel(plain=True)
+def _share_below(z, height, scale_height, shallow, whole):
+    """Return which share of the molecules is below a height, a tenth of them spread evenly; see `write_layers`."""
+    depth = z / scale_height if shallow > 0.0 else min(height / scale_height, 700.0) * z / height
+    return 0.9 * expm1(-depth) / whole + 0.1 * z / height
