@@ -217,3 +217,11 @@ def test_a_cell_lists_whom_it_is_told_until_it_is_told_otherwise():
             truth[cell].add(i)
         listed = row[cell * stride + 1 : cell * stride + 1 + row[cell * stride]]
         assert sorted(listed.tolist()) == sorted(truth[cell])
+
+
+@pytest.mark.parametrize(("to_a_cell", "rows"), [(17.9, True), (18.1, False)])
+def test_cells_that_large_spheres_make_wide_hold_lists_where_a_row_might_overflow(to_a_cell, rows):
+    # four cells of five diameters along each side, and a molecule on its way is in the rows of two cells on average
+    grid = grid_of((20.0, 20.0, 20.0), (0.1, 2.0), molecules=round(to_a_cell * 64), rows=True)
+    assert grid.rows == rows
+    assert not rows or grid.number == (4, 4, 4)

@@ -27,7 +27,12 @@ MOST_CELLS = 20_000
 """As many cells as there may be along an axis."""
 TALLER = 1.75
 """How high the cells under a ceiling that moves reach, over its height when they are laid out."""
-_CROWD = 30.0
+_CROWD = 18.0
+"""Up to how many molecules to a cell its row may hold copies.
+
+A molecule stays in the row of the cell that it comes from until it plans anew: where it flies across many cells, it is
+in two rows on average. Of 64 places so many leave room for chance: 36 and four times its root.
+"""
 _STEPS = 20_000
 
 

@@ -151,7 +151,6 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
         write(i, t, after, gas)
         call(i, t, gas)
     write(j, t, Motion(drop.x, drop.y, drop.z, wx, wy, wz), gas)
-    _renew(t, gas, drops, reservoir)
 
 
 @kernel
@@ -191,10 +190,7 @@ def _emit(t, gas, drops, reservoir, modes):
     if found != Place.FREE:
         drops.held[k] += 1
         resize(drops, k, gas.kinds, modes)
-        if found == Place.ROW_FULL:
-            return Status.ROW_FULL, j
-        _renew(t, gas, drops, reservoir)
-        return Status.DONE, j
+        return Status.ROW_FULL if found == Place.ROW_FULL else Status.DONE, j
     mass, heavy = drops.molecule_mass, table[modes.drops + k].mass
     light = mass / (mass + heavy)
     if not drops.plain:
@@ -207,7 +203,6 @@ def _emit(t, gas, drops, reservoir, modes):
     free = Motion(x, y, z, drop.vx + a * ex, drop.vy + a * ey, drop.vz + a * ez)
     enter(i, t, free, spin, gas, reservoir, modes)
     write(j, t, Motion(drop.x, drop.y, drop.z, drop.vx - b * ex, drop.vy - b * ey, drop.vz - b * ez), gas)
-    _renew(t, gas, drops, reservoir)
     return Status.DONE, j
 
 
@@ -244,23 +239,23 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
             if status == Status.MEETS_LIQUID:
                 i, t = next_event(gas.calendar)
                 j = np.int64(gas.events[i].partner)
+                status = Status.DONE
                 if min(np.int64(gas.molecules[i].kind), np.int64(gas.molecules[j].kind)) >= modes.drops:
                     status, j = _merge(i, j, t, gas, drops, reservoir, modes)
-                    if status != Status.DONE:
-                        return status.value, done
-                    _renew(t, gas, drops, reservoir)
                 else:
                     if np.int64(gas.molecules[i].kind) >= modes.drops:
                         i, j = j, i
                     _hit(i, j, t, gas, drops, reservoir, modes)
             elif status == Status.BUSY:
                 continue
-            elif status != Status.DONE or due > until:
-                return status.value, done
-            else:
+            elif status == Status.DONE and due <= until:
                 status, j = _emit(due, gas, drops, reservoir, modes)
-                if status != Status.DONE:
-                    return status.value, done
+            else:
+                return status.value, done
+            if status != Status.DONE:
+                return status.value, done
+            # the surface, or the rates, have changed; in one place, so that it is compiled once
+            _renew(t, gas, drops, reservoir)
             call(j, t, gas)
         return Status.BUSY.value, done
 
