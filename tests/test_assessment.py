@@ -246,7 +246,7 @@ def test_worse_than_before_is_wrong():
     def verdict(kind, value):
         return Verdict(kind, "a share", *([] if value is None else [value, 1.0, 0.01]))
 
-    for now, before, outcome in [
+    for measured, before, outcome in [
         (("right", 1.0), ("degrades", 1.3), "right"),
         (("right", 1.0), ("refused", None), "right"),
         (("degrades", 1.3), ("right", 1.0), "wrong"),
@@ -259,7 +259,7 @@ def test_worse_than_before_is_wrong():
         (("wrong", None), ("refused", None), "wrong"),
         (("degrades", 9.9), None, "degrades"),
     ]:
-        assert compared(verdict(*now), before and verdict(*before)).outcome == outcome
+        assert compared(verdict(*measured), before and verdict(*before)).outcome == outcome
 
 
 def test_a_real_engine_with_coarser_steps_is_worse_than_its_stored_outcome():

@@ -124,6 +124,13 @@ def parts_of(frame):
     return np.frombuffer(frame, "<f4", 3, 12), place, state, np.frombuffer(frame[36 + 8 * count :], "<f4")
 
 
+def advance(setup, frames, first=0):
+    """Let time pass in Python as a page does: sample by sample, up to the end of so many frames."""
+    for frame in range(first, frames):
+        for sample in range(1, setup.samples + 1):
+            setup.parcel.advance(setup.moment(frame, sample))
+
+
 def state_of(parcel):
     """Return the SHA-256 of the same arrays in Python."""
     parts = {
@@ -282,9 +289,7 @@ def test_a_pool_that_is_covered_by_hand_has_the_bytes_of_one_that_python_covers(
         shown.ask(type="set", name="open_pool", value=share)
         shown.ask(type="frames", value=first + 30)
         setup.knobs[1].set(share)
-        for frame in range(first, first + 30):
-            for sample in range(1, setup.samples + 1):
-                setup.parcel.advance(setup.moment(frame, sample))
+        advance(setup, first + 30, first)
         left.append(setup.parcel.evaporated)
     assert 0 < left[0] == left[1] < left[2]
     assert shown.digest() == state_of(setup.parcel)
@@ -315,9 +320,7 @@ def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begin
     def runs_as_python_with(**settings):
         shown.ask(type="frames", value=10)
         setup = build(prepare("elastic-collisions", {"seed": 3, **settings}))
-        for frame in range(10):
-            for sample in range(1, setup.samples + 1):
-                setup.parcel.advance(setup.moment(frame, sample))
+        advance(setup, 10)
         assert setup.parcel.contacts > 5
         assert shown.digest() == state_of(setup.parcel)
         about, table = shown.table()
@@ -364,9 +367,7 @@ def test_another_seed_begins_the_run_that_python_begins_with_it(lab, scene, sett
         shown.until(lambda seed=seed: f"seed {seed}" in shown.page.locator("#caption").text_content())
         shown.ask(type="frames", value=4)
         setup = build(prepare(scene, settings | {"seed": seed}))
-        for frame in range(4):
-            for sample in range(1, setup.samples + 1):
-                setup.parcel.advance(setup.moment(frame, sample))
+        advance(setup, 4)
         assert shown.digest() == state_of(setup.parcel)
     about, _ = shown.table()
     assert about[0].endswith(f"--seed {seed}")
@@ -387,9 +388,7 @@ def test_number_diameter_and_seed_of_a_parcel_that_rises_are_those_of_a_run(lab)
     shown.ask(type="reset", seed=11)
     shown.ask(type="frames", value=20)
     setup = build(prepare("lifting-dry", settings | {"molecules": 400, "diameter": 1.4, "seed": 11}))
-    for frame in range(20):
-        for sample in range(1, setup.samples + 1):
-            setup.parcel.advance(setup.moment(frame, sample))
+    advance(setup, 20)
     assert setup.parcel.contacts > 1000
     assert shown.digest() == state_of(setup.parcel)
     about, _ = shown.table()

@@ -6,7 +6,7 @@ from atmosbox.lab import save_lab
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import build, prepare
 from tests.lab.firefox import Firefox, firefox_command
-from tests.lab.test_browser import state_of
+from tests.lab.test_browser import advance, state_of
 
 SMALL = {
     "temperature": ({"molecules": 150}, 20),
@@ -37,9 +37,7 @@ def test_firefox_has_the_same_bytes_as_python(firefox, tmp_path, scene):
     firefox.evaluate(ASK.format("{type: 'digest'}"))
     found = firefox.evaluate(WHEN_IT_IS.format("document.body.dataset.digest"))
     setup = build(prepared)
-    for frame in range(frames):
-        for sample in range(1, setup.samples + 1):
-            setup.parcel.advance(setup.moment(frame, sample))
+    advance(setup, frames)
     assert setup.parcel.contacts > 200
     assert found == state_of(setup.parcel)
     assert not firefox.faults

@@ -126,8 +126,8 @@ def cell_numbers(length, filled, width, radius, molecules, periodic, planar):
 def write_slots(edge, radius, periodic, mixed, opens, boundary):
     """Write the boundaries of the slots along one axis for molecules of a radius; return the last slot.
 
-    Where not all of them are ``mixed`` of one kind, walls are each molecule's own business. Who gets above the cells of
-    an axis that ``opens`` leaves them.
+    Where molecules of several kinds are ``mixed``, their walls are not in the table: each turns at its own radius.
+    Along an axis that ``opens``, a molecule beyond the last edge has left the cells.
     """
     n = edge.size - 1
     length, reach = edge[n], radius * MARGIN
