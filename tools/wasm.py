@@ -31,7 +31,7 @@ from atmosbox.engine.core.constant_modes import KernelCompiler
 from atmosbox.engine.core.state import Modes
 from atmosbox.lab.bench import bench
 from atmosbox.lab.kernels.kernel_table import kernels
-from atmosbox.lab.wasm_module import FOLDER, SCENES, WORKSHEETS, source_stamp, stamp_of
+from atmosbox.lab.wasm_module import BESIDE, FOLDER, SCENES, source_stamp, stamp_of
 from atmosbox.lab.work import arguments
 from atmosbox.simulation.preparation import prepare
 
@@ -173,7 +173,7 @@ def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]
     """Return what is to be compiled for some scenes: by the name of a module its modes, wells, types of arguments."""
     found = {}
     boxes = [(scene, SCENES[scene]) for scene in scenes]
-    for scene, settings in [*boxes, *(each for each in WORKSHEETS if each[0] in scenes)]:
+    for scene, settings in [*boxes, *(each for each in BESIDE if each[0] in scenes)]:
         box = bench(prepare(scene, settings, engine="exact"))
         types = {name: tuple(map(numba.typeof, given)) for name, given in arguments(box).items()}
         found[box.module] = box.modes, box.attracts, types

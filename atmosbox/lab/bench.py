@@ -10,6 +10,7 @@ import numpy as np
 from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
 from atmosbox.engine.exact.calendar import new_calendar
+from atmosbox.engine.exact.cells import ROW
 from atmosbox.engine.exact.rows import FEWEST, MOST, row_stride
 from atmosbox.engine.liquid.drop_parcelset import DropParcelSet
 from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
@@ -54,6 +55,8 @@ __all__ = ["Bench", "bench", "refuse"]
 
 _CORNERS = 4
 _SPARE = 1.5
+_LONGER = 4
+"""How many times as long as at the start there is memory for rows of names to become."""
 _INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _READINGS = 64
@@ -119,8 +122,6 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
         why = "runs in the page with the exact engine alone"
     elif type(parcel) not in _BOXES:
         why = "has an engine of its own, which is not compiled for the page"
-    elif type(parcel) is not AttractingParcelSet and not parcel._modes.rows:
-        why = "has cells too crowded, or too small, for the rows that the page works with"
     elif parcel._driver is not None and not parcel._ascends:
         why = "moves its piston in a way that is not compiled for the page"
     elif unknown:
@@ -185,7 +186,8 @@ def _layout(parcel: Any) -> Layout:
     """Return how the cells are laid out now, with memory for other cells."""
     c = parcel._cells
     # rows begin as short as in Python, and grow when molecules are placed
-    shape = [FEWEST, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
+    places = FEWEST if parcel._modes.rows else ROW - 1
+    shape = [places, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
     most = int(_SPARE * max(shape[1:4])) + 2
     return Layout(
         np.array(shape),
@@ -209,12 +211,15 @@ def _gas(parcel: Any) -> Gas:
             slack=_larger(copies.slack, (most, 3), math.inf),
             room=_larger(copies.room, (most,), 1.0),
         )
-    row = aligned_records(many * row_stride(MOST, parcel._modes.mixed), np.dtype("u4")).view(np.ndarray)
+    short, long = ROW, _LONGER * cells.stride
+    if parcel._modes.rows:
+        short, long = (row_stride(places, parcel._modes.mixed) for places in (FEWEST, MOST))
+    row = aligned_records(many * long, np.dtype("u4")).view(np.ndarray)
     events = aligned_records(number, EVENT)
     slot = np.ndarray((number, 3), np.uint16, events.data, SLOT_OFFSET, (EVENT.itemsize, 2))
     place = events.view(np.ndarray).view(np.uint8)
     copies = copies._replace(value=row.view(np.float32), occupied=row.view(np.int64), place=place)
-    cells = cells._replace(row=row, stride=row_stride(FEWEST, parcel._modes.mixed), slot=slot, copies=copies)
+    cells = cells._replace(row=row, stride=short, slot=slot, copies=copies)
     gas: Gas = parcel._gas()._replace(events=events, cells=cells, calendar=new_calendar(number))
     return gas
 

@@ -11,7 +11,7 @@ from typing import Any
 from atmosbox.engine.core.kernel_cache import code_of
 from atmosbox.errors import EngineError
 
-__all__ = ["FOLDER", "SCENES", "WORKSHEETS", "module_bytes", "module_name", "source_stamp", "stamp_of"]
+__all__ = ["BESIDE", "FOLDER", "SCENES", "module_bytes", "module_name", "source_stamp", "stamp_of"]
 
 FOLDER = Path(__file__).parent / "modules"
 SCENES: dict[str, dict[str, Any]] = {
@@ -27,14 +27,15 @@ SCENES: dict[str, dict[str, Any]] = {
     "lifting-moist": {"molecules": 3000},
     "lifting-sounding": {"molecules": 3000},
     "mountains": {"molecules": 3000},
-    "nuclei": {"molecules": 1500},
+    "nuclei": {},
 }
 """The shipped scenes that a page can run, with the settings that they need for it, or to be watched while they run."""
-WORKSHEETS: tuple[tuple[str, dict[str, Any]], ...] = (
+BESIDE: tuple[tuple[str, dict[str, Any]], ...] = (
     ("lifting-dry", {"rotation": False}),
     ("diffusion", {"molecules": 4000, "mass_ratio": 10}),
+    ("nuclei", {"molecules": 1500}),
 )
-"""What worksheets ask for beside these, and needs kernels of its own."""
+"""What worksheets ask for beside these, or fewer molecules, and needs kernels of its own."""
 
 
 def module_name(modes: Any, *, wells: bool = False) -> str:

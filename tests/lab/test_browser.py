@@ -28,8 +28,10 @@ SMALL = {
     "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out anew, too
     "lifting-sounding": ({"molecules": 300, "ascent": 40}, 80),
     "mountains": ({"molecules": 400, "travel": 60}, 96),  # up and down again, and it rains
-    "nuclei": ({"molecules": 1000}, 12),
+    "nuclei": ({}, 6),
 }
+BESIDE = {"nuclei": ({"molecules": 1000}, 12)}
+"""Fewer molecules, whose rows of cells hold copies of trajectories."""
 TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat")
 """What theory says of a parcel's way begins so."""
 
@@ -159,10 +161,14 @@ FIXED = ("elastic-collisions", "nuclei")
 
 
 @pytest.mark.parametrize(
-    "scene", [pytest.param(each, marks=pytest.mark.validate if each in ALIKE else ()) for each in SCENES]
+    ("scene", "settings", "frames"),
+    [
+        pytest.param(scene, *case, marks=pytest.mark.validate if scene in ALIKE else ())
+        for cases in (SMALL, BESIDE)
+        for scene, case in cases.items()
+    ],
 )
-def test_the_page_has_the_same_bytes_as_python_with_another_seed_and_measures_the_same(lab, scene):
-    settings, frames = SMALL[scene]
+def test_the_page_has_the_same_bytes_as_python_with_another_seed_and_measures_the_same(lab, scene, settings, frames):
     another = settings | {"seed": 7}
     shown = lab(scene, another if scene in FIXED else settings)
     if scene not in FIXED:
@@ -229,6 +235,21 @@ def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_aga
     assert table["work_by_attraction"][50] > 0.0  # weaker wells
     free = table["vapor_molecule_count"]
     assert free[65:70].mean() > free[40:50].mean() + 10.0  # the drop has gone with the attraction
+
+
+def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkeypatch):
+    monkeypatch.setattr(bench, "ROW", 7)  # words; twice as many are enough at the start, and not for long
+    settings = {"molecules": 600, "water": 200}
+    shown = lab("nuclei", settings)
+    shown.ask(type="frames", value=6)
+    setup = build(prepare("nuclei", settings))
+    most = []
+    for frame in range(6):
+        rows = setup.parcel._cells.row.reshape(-1, setup.parcel._cells.stride)
+        most.append(rows[:, 0].max())
+        advance(setup, frame + 1, frame)
+    assert 7 <= most[0] < 14 <= max(most) < 28
+    assert shown.digest() == state_of(setup.parcel)
 
 
 def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab):

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.state import Cells, Gas, Modes
 from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
@@ -67,11 +69,18 @@ def ascent_of(ascent, book, filled):
 
 
 @kernel
+def _stride(layout, modes):
+    """Return how many words the row of a cell takes now: with copies of trajectories, or with names alone."""
+    places = layout.shape[PLACES]
+    return row_stride(places, modes.mixed) if modes.rows else 1 + places
+
+
+@kernel
 def _as_laid_out(gas, layout, modes):
     """Return the gas with its cells as they are now."""
     c, shape = gas.cells, layout.shape
     cells = Cells(
-        c.row, row_stride(shape[PLACES], modes.mixed), c.boundary, c.first, c.span, c.slot,
+        c.row, _stride(layout, modes), c.boundary, c.first, c.span, c.slot,
         shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2], shape[LAST], shape[LAST + 1], shape[LAST + 2], c.copies,
     )  # fmt: skip
     return Gas(gas.molecules, gas.events, gas.kinds, cells, gas.calendar, gas.box, gas.walls, gas.tallies)
@@ -82,16 +91,26 @@ def _fits(gas, layout, modes):
     """Tell whether there is memory for all cells and their rows."""
     shape = layout.shape
     x, y, z = shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2]
-    words = x * y * z * row_stride(shape[PLACES], modes.mixed)
-    return shape[PLACES] <= MOST and words <= gas.cells.row.size and max(x, y, z) < layout.edge.shape[1]
+    if modes.rows and shape[PLACES] > MOST:
+        return False
+    return x * y * z * _stride(layout, modes) <= gas.cells.row.size and max(x, y, z) < layout.edge.shape[1]
 
 
 @kernel
 def _longer_rows(gas, layout, modes):
-    """Give the rows more places, empty; tell whether there is memory for them."""
-    layout.shape[PLACES] += MORE
-    gas.cells.row[:] = 0
-    return _fits(gas, layout, modes)
+    """Give the rows more places, in the same memory; tell whether there is so much. Copies of trajectories are lost."""
+    row, shape, old = gas.cells.row, layout.shape, _stride(layout, modes)
+    shape[PLACES] += MORE if modes.rows else old
+    if not _fits(gas, layout, modes):
+        return False
+    if modes.rows:
+        row[:] = 0
+        return True
+    # rows of names are twice as long: from the last one on, so that none is written over before it has been moved
+    for cell in range(shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2] - 1, 0, -1):
+        for place in range(np.int64(row[cell * old]), -1, -1):
+            row[2 * cell * old + place] = row[cell * old + place]
+    return True
 
 
 def epochs(resolve: Callable[..., Any], modes: Modes) -> Callable[..., Any]:
@@ -148,9 +167,10 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def refilled(gas, now, layout):
         """Write the copies in all rows anew, in longer rows if need be; tell whether there was memory for them."""
-        while refill(_as_laid_out(gas, layout, modes), now):
-            if not _longer_rows(gas, layout, modes):
-                return False
+        if modes.rows:
+            while refill(_as_laid_out(gas, layout, modes), now):
+                if not _longer_rows(gas, layout, modes):
+                    return False
         return True
 
     @kernel
