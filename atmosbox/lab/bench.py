@@ -9,6 +9,7 @@ import numpy as np
 
 from atmosbox.engine import AttractingParcelSet, ParcelSet
 from atmosbox.engine.core.state import EVENT, SLOT_OFFSET, Gas, Modes, aligned_records
+from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW
 from atmosbox.engine.exact.rows import FEWEST, MOST, row_stride
@@ -17,7 +18,7 @@ from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
 from atmosbox.errors import SettingError
 from atmosbox.lab.kernels.averaging import BLOCKS, Average
 from atmosbox.lab.kernels.gauging import Gauges
-from atmosbox.lab.kernels.laying_out import Layout
+from atmosbox.lab.kernels.laying_out import Column, Layout
 from atmosbox.lab.kernels.passing import Book
 from atmosbox.lab.kernels.sight import Sight
 from atmosbox.lab.kernels.starting import Start
@@ -159,11 +160,15 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
     parcel: Any = setup.parcel
     stage = None if picture is None else picture(setup)
     attracts = type(parcel) is AttractingParcelSet
+    layout: Any = lists(parcel) if attracts else _layout(parcel)
     start = start_of(prepared, setup, seen)
+    begun = start or no_start(setup)
+    if begun is not None and parcel._modes.gravity and not attracts:
+        begun = begun._replace(layout=layout)
     return Bench(
         prepared,
         setup,
-        well_gas(parcel) if attracts else _gas(parcel),
+        well_gas(parcel) if attracts else _gas(parcel, layout),
         _ascent(parcel),
         Book(
             np.array([parcel._now]),
@@ -172,12 +177,12 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
             np.array([parcel._start_energy]),
             moisture(parcel),
         ),
-        lists(parcel) if attracts else _layout(parcel),
+        layout,
         _gauges(prepared, setup),
         *_averages(setup),
         _sight(parcel, setup.scale, stage),
         crowd(setup) if attracts else 0,
-        start or no_start(setup),
+        begun,
         start is not None,
     )
 
@@ -185,26 +190,45 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
 def _layout(parcel: Any) -> Layout:
     """Return how the cells are laid out now, with memory for other cells."""
     c = parcel._cells
+    column = _column(parcel)
     # rows begin as short as in Python, and grow when molecules are placed
     places = FEWEST if parcel._modes.rows else ROW - 1
     shape = [places, c.number_x, c.number_y, c.number_z, c.last_slot_x, c.last_slot_y, c.last_slot_z]
-    most = int(_SPARE * max(shape[1:4])) + 2
+    most = max(*shape[1:3], column.count.size) if column else int(_SPARE * max(shape[1:4]))
+    edge = np.zeros((3, most + 3))
+    for axis in range(3):
+        edge[axis, : shape[1 + axis] + 1] = parcel._grid.edges[axis]
     return Layout(
-        np.array(shape),
-        np.array([float(parcel._filled)]),
-        np.zeros((3, most + 1)),
-        float(parcel._size_radius[0]),
+        np.array(shape), np.array([float(parcel._filled)]), edge, float(parcel._size_radius[0]), column
+    )  # fmt: skip
+
+
+def _column(parcel: Any) -> Any:
+    """Return what decides on the layers of cells of a column, 0 without gravity."""
+    if not parcel._modes.gravity:
+        return 0
+    walls = parcel._walls
+    grid = parcel._grid
+    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
+    baths = [float(kT) for law, kT in first if law == HEAT_BATH]
+    weight = float(parcel.mass.mean()) * parcel.gravity
+    most = max(grid.wanted, grid.number[2])
+    return Column(
+        weight, max(baths, default=0.0), grid.wanted, grid.thinnest, np.zeros(most, np.int64), np.zeros(most + 1)
     )
 
 
-def _gas(parcel: Any) -> Gas:
+def _gas(parcel: Any, layout: Layout) -> Gas:
     """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if they move."""
     cells, number, copies = parcel._cells, parcel._molecules.size, parcel._cells.copies
     many = cells.number_x * cells.number_y * cells.number_z
-    if parcel._modes.piston:
+    most = layout.edge.shape[1] - 1
+    if layout.column:
+        many = cells.number_x * cells.number_y * layout.column.count.size
+    elif parcel._modes.piston:
         many = int(_SPARE * many)
-        most = int(_SPARE * max(cells.number_x, cells.number_y, cells.number_z)) + 2
-        cells = cells._replace(boundary=_larger(cells.boundary, (1, 3, 2 * most), math.inf))
+    if layout.column or parcel._modes.piston:
+        cells = cells._replace(boundary=_larger(cells.boundary, (len(cells.boundary), 3, 2 * most), math.inf))
         copies = copies._replace(
             centre=_larger(copies.centre, (3, most), 0.0),
             horizon=_larger(copies.horizon, (most,), math.inf),

@@ -9,6 +9,7 @@ import numpy as np
 
 from atmosbox.engine.core.state import MOLECULE, aligned_records
 from atmosbox.lab.bench import Bench, bench
+from atmosbox.lab.kernels.laying_out import LAST, NUMBER
 from atmosbox.lab.memory_image import parts
 from atmosbox.lab.work import arguments
 from atmosbox.simulation.preparation import prepare
@@ -44,12 +45,14 @@ def without_molecules(box: Bench) -> Bench:
         blank["wells"] = gas.wells._replace(number=np.zeros_like(gas.wells.number))
     else:
         copies, boundary = gas.cells.copies._replace(epoch=np.zeros_like(gas.cells.copies.epoch)), gas.cells.boundary
+        layers = {}
         if box.modes.gravity:  # layers follow the temperature of the start
             copies = copies._replace(slack=np.zeros_like(copies.slack), room=np.zeros_like(copies.room))
             copies = copies._replace(centre=copies.centre * [[1.0], [1.0], [0.0]])
             boundary = boundary.copy()
-            boundary[:, 2, : 2 * gas.cells.number_z] = 0.0
-        blank["cells"] = gas.cells._replace(copies=copies, boundary=boundary)
+            boundary[:, 2] = 0.0
+            box, layers = _without_layers(box), {"number_z": 0, "last_slot_z": 0}
+        blank["cells"] = gas.cells._replace(copies=copies, boundary=boundary, **layers)
     book = box.book._replace(epoch_length=np.zeros(1), energy=np.zeros(1))
     if box.attracts:
         book = book._replace(clocks=clock)
@@ -59,6 +62,15 @@ def without_molecules(box: Bench) -> Bench:
         reservoir = reservoir._replace(clock=clock, bound=reservoir.bound * [0.0, 1.0])
         book = book._replace(clocks=clock, moisture=book.moisture._replace(reservoir=reservoir))
     return box._replace(gas=gas._replace(**blank), book=book)
+
+
+def _without_layers(box: Bench) -> Bench:
+    """Return a box of a column that does not say which layers it has now."""
+    shape, edge = box.layout.shape.copy(), box.layout.edge.copy()
+    shape[[NUMBER + 2, LAST + 2]] = 0
+    edge[2] = 0.0
+    layout = box.layout._replace(shape=shape, edge=edge)
+    return box._replace(layout=layout, start=box.start and box.start._replace(layout=layout))
 
 
 def is_the_seed_all(box: Bench) -> bool:

@@ -21,9 +21,7 @@ from atmosbox.engine import RandomNumbers, equal_speeds, maxwell_velocities, rot
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
-from atmosbox.engine.exact import cells
 from atmosbox.engine.start.overlap import _bins, _Spheres
-from atmosbox.lab.kernels.laying_out import Column
 from atmosbox.lab.kernels.pairwise import DEPTH
 from atmosbox.lab.kernels.starting import ALONG_X, AS_PLACED, SHUFFLED, STEP, Start, can_start
 from atmosbox.scene import moisture
@@ -38,7 +36,7 @@ Array = NDArray[np.float64]
 _GAP = 1e-6
 _WORD = 1 << 64
 _DRAWING = (maxwell_velocities, equal_speeds, rotational_energies)
-_PLACING = {"length", "diameter", "periodic", "planar", "scale_height"}
+_PLACING = {"length", "diameter", "periodic", "planar", "top", "scale_height"}
 """What a scene may say of the places of its molecules."""
 
 
@@ -50,7 +48,6 @@ class Watched:
     moved: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
     turned: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
     made: list[tuple[Array, Array, Array]] = field(default_factory=list)
-    layers: list[tuple[float, int, float, float]] = field(default_factory=list)
 
 
 def _count(rng: RandomNumbers, seed: int) -> int:
@@ -65,7 +62,7 @@ def watched(prepared: Prepared) -> Iterator[Watched]:
     seen, seed = Watched(), int(prepared.settings.seed)
     places = [vars(moisture), prepared.module.build.__globals__]
     usual = [(names, each) for names in places for each in _DRAWING if each.__name__ in names]
-    scatter, make, layers = EngineChoice.scatter, EngineChoice.make, cells._layers
+    scatter, make = EngineChoice.scatter, EngineChoice.make
 
     def drawing(name: str, function: Callable[..., Array]) -> Callable[..., Array]:
         def draw(*given: Any, **named: Any) -> Array:
@@ -91,17 +88,13 @@ def watched(prepared: Prepared) -> Iterator[Watched]:
         seen.made.append((np.array(position), np.array(velocity), spin))
         return make(self, position, velocity, **box)
 
-    def lay(height: float, number: int, scale_height: float, thinnest: float) -> Array:
-        seen.layers.append((height, number, scale_height, thinnest))
-        return layers(height, number, scale_height, thinnest)
-
     try:
-        EngineChoice.scatter, EngineChoice.make, cells._layers = place, put, lay  # type: ignore[method-assign]
+        EngineChoice.scatter, EngineChoice.make = place, put  # type: ignore[method-assign]
         for names, each in usual:
             names[each.__name__] = drawing(each.__name__, each)
         yield seen
     finally:
-        EngineChoice.scatter, EngineChoice.make, cells._layers = scatter, make, layers  # type: ignore[method-assign]
+        EngineChoice.scatter, EngineChoice.make = scatter, make  # type: ignore[method-assign]
         for names, each in usual:
             names[each.__name__] = each
 
@@ -129,7 +122,7 @@ def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
         return None
     if not len(position) or moved.shape != position.shape or (moved != velocity).any():
         return None
-    if parcel._modes.gravity and (parcel._modes.mixed or any(high > 5_000 * thin for high, _, thin, _ in seen.layers)):
+    if parcel._modes.gravity and parcel._modes.mixed:
         return None
     numbered = _numbered(placed, position, after, seed)
     rotates = _rotating(seen, spin) if parcel._rotates else {}
@@ -144,7 +137,7 @@ def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
         if (mass != parcel.mass).any():
             return None
         twice = (2.0 if parcel.planar else 3.0) * float(kT.sum())
-    return _start(parcel, told["diameter"], seen)._replace(
+    return _start(parcel, told["diameter"], told.get("top"))._replace(
         place=before,
         order=after,
         motion=motion,
@@ -192,14 +185,16 @@ def no_start(setup: Setup) -> Start | None:
     parcel: Any = setup.parcel
     if not can_start(parcel._modes):
         return None
-    return _start(parcel, np.array(parcel.diameter), Watched())
+    return _start(parcel, np.array(parcel.diameter))
 
 
-def _start(parcel: Any, diameter: Array, seen: Watched) -> Start:
-    """Return a start with all that the box decides."""
+def _start(parcel: Any, diameter: Array, top: float | None = None) -> Start:
+    """Return a start with all that the box decides, its cells apart, for molecules that are placed below ``top``."""
     n, planar = parcel.number, bool(parcel.planar)
     radius = 0.5 * diameter
     sides, turns = np.array(parcel._sides), np.array(parcel._periodic)
+    spread = _spread(parcel, sides)
+    sides[2] = sides[2] if top is None else top
     low = np.where(turns, 0.0, 1.0)[None, :] * 0.5 * diameter[:, None]
     high = sides[None, :] - low
     if planar:
@@ -211,8 +206,8 @@ def _start(parcel: Any, diameter: Array, seen: Watched) -> Start:
         0, 0, 0, 0, AS_PLACED, 0.0, int(planar), 0.0, 0.0, 0.0, 0.0, 0.0, *liquid,
         _Spheres(np.zeros((n, 3)), radius, low, high, turn, *flags),
         _bins(radius, low, high, turn, _GAP),
-        np.zeros(n), np.array(parcel.mass), np.zeros(n), _spread(parcel, sides), _first_gauges(parcel),
-        _column(parcel, seen), np.zeros((n, 3)), np.zeros(3 * n), np.zeros(n, np.int64), np.zeros(n, np.int64),
+        np.zeros(n), np.array(parcel.mass), np.zeros(n), spread, _first_gauges(parcel),
+        0, np.zeros((n, 3)), np.zeros(3 * n), np.zeros(n, np.int64), np.zeros(n, np.int64),
         np.zeros((DEPTH, 2), np.int64), np.zeros(DEPTH), np.zeros(1, np.uint64),
     )  # fmt: skip
 
@@ -241,19 +236,4 @@ def _first_gauges(parcel: Any) -> Any:
     return Gauges(
         0.0, parcel.number, parcel.degrees_of_freedom, 2.0 if parcel.planar else 3.0, 0.0, 0.0, parcel.open_density,
         open_height,
-    )  # fmt: skip
-
-
-def _column(parcel: Any, seen: Watched) -> Any:
-    """Return what decides on the layers of cells of a column, 0 without gravity."""
-    if not parcel._modes.gravity:
-        return 0
-    grid, walls = parcel._grid, parcel._walls
-    _, number, _, thinnest = seen.layers[-1] if seen.layers else (0.0, 1, 1.0, 0.0)
-    first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
-    baths = [float(kT) for law, kT in first if law == HEAT_BATH]
-    weight = float(parcel.mass.mean()) * parcel.gravity
-    return Column(
-        weight, max(baths, default=0.0), number, thinnest, float(parcel._size_radius[0]), grid.edges[0],
-        grid.edges[1], np.zeros(grid.number[2] + 1),
     )  # fmt: skip

@@ -17,7 +17,7 @@ FOLDER = Path(__file__).parent / "modules"
 SCENES: dict[str, dict[str, Any]] = {
     "temperature": {},
     "elastic-collisions": {},
-    "atmosphere": {"start": "equilibrium"},
+    "atmosphere": {"molecules": 3000},
     "lifting-dry": {},
     "temperature-large": {},
     "diffusion": {"molecules": 4000},

@@ -21,7 +21,7 @@ NAME = "gallery"
 
 LABS = SCENES | {
     "temperature": {"molecules": 400},
-    "atmosphere": {"molecules": 1500, "start": "equilibrium"},
+    "atmosphere": {"molecules": 1500},
     "lifting-dry": {"molecules": 1500, "ascent": 400},
     "diffusion": {"molecules": 3000},
     "attraction": {"molecules": 400},

@@ -18,7 +18,7 @@ from atmosbox.simulation.recording import Recording
 SMALL = {
     "temperature": ({"molecules": 150}, 60),
     "elastic-collisions": ({}, 30),
-    "atmosphere": ({"molecules": 800}, 3),
+    "atmosphere": ({"molecules": 3000}, 3),  # its layers follow the molecules: at the start, and when they fall
     "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out anew twice
     "temperature-large": ({"molecules": 300}, 20),
     "diffusion": ({"molecules": 2000}, 8),
@@ -155,7 +155,6 @@ def state_of(parcel):
 
 ALIKE = ("lifting-sounding", "mountains")
 """These have the module of lifting-moist."""
-COLUMN = {"start": "equilibrium"}
 FIXED = ("elastic-collisions", "nuclei")
 """These have the seeds that Python has placed their molecules with."""
 
@@ -375,8 +374,10 @@ def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begin
         pytest.param("temperature", {"molecules": 61, "start": "equal"}, marks=pytest.mark.validate),
         pytest.param("diffusion", {"molecules": 1001}, marks=pytest.mark.validate),
         pytest.param("lifting-dry", {"molecules": 129, "rotation": False}, marks=pytest.mark.validate),
-        pytest.param("atmosphere", COLUMN | {"molecules": 801, "floor": "isolated"}, marks=pytest.mark.validate),
-        pytest.param("atmosphere", COLUMN | {"molecules": 500, "plane": True}, marks=pytest.mark.validate),
+        pytest.param(
+            "atmosphere", {"start": "equilibrium", "molecules": 801, "floor": "isolated"}, marks=pytest.mark.validate
+        ),
+        pytest.param("atmosphere", {"molecules": 500, "plane": True}, marks=pytest.mark.validate),
     ],
 )
 def test_another_seed_begins_the_run_that_python_begins_with_it(lab, scene, settings):

@@ -64,11 +64,15 @@ ROW = 32
 class Grid(NamedTuple):
     """Cells and slots along the three axes: see `state.Cells`.
 
-    ``edges`` of the cells along each axis [length]; ``rows`` whether their rows may hold copies of trajectories.
+    ``edges`` of the cells along each axis [length]; ``wanted`` how many layers of unequal thickness were asked for, 0
+    if all cells are alike, and ``thinnest`` of them [length]; ``rows`` whether their rows may hold copies of
+    trajectories.
     """
 
     number: tuple[int, int, int]
     edges: tuple[NDArray[np.float64], ...]
+    wanted: int
+    thinnest: float
     rows: bool
     boundary: NDArray[np.float64]
     first: NDArray[np.int32]
@@ -114,6 +118,7 @@ def choose_grid(
     open_top: bool,
     scale_height: float,
     rows: bool,
+    layers: NDArray[np.float64] | None = None,
 ) -> Grid:
     """Choose the cells of a box: some two to nine molecules to a cell, layers thinner where gravity makes them denser.
 
@@ -140,6 +145,8 @@ def choose_grid(
     rows
         Whether rows of cells may hold copies of trajectories; they need cells wider than any molecule, and four or more
         along a periodic axis.
+    layers
+        The edges of layers [length], if they are not to follow the scale height.
 
     Raises
     ------
@@ -191,12 +198,15 @@ def choose_grid(
             n = max(1, int(most[axis]))
         number.append(n)
     edges = [np.linspace(0.0, length[axis], number[axis] + 1) for axis in range(3)]
+    wanted, thinnest = 0, 0.0
     if math.isfinite(scale_height) and number[2] > 1:
         thinnest = 0.25 * width[2] if spanning else max(2.002 * biggest, 0.05 * width[2])
-        edges[2] = _layers(float(length[2]), number[2], scale_height, thinnest)
+        wanted = number[2]
+        edges[2] = _layers(float(length[2]), wanted, scale_height, thinnest) if layers is None else layers
         number[2] = len(edges[2]) - 1
     if rows:
-        return _grid_of_rows(edges, radii, periodic, mixed=not exact_radius, open_top=open_top)
+        grid = _grid_of_rows(edges, radii, periodic, mixed=not exact_radius, open_top=open_top)
+        return grid._replace(wanted=wanted, thinnest=thinnest)
     tables = [
         [_slots(edges[axis], float(r), periodic[axis], spanning, open_top=open_top and axis == 2) for axis in range(3)]
         for r in radii
@@ -212,7 +222,7 @@ def choose_grid(
             span[size, axis, : len(s)] = s
     last = tuple(len(tables[0][axis][1]) - 1 for axis in range(3))
     return Grid(
-        (number[0], number[1], number[2]), tuple(edges), False, boundary, first, span,
+        (number[0], number[1], number[2]), tuple(edges), wanted, thinnest, False, boundary, first, span,
         (last[0], last[1], last[2]), spanning, images,
     )  # fmt: skip
 
@@ -231,7 +241,7 @@ def _grid_of_rows(
         ]
     none = np.zeros((len(radii), 3, 1), np.int32)
     number = (len(edges[0]) - 1, len(edges[1]) - 1, len(edges[2]) - 1)
-    return Grid(number, tuple(edges), True, boundary, none, none, (last[0], last[1], last[2]), False, False)
+    return Grid(number, tuple(edges), 0, 0.0, True, boundary, none, none, (last[0], last[1], last[2]), False, False)
 
 
 def _layers(height: float, number: int, scale_height: float, thinnest: float) -> NDArray[np.float64]:

@@ -23,7 +23,7 @@ from atmosbox.engine.exact.calendar import new_calendar
 from atmosbox.engine.exact.cells import ROW, Grid, choose_grid, new_cells, new_rows
 from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
-from atmosbox.engine.exact.row_cells import TALLER
+from atmosbox.engine.exact.row_cells import TALLER, write_even_layers
 from atmosbox.engine.exact.rows import FEWEST, MORE, MOST, copies_of, row_stride
 from atmosbox.engine.exact.stall import crushing_height, is_jammed, why_crowded, why_crushed, why_stalled
 from atmosbox.engine.exact.turning import HIGHEST, LOWEST, Ascent
@@ -259,8 +259,7 @@ class ParcelSet(Parcel):
         """Make the rows of all cells longer."""
         if self._modes.rows:
             if not self._enlarge_rows():
-                self._crowded = True
-                self._lay_out()
+                self._lay_out_closer()
             else:
                 self._refill_rows(self._now)
             return
@@ -275,9 +274,7 @@ class ParcelSet(Parcel):
         """Write the copies in all rows anew at a local time, in longer rows if there is no other way."""
         while self._refill(self._gas(), now):
             if not self._enlarge_rows():
-                self._crowded = True
-                self._lay_out()
-                return
+                return self._lay_out_closer()
 
     def _enlarge_rows(self) -> bool:
         """Give the rows more places, empty; return whether that is possible."""
@@ -301,8 +298,22 @@ class ParcelSet(Parcel):
         )  # fmt: skip
         self._cells = new_cells(grid, slot, row, stride, copies)
 
+    def _lay_out_closer(self) -> None:
+        """Choose cells anew because there are too many molecules for a row: layers that follow them, or else lists."""
+        grid, found = self._grid, 0
+        edge = np.zeros(grid.wanted + 1)
+        if grid.wanted > 1:
+            count = np.bincount(self._cells.slot[self._present, 2] >> 1, minlength=grid.number[2])
+            found = write_even_layers(count, grid.edges[2], grid.wanted, grid.thinnest, edge)
+        self._crowded = found == 0
+        self._enter(self._choose(edge[: found + 1] if found else None))
+
     def _lay_out(self) -> None:
         """Choose cells for the box as it is now and plan every molecule's event anew."""
+        self._enter(self._choose())
+
+    def _choose(self, layers: Array | None = None) -> Grid:
+        """Choose cells for the box as it is now, with these edges of layers if any are given."""
         n = len(self._fields)
         moving = self._walls.law[5] == PISTON
         self._filled = self.ceiling
@@ -311,7 +322,7 @@ class ParcelSet(Parcel):
         kT = self._mean_kT()
         weight = float(self._mass.mean()) * self.gravity if n else 0.0
         contacts = self._collisions and bool(n) and float(self._diameter.max()) > 0.0
-        grid = choose_grid(
+        return choose_grid(
             np.array([self._sides[0], self._sides[1], top]),
             self._periodic,
             self._size_radius,
@@ -322,16 +333,21 @@ class ParcelSet(Parcel):
             open_top=bool(moving),
             scale_height=kT / weight if weight > 0.0 and kT > 0.0 else math.inf,
             rows=contacts and not self._crowded,
+            layers=layers,
         )
+
+    def _enter(self, grid: Grid) -> None:
+        """Enter all molecules into these cells, where they plan their events."""
+        n = len(self._fields)
         self._grid = grid
         self._modes = Modes(
-            contacts=contacts,
+            contacts=self._collisions and bool(n) and float(self._diameter.max()) > 0.0,
             gravity=self.gravity > 0.0,
             rotation=self._rotates,
             mixed=len(self._kinds.table) > 1,
             spanning=grid.spanning,
             periodic=any(self._periodic),
-            piston=bool(moving),
+            piston=bool(self._walls.law[5] == PISTON),
             phases=not isinstance(self._present, slice),
             pool=bool(self._walls.law[4] == POOL),
             drops=self._first_drop,
@@ -350,8 +366,7 @@ class ParcelSet(Parcel):
             if not grid.rows:
                 self._new_cells(2 * self._cells.stride)
             elif not self._enlarge_rows():
-                self._crowded = True
-                return self._lay_out()
+                return self._lay_out_closer()
 
     def _find_kernels(self) -> None:
         self._place, self._advance, self._replan, self._overlap, self._refill = specialise(self._modes)

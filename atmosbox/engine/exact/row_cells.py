@@ -17,6 +17,7 @@ __all__ = [
     "cell_widths",
     "filled_share",
     "widths_for_rows",
+    "write_even_layers",
     "write_layers",
     "write_slots",
 ]
@@ -34,6 +35,10 @@ A molecule stays in the row of the cell that it comes from until it plans anew: 
 in two rows on average. Of 64 places so many leave room for chance: 36 and four times its root.
 """
 _STEPS = 20_000
+_EVENLY = 0.1
+"""Of so large a share of all molecules it is assumed that they are spread evenly over the height, wherever they are."""
+_EMPTIER = 0.8
+"""Layers that follow the molecules are worth it if the fullest has so small a share of what the fullest had before."""
 
 
 @kernel(plain=True)
@@ -195,6 +200,56 @@ def _height(k, height, shallow, first):
 
 @kernel(plain=True)
 def _share_below(z, height, scale_height, shallow, whole):
-    """Return which share of the molecules is below a height, a tenth of them spread evenly; see `write_layers`."""
+    """Return which share of the molecules is below a height, some of them spread evenly; see `write_layers`."""
     depth = z / scale_height if shallow > 0.0 else min(height / scale_height, 700.0) * z / height
-    return 0.9 * expm1(-depth) / whole + 0.1 * z / height
+    return (1.0 - _EVENLY) * expm1(-depth) / whole + _EVENLY * z / height
+
+
+@kernel(plain=True)
+def write_even_layers(count, old, wanted, thinnest, edge):
+    """Write the edges of layers that hold about equally many of the molecules that are there; return how many.
+
+    ``count`` tells how many there are in each of the layers with the edges ``old``, where they are taken to be spread
+    evenly. As in `write_layers` they are `wanted`, or fewer; 0 if there is no memory for them, or if the fullest layer
+    would be nearly as full as before.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> edge = np.zeros(6)
+    >>> write_even_layers(np.array([6, 2]), np.array([0.0, 1.0, 2.0]), 4, 0.0, edge)
+    4
+    >>> edge.round(2).tolist()
+    [0.0, 0.34, 0.69, 1.1, 2.0, 0.0]
+    >>> write_even_layers(np.array([5, 4]), np.array([0.0, 1.0, 2.0]), 2, 0.0, edge)
+    0
+    """
+    last = count.size - 1
+    height = old[last + 1]
+    number, most = 0, 0
+    for each in count:
+        number += each
+        most = max(most, each)
+    # below a height are so many molecules, ``under`` the last edge, and in the fullest of the new layers
+    passed, under, fullest = 0, 0.0, 0.0
+    found, k, below = 1, 0, 0.0
+    share = (1.0 - _EVENLY) * count[0] / number + _EVENLY * (old[1] - old[0]) / height
+    edge[0] = 0.0
+    for j in range(1, wanted):
+        goal = j / wanted
+        while k < last and below + share <= goal:
+            below += share
+            passed += count[k]
+            k += 1
+            share = (1.0 - _EVENLY) * count[k] / number + _EVENLY * (old[k + 1] - old[k]) / height
+        part = (goal - below) / share
+        z = old[k] + part * (old[k + 1] - old[k])
+        if z - edge[found - 1] >= thinnest and height - z >= thinnest:
+            if found == edge.size - 1:
+                return 0
+            edge[found] = z
+            found += 1
+            fullest = max(fullest, passed + part * count[k] - under)
+            under = passed + part * count[k]
+    edge[found] = height
+    return found if max(fullest, number - under) < _EMPTIER * most else 0

@@ -1,17 +1,28 @@
 """Cells that are laid out in a page, with the functions by which Python lays them out: see `row_cells`.
 
-A piston that has moved far needs others, for molecules of one size between walls; the layers of a column depend on the
-temperature that its molecules have at the start, to its last digit, and so on the seed.
+A piston that has moved far needs others, for molecules of one size between walls. The layers of a column depend on the
+temperature that its molecules have at the start, to its last digit, and so on the seed; and where molecules have come
+together in such numbers that a row is too short for them, layers follow the molecules.
 """
 
 import math
 from typing import Any, NamedTuple
 
 from atmosbox.engine.core.jit import kernel
-from atmosbox.engine.exact.row_cells import TALLER, cell_numbers, widths_for_rows, write_layers, write_slots
+from atmosbox.engine.exact.encounter import slots_of
+from atmosbox.engine.exact.row_cells import (
+    TALLER,
+    cell_numbers,
+    widths_for_rows,
+    write_even_layers,
+    write_layers,
+    write_slots,
+)
 from atmosbox.engine.exact.rows import FEWEST, describe_cells
 
-__all__ = ["LAST", "NUMBER", "PLACES", "Column", "Layout", "choose_cells", "write_cells", "write_column"]
+__all__ = [
+    "LAST", "NUMBER", "PLACES", "Column", "Layout", "choose_cells", "follow_molecules", "write_cells", "write_column",
+]  # fmt: skip
 
 PLACES, NUMBER, LAST = 0, 1, 4
 """Where in ``Layout.shape`` the number of places of a row, those of cells and those of the last slots stand."""
@@ -21,31 +32,30 @@ class Layout(NamedTuple):
     """The cells of a box as they are now.
 
     ``shape : (7,)`` places of a row, numbers of cells, last slots; ``filled : (1,)`` the height of the ceiling when
-    they were chosen [length]; ``edge : (axis, ...)`` memory for their edges, ``radius`` of all molecules [length].
+    they were chosen [length]; ``edge : (axis, ...)`` their edges, with memory for more, ``radius`` of all molecules
+    [length]; ``column`` what decides on layers, 0 without gravity.
     """
 
     shape: Any
     filled: Any
     edge: Any
     radius: float
+    column: Any
 
 
 class Column(NamedTuple):
     """What decides on the layers of a column, beside its temperature.
 
     ``weight`` of a molecule [force], ``bath`` the temperature of the warmest wall [energy], ``wanted`` how many layers
-    are asked for, ``thinnest`` of them [length]; ``radius`` of all molecules [length]; ``x, y, z`` the edges of cells
-    [length], of which the last are written.
+    are asked for, ``thinnest`` of them [length]; ``count`` and ``old`` are scratch, for as many layers and one more.
     """
 
     weight: float
     bath: float
     wanted: int
     thinnest: float
-    radius: float
-    x: Any
-    y: Any
-    z: Any
+    count: Any
+    old: Any
 
 
 @kernel
@@ -81,12 +91,41 @@ def write_cells(gas, layout, modes):
 
 
 @kernel
-def write_column(kT, gas, column):
-    """Write the layers for molecules of a temperature [energy]; tell whether there are as many as before."""
-    box, z = gas.box, column.z
-    if write_layers(box.length_z, column.wanted, max(kT, column.bath) / column.weight, column.thinnest, z) < z.size - 1:
-        return False
-    write_slots(z, column.radius, False, False, False, gas.cells.boundary[0, 2])
+def write_column(kT, gas, layout):
+    """Write the layers for molecules of a temperature [energy]; tell whether there is memory for them."""
+    column = layout.column
+    scale_height = max(kT, column.bath) / column.weight
+    found = write_layers(gas.box.length_z, column.wanted, scale_height, column.thinnest, layout.edge[2])
+    if found > 0:
+        _describe_column(found, gas, layout)
+    return found > 0
+
+
+@kernel
+def follow_molecules(gas, layout, modes):
+    """Write layers that follow the molecules as they are now; tell whether that was possible, and worth it."""
+    column, layers = layout.column, layout.shape[NUMBER + 2]
+    column.count[:] = 0
+    for i in range(gas.molecules.size):
+        if not (modes.phases and math.isinf(gas.molecules[i].clock)):
+            column.count[slots_of(i, gas)[2] >> 1] += 1
+    for k in range(layers + 1):
+        column.old[k] = layout.edge[2, k]
+    counted, old = column.count[:layers], column.old[: layers + 1]
+    found = write_even_layers(counted, old, column.wanted, column.thinnest, layout.edge[2])
+    if found > 0:
+        _describe_column(found, gas, layout)
+    return found > 0
+
+
+@kernel
+def _describe_column(layers, gas, layout):
+    """Write the tables of a column of so many layers."""
+    box, edge, shape = gas.box, layout.edge, layout.shape
+    edges = (edge[0, : shape[NUMBER] + 1], edge[1, : shape[NUMBER + 1] + 1], edge[2, : layers + 1])
+    gas.cells.boundary[0, 2] = math.inf
+    shape[PLACES] = FEWEST
+    shape[NUMBER + 2] = layers
+    shape[LAST + 2] = write_slots(edges[2], layout.radius, False, False, False, gas.cells.boundary[0, 2])
     periodic = (box.inverse_x != 0.0, box.inverse_y != 0.0, False)
-    describe_cells((column.x, column.y, z), periodic, box.planar, gas.cells.copies)
-    return True
+    describe_cells(edges, periodic, box.planar, gas.cells.copies)

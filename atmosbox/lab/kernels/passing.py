@@ -19,7 +19,7 @@ from atmosbox.engine.exact.epoch import next_time, set_back, whole_epochs
 from atmosbox.engine.exact.exact import Status, specialise
 from atmosbox.engine.exact.rows import MORE, MOST, row_stride
 from atmosbox.engine.exact.turning import Ascent
-from atmosbox.lab.kernels.laying_out import LAST, NUMBER, PLACES, choose_cells, write_cells
+from atmosbox.lab.kernels.laying_out import LAST, NUMBER, PLACES, choose_cells, follow_molecules, write_cells
 from atmosbox.lab.kernels.moist_passing import moist_passing
 
 __all__ = ["Book", "Passed", "ascent_of", "epochs", "passing"]
@@ -203,6 +203,29 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
             """Tell that a box without a piston keeps its cells."""
             return False
 
+    if modes.gravity and modes.rows and not (modes.piston or modes.mixed):
+
+        @kernel
+        def closer(gas, layout):
+            """Choose layers that follow the molecules, for rows are too short; tell whether that was possible."""
+            return layout.column.wanted > 1 and follow_molecules(gas, layout, modes) and _fits(gas, layout, modes)
+
+    else:
+
+        @kernel
+        def closer(gas, layout):
+            """Tell that only a column has other layers."""
+            return False
+
+    @kernel
+    def entered(gas, now, layout, as_they_are):
+        """Enter all molecules into cells as they are, or closer ones; tell whether there are any that will do."""
+        while as_they_are or closer(gas, layout):
+            if placed(gas, now, layout):
+                return True
+            as_they_are = False
+        return False
+
     @kernel
     def resolve(gas, ascent, book, layout, stop, most):
         """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
@@ -216,11 +239,10 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 return Passed.DONE, done
             if status == _BUSY:
                 return Passed.BUSY, done
-            if status == _EPOCH_OVER:
-                if not refilled(gas, gas.calendar.time[1], layout):
-                    return Passed.FULL, done
-            elif status == _ROW_FULL:
-                if not (_longer_rows(gas, layout, modes) and refilled(gas, book.now[0], layout)):
+            if status in (_EPOCH_OVER, _ROW_FULL):
+                begins = gas.calendar.time[1] if status == _EPOCH_OVER else book.now[0]
+                longer = status == _EPOCH_OVER or _longer_rows(gas, layout, modes)
+                if not ((longer and refilled(gas, begins, layout)) or entered(gas, book.now[0], layout, False)):
                     return Passed.FULL, done
             elif status == _STALLED:
                 return Passed.STALLED, done
@@ -239,6 +261,6 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
     @kernel
     def place(gas, book, layout):
         """Place all molecules at the start; tell how that went."""
-        return Passed.DONE.value if placed(gas, book.now[0], layout) else Passed.FULL.value
+        return Passed.DONE.value if entered(gas, book.now[0], layout, True) else Passed.FULL.value
 
     return epochs(resolve, modes), place

@@ -50,8 +50,8 @@ class Start(NamedTuple):
     ``spheres`` and ``bins`` are what the engine pushes apart; ``factor : (molecule,)`` is sqrt(kT / m) [length/time],
     ``mass`` and ``degrees : (molecule,)`` mass and rotational degrees of freedom. ``spread : (2,)`` how far molecules
     are from each other [length], and the fastest speed of the walls and of the fall between two of them [length/time].
-    ``at`` is what the law of the piston asks of the gas, the energy apart, and ``column`` what decides
-    on its layers: 0 each in a box without. ``velocity : (molecule, axis)``, ``key : (3 molecule,)``, ``rank`` and
+    ``at`` is what the law of the piston asks of the gas, the energy apart, and ``layout`` are the
+    cells of a column: 0 each in a box without. ``velocity : (molecule, axis)``, ``key : (3 molecule,)``, ``rank`` and
     ``other : (molecule,)``, ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
     """
 
@@ -76,7 +76,7 @@ class Start(NamedTuple):
     degrees: Any
     spread: Any
     at: Any
-    column: Any
+    layout: Any
     velocity: Any
     key: Any
     rank: Any
@@ -291,7 +291,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
         gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
         if modes.gravity:
             dimensions = 2.0 if begun.planar != 0 else 3.0
-            return write_column(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.column)
+            return write_column(2.0 * kinetic / (dimensions * gas.molecules.size), gas, begun.layout)
         return True
 
     if modes.ascends:
