@@ -188,11 +188,11 @@ def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
     >>> axes = Figure().add_subplot()
     >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, one, none, none, np.nan), THEMES["notes"])
     >>> [round(float(height), 2) for height in axes.get_ylim()]
-    [-0.6, 5.65]
+    [-0.6, 6.0]
     """
     low, high = min(0.0, float(way.height.min())), max(float(way.height.max()), 1e-3)
     room = high - low
-    axes.set(xlim=(0.0, 1.0), ylim=(low - 0.12 * room, high + 0.13 * room))
+    axes.set(xlim=(0.0, 1.0), ylim=(low - 0.12 * room, high + 0.2 * room))
     axes.set_xticks([])
     axes.spines["bottom"].set_visible(False)
     bottom, top = axes.get_ylim()
@@ -281,7 +281,7 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
 
 def _across(way: Ascent) -> NDArray[np.float64]:
     """Return where along the picture the parcel is: straight up in the middle, or from end to end."""
-    return 0.04 + 0.92 * way.time if way.crosses else np.full_like(way.time, _MIDDLE)
+    return 0.055 + 0.89 * way.time if way.crosses else np.full_like(way.time, _MIDDLE)
 
 
 def _base(dataset: xr.Dataset, height: NDArray[np.float64], pressure: NDArray[np.float64]) -> float:
