@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from atmosbox import theory as law
-from atmosbox.engine import Drops, HeatBath, RandomNumbers
+from atmosbox.engine import Drops, HeatBath, RandomNumbers, clear_of_drops
 from atmosbox.errors import SettingError
 from atmosbox.scene import (
     Air,
@@ -49,8 +49,6 @@ from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from atmosbox.engine.core.random import Source
 
 title = "Why clouds need dust"
 FRAMES = 240
@@ -180,7 +178,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     )
     reach = ball * (core + settings.water) ** (1.0 / 3.0) + 0.6
     parcel = engine.make(
-        _clear(engine.scatter((side,) * 3, np.ones(n), rng), np.array(centre), reach, side, rng),
+        clear_of_drops(engine.scatter((side,) * 3, np.ones(n), rng), centre, reach, side, rng),
         gas.velocity,
         length=(side,) * 3,
         walls=(HeatBath(1.0),) * 6,
@@ -200,19 +198,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         settle=SETTLE,
         facts=_facts(settings, growth),
     )
-
-
-def _clear(place: np.ndarray, centre: np.ndarray, reach: np.ndarray, side: float, rng: "Source") -> np.ndarray:
-    """Return places of molecules, those that a drop reaches drawn anew until they overlap nothing."""
-    taken = (np.linalg.norm(place[:, None] - centre[None], axis=2) < reach).any(axis=1)
-    for i in np.flatnonzero(taken):
-        while True:
-            at = 0.5 + (side - 1.0) * rng.random((1, 3))[0]
-            others = np.linalg.norm(np.delete(place, i, axis=0) - at, axis=1)
-            if (others > 1.0).all() and (np.linalg.norm(centre - at, axis=1) > reach).all():
-                break
-        place[i] = at
-    return place
 
 
 def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from atmosbox.engine.dsmc.stirring import Stirring
     from atmosbox.engine.exact.parcelset import ParcelSet
     from atmosbox.engine.liquid.substance import Drops, Liquid, Mist, Pool, Substance
+    from atmosbox.engine.start.clearing import clear_of_drops
     from atmosbox.engine.start.lattice import lattice_positions
     from atmosbox.engine.start.scatter import random_positions
     from atmosbox.engine.start.velocity import equal_speeds, maxwell_velocities, rotational_energies, two_halves
@@ -48,6 +49,7 @@ _HOMES = {
     "dsmc.stirring": "Stirring",
     "exact.parcelset": "ParcelSet",
     "liquid.substance": "Drops Liquid Mist Pool Substance",
+    "start.clearing": "clear_of_drops",
     "start.lattice": "lattice_positions",
     "start.scatter": "random_positions",
     "start.velocity": "equal_speeds maxwell_velocities rotational_energies two_halves",
@@ -86,6 +88,7 @@ __all__ = [
     "Stirring",
     "Substance",
     "Wall",
+    "clear_of_drops",
     "equal_speeds",
     "lattice_positions",
     "maxwell_velocities",

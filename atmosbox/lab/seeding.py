@@ -32,8 +32,9 @@ def without_molecules(box: Bench) -> Bench:
     gas = box.gas
     molecules = aligned_records(gas.molecules.size, MOLECULE)
     molecules[:] = gas.molecules
+    gas_alone = slice(box.setup.parcel.number)  # behind it stand the molecules of the liquid, and drops
     for name in _PLACES:
-        molecules[name] = 0.0
+        molecules[name][gas_alone] = 0.0
     blank: dict[str, Any] = {"molecules": molecules, "tallies": gas.tallies._replace(random=np.zeros(1, np.uint64))}
     if box.modes.rotation:
         blank["kinds"] = gas.kinds._replace(rotational_energy=np.zeros_like(gas.kinds.rotational_energy))

@@ -17,13 +17,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from atmosbox.engine import RandomNumbers, equal_speeds, maxwell_velocities, rotational_energies
+from atmosbox.engine import RandomNumbers, clear_of_drops, equal_speeds, maxwell_velocities, rotational_energies
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
 from atmosbox.engine.start.overlap import _bins, _Spheres
 from atmosbox.lab.kernels.pairwise import DEPTH
-from atmosbox.lab.kernels.starting import ALONG_X, AS_PLACED, SHUFFLED, STEP, Start, can_start
+from atmosbox.lab.kernels.starting import ALONG_X, AS_PLACED, SHUFFLED, STEP, Cleared, Start, can_start
 from atmosbox.scene import moisture
 from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.setup import Setup
@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 
 _GAP = 1e-6
 _WORD = 1 << 64
-_DRAWING = (maxwell_velocities, equal_speeds, rotational_energies)
+_DRAWING = (maxwell_velocities, equal_speeds, rotational_energies, clear_of_drops)
 _PLACING = {"length", "diameter", "periodic", "planar", "top", "scale_height"}
 """What a scene may say of the places of its molecules."""
 
@@ -47,6 +47,7 @@ class Watched:
     placed: list[tuple[dict[str, Any], Array, int, int]] = field(default_factory=list)
     moved: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
     turned: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
+    cleared: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
     made: list[tuple[Array, Array, Array]] = field(default_factory=list)
 
 
@@ -70,7 +71,7 @@ def watched(prepared: Prepared) -> Iterator[Watched]:
             told.apply_defaults()
             before = _count(told.arguments["rng"], seed)
             made = function(*given, **named)
-            kept = seen.turned if function is rotational_energies else seen.moved
+            kept = {rotational_energies: seen.turned, clear_of_drops: seen.cleared}.get(function, seen.moved)
             kept.append((name, dict(told.arguments), made.copy(), before))
             return made
 
@@ -124,7 +125,7 @@ def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
         return None
     if parcel._modes.gravity and parcel._modes.mixed:
         return None
-    numbered = _numbered(placed, position, after, seed)
+    numbered = _numbered(placed, position, after, seed) if not seen.cleared else _as_cleared(seen, position)
     rotates = _rotating(seen, spin) if parcel._rotates else {}
     if numbered is None or rotates is None:
         return None
@@ -137,7 +138,7 @@ def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
         if (mass != parcel.mass).any():
             return None
         twice = (2.0 if parcel.planar else 3.0) * float(kT.sum())
-    return _start(parcel, told["diameter"], told.get("top"))._replace(
+    return _start(parcel, told["diameter"], told.get("top"), _cleared(parcel, seen))._replace(
         place=before,
         order=after,
         motion=motion,
@@ -180,15 +181,23 @@ def _numbered(placed: Array, position: Array, after: int, seed: int) -> int | No
     return next((which for which, order in orders.items() if np.array_equal(placed[order], position)), None)
 
 
+def _as_cleared(seen: Watched, position: Array) -> int | None:
+    """Tell how molecules are numbered that have made room for drops, once, and after all else was drawn."""
+    _, told, made, first = seen.cleared[0]
+    _, placed, _, after = seen.placed[0]
+    last = len(seen.cleared) == 1 and first == after >= max(each[-1] for each in (*seen.moved, *seen.turned))
+    return AS_PLACED if last and (told["position"] == placed).all() and (made == position).all() else None
+
+
 def no_start(setup: Setup) -> Start | None:
     """Return what stands for the start where a box has the seed of its page alone; None where no module asks for it."""
     parcel: Any = setup.parcel
     if not can_start(parcel._modes):
         return None
-    return _start(parcel, np.array(parcel.diameter))
+    return _start(parcel, np.array(parcel.diameter), None, _cleared(parcel, Watched()))
 
 
-def _start(parcel: Any, diameter: Array, top: float | None = None) -> Start:
+def _start(parcel: Any, diameter: Array, top: float | None, cleared: Any) -> Start:
     """Return a start with all that the box decides, its cells apart, for molecules that are placed below ``top``."""
     n, planar = parcel.number, bool(parcel.planar)
     radius = 0.5 * diameter
@@ -207,7 +216,7 @@ def _start(parcel: Any, diameter: Array, top: float | None = None) -> Start:
         _Spheres(np.zeros((n, 3)), radius, low, high, turn, *flags),
         _bins(radius, low, high, turn, _GAP),
         np.zeros(n), np.array(parcel.mass), np.zeros(n), spread, _first_gauges(parcel),
-        0, np.zeros((n, 3)), np.zeros(3 * n), np.zeros(n, np.int64), np.zeros(n, np.int64),
+        0, cleared, np.zeros((n, 3)), np.zeros(3 * n), np.zeros(n, np.int64), np.zeros(n, np.int64),
         np.zeros((DEPTH, 2), np.int64), np.zeros(DEPTH), np.zeros(1, np.uint64),
     )  # fmt: skip
 
@@ -237,3 +246,13 @@ def _first_gauges(parcel: Any) -> Any:
         0.0, parcel.number, parcel.degrees_of_freedom, 2.0 if parcel.planar else 3.0, 0.0, 0.0, parcel.open_density,
         open_height,
     )  # fmt: skip
+
+
+def _cleared(parcel: Any, seen: Watched) -> Any:
+    """Return the drops that molecules make room for, 0 in a box without."""
+    if not parcel._modes.drops:
+        return 0
+    if not seen.cleared:
+        return Cleared(np.zeros((0, 3)), np.zeros(0), 0.0)
+    told = seen.cleared[0][1]
+    return Cleared(np.array(told["centre"], np.float64), np.array(told["reach"], np.float64), float(told["side"]))

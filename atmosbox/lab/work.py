@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from atmosbox.lab.bench import Bench
+from atmosbox.lab.kernels.moist_passing import has_moist_knobs
 from atmosbox.lab.kernels.starting import can_start
 
 __all__ = ["arguments"]
@@ -51,6 +52,8 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
 
 def _knobs(box: Bench) -> dict[str, tuple[Any, ...]]:
     """Return the arguments of what the knobs of a box with liquid call."""
+    if not has_moist_knobs(box.modes):
+        return {}
     gas, book = box.gas, box.book
     found: dict[str, tuple[Any, ...]] = {
         "warm_walls": (gas, book, *box.warmed, 1.0),

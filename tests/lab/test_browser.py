@@ -155,7 +155,7 @@ def state_of(parcel):
 
 ALIKE = ("lifting-sounding", "mountains")
 """These have the module of lifting-moist."""
-FIXED = ("elastic-collisions", "nuclei")
+FIXED = ("elastic-collisions",)
 """These have the seeds that Python has placed their molecules with."""
 
 

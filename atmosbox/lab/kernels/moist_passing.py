@@ -17,7 +17,7 @@ from atmosbox.engine.liquid import drop, moist
 from atmosbox.engine.liquid.moist import MoistAscent
 from atmosbox.engine.liquid.reservoir import Reservoir, cover
 
-__all__ = ["Moisture", "moist_knobs", "moist_passing"]
+__all__ = ["Moisture", "has_moist_knobs", "moist_knobs", "moist_passing"]
 
 
 class Moisture(NamedTuple):
@@ -111,9 +111,16 @@ def _dry(modes: Modes) -> tuple[Callable[..., Any], ...]:
     return advance, wake, wake
 
 
+def has_moist_knobs(modes: Modes) -> bool:
+    """Tell whether knobs change a box with liquid: none does where drops are seen, nor where a cloud rises."""
+    return not modes.drops and (modes.pool or not modes.ascends)
+
+
 @functools.cache
 def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
     """Return the kernels that knobs of a box with liquid call, by name."""
+    if not has_moist_knobs(modes):
+        return {}
     _, draw, wake = moist_passing(modes)
 
     @kernel

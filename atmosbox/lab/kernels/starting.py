@@ -1,7 +1,8 @@
 """Where molecules stand and how fast they are at the start of another seed, in a page.
 
 It draws and places as the functions of `atmosbox.engine.start` do, in the same order and with the same numbers; what
-pushes overlapping molecules apart is the engine's own kernel. `start_recipe` tells how a scene uses these functions.
+pushes overlapping molecules apart, and what clears the places of drops, are the engine's own kernels. `start_recipe`
+tells how a scene uses these functions.
 """
 
 import functools
@@ -17,12 +18,12 @@ from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.rows import LONGEST
-from atmosbox.engine.start import overlap
+from atmosbox.engine.start import clearing, overlap
 from atmosbox.lab.kernels.laying_out import write_column
 from atmosbox.lab.kernels.moist_passing import moist_passing
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
-__all__ = ["ALONG_X", "AS_PLACED", "PATIENCE", "SHUFFLED", "STEP", "Start", "can_start", "starting"]
+__all__ = ["ALONG_X", "AS_PLACED", "PATIENCE", "SHUFFLED", "STEP", "Cleared", "Start", "can_start", "starting"]
 
 AS_PLACED, SHUFFLED, ALONG_X = range(3)
 """How molecules that have been placed are numbered: as they were, in random order, or from left to right."""
@@ -34,7 +35,15 @@ _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
     np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & ((1 << 64) - 1)) for use in (RUN, START)
 )
-_push = kernel(getattr(overlap._push, "py_func", overlap._push))
+_push, _clear = (kernel(getattr(each, "py_func", each)) for each in (overlap._push, clearing.clear))
+
+
+class Cleared(NamedTuple):
+    """The drops that molecules make room for, and the side of the box: see `clear_of_drops`."""
+
+    centre: Any
+    reach: Any
+    side: float
 
 
 class Start(NamedTuple):
@@ -50,9 +59,10 @@ class Start(NamedTuple):
     ``spheres`` and ``bins`` are what the engine pushes apart; ``factor : (molecule,)`` is sqrt(kT / m) [length/time],
     ``mass`` and ``degrees : (molecule,)`` mass and rotational degrees of freedom. ``spread : (2,)`` how far molecules
     are from each other [length], and the fastest speed of the walls and of the fall between two of them [length/time].
-    ``at`` is what the law of the piston asks of the gas, the energy apart, and ``layout`` are the
-    cells of a column: 0 each in a box without. ``velocity : (molecule, axis)``, ``key : (3 molecule,)``, ``rank`` and
-    ``other : (molecule,)``, ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
+    ``at`` is what the law of the piston asks of the gas, the energy apart, ``layout`` are the cells of a column, and
+    ``cleared`` the drops that molecules make room for: 0 each in a box without. ``velocity : (molecule, axis)``,
+    ``key : (3 molecule,)``, ``rank`` and ``other : (molecule,)``, ``waiting``, ``partial`` and ``state : (1,)`` are
+    scratch.
     """
 
     place: int
@@ -77,6 +87,7 @@ class Start(NamedTuple):
     spread: Any
     at: Any
     layout: Any
+    cleared: Any
     velocity: Any
     key: Any
     rank: Any
@@ -87,8 +98,8 @@ class Start(NamedTuple):
 
 
 def can_start(modes: Modes) -> bool:
-    """Tell whether boxes of a set of modes can be begun in the page: there must be no drops that can be seen."""
-    return not modes.drops and (modes.ascends or not modes.piston)
+    """Tell whether boxes of a set of modes can be begun in the page."""
+    return modes.ascends or not modes.piston
 
 
 @kernel
@@ -310,14 +321,15 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
             """Do nothing: no piston rises."""
 
     if modes.phases:
-        _, draw, wake = moist_passing(modes)
+        _, _, wake = moist_passing(modes)
 
         @kernel
         def begin_liquid(gas, ascent, book, begun):
-            """Draw when the liquid does something first, and give the piston its first velocity."""
-            draw(gas, book, max(_fastest(begun), begun.warm))
+            """Give the piston its first velocity, and draw when the liquid does something first."""
             begin_ascent(gas, ascent, book, begun)
-            wake(gas, book, 2.0 * abs(gas.walls.piston[1]))
+            # in a loop, so that it is compiled once: for the molecules, and then anew for a piston that is faster
+            for speed in (max(_fastest(begun), begun.warm), 2.0 * abs(gas.walls.piston[1])):
+                wake(gas, book, speed)
 
     else:
         begin_liquid = begin_ascent
@@ -328,6 +340,9 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
         word = np.uint64(seed)
         if not _place(word, begun):
             return 1
+        if modes.drops > 0:
+            drops = begun.cleared
+            _clear(begun.spheres.x, drops.centre, drops.reach, drops.side, begun.state)
         _number(word, begun)
         _move(word, begun)
         for i in range(begun.rank.size):
