@@ -177,8 +177,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         dissolved=tuple(float(each) for each in particles),
     )
     reach = ball * (core + settings.water) ** (1.0 / 3.0) + 0.6
+    position = engine.scatter((side,) * 3, np.ones(n), rng)
+    if not engine.described:
+        position = clear_of_drops(position, centre, reach, side, rng)
     parcel = engine.make(
-        clear_of_drops(engine.scatter((side,) * 3, np.ones(n), rng), centre, reach, side, rng),
+        position,
         gas.velocity,
         length=(side,) * 3,
         walls=(HeatBath(1.0),) * 6,
