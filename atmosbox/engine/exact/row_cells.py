@@ -220,7 +220,7 @@ def write_even_layers(count, old, wanted, thinnest, edge):
     >>> write_even_layers(np.array([6, 2]), np.array([0.0, 1.0, 2.0]), 4, 0.0, edge)
     4
     >>> edge.round(2).tolist()
-    [0.0, 0.34, 0.69, 1.1, 2.0, 0.0]
+    [0.0, 0.34, 0.69, 1.09, 2.0, 0.0]
     >>> write_even_layers(np.array([5, 4]), np.array([0.0, 1.0, 2.0]), 2, 0.0, edge)
     0
     """
