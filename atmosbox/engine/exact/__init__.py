@@ -4,7 +4,7 @@
 `cells`        which molecules can meet
 `calendar`     what happens next
 `encounter`    what a contact or a wall hit does
-`glance`       sixteen molecules at once: who of them can be met at all
+`glance`       eight molecules at once: who of them can be met at all
 `lanes`        the same in vector instructions
 `rows`         what the rows of cells hold
 `search`       whom a molecule meets next

@@ -1,8 +1,8 @@
-r"""A glance at sixteen members of a row at once: who of them can be met at all.
+r"""A glance at eight members of a row at once: who of them can be met at all.
 
-Most pairs in a cell miss each other, and to find that out is most of the work of a search. The processor takes sixteen
+Most pairs in a cell miss each other, and to find that out is most of the work of a search. The processor takes eight
 single-precision numbers in one or two instructions, so the rows of cells hold copies of trajectories in single
-precision (`rows`), and `glance` tells which of sixteen may be met before a given time. It may name one that is not met.
+precision (`rows`), and `glance` tells which of eight may be met before a given time. It may name one that is not met.
 It never leaves out one that is, and that is all that it decides: whom it names, double precision judges.
 
 **Why none is left out.** Take a pair that shares the cell from now until it meets, after :math:`\tau \le T`, at the
@@ -37,7 +37,7 @@ Nothing of this asks how large sigma is: a law of longer reach has the same slac
 the number of those that are named in vain, as if sigma were longer by W / 16384 and its square by the square of
 W / 128: in a cell some W wide that is always a small share.
 
-A molecule faster than V is entered as "nowhere" (NaN), and so is one that looks for partners; every comparison with it
+The velocity of a molecule faster than V is no number (NaN), be it a copy or one that looks; every comparison with it
 holds. So no molecule outruns the bound, whatever heats it: it is judged in double precision alone until the next epoch.
 Products too small for single precision are smaller than `TINY`, which is granted to all.
 """
@@ -50,8 +50,8 @@ from atmosbox.engine.core.jit import COMPILED, Kernel
 
 __all__ = ["CLOSING", "DISTANCE", "LANES", "PATH", "SLACK", "SPEEDS", "SQUARE", "TINY", "glance"]
 
-LANES = 16
-"""How many members are looked at together."""
+LANES = 8
+"""How many members are looked at together: as many as AVX2 has in a register; elsewhere two or four take their part."""
 PATH = 64.0
 """How far the fastest copy flies in an epoch, in widths W: VH / W above."""
 SLACK = 2.0**-14
@@ -65,14 +65,14 @@ TINY = 1e-30
 
 
 def glance(values, first, mixed, place, velocity, since, slack, within):
-    """Tell which of sixteen copies may be met: see the head of this file.
+    """Tell which of eight copies may be met: see the head of this file.
 
     Parameters
     ----------
     values : (word,)
         The rows, read as float32.
     first
-        Where the sixteen begin: x, y, z, vx, vy, vz and, if ``mixed``, their extents, sixteen each.
+        Where the eight begin: x, y, z, vx, vy, vz and, if ``mixed``, their extents, eight each.
     mixed
         Whether molecules differ in size.
     place, velocity : (axis,)

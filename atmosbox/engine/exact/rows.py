@@ -1,11 +1,11 @@
 """The rows of cells, where they hold copies of trajectories: who stands in which place of which row.
 
 Beside the names of its members the row of a cell holds a copy of the trajectory of each in single precision, relative
-to the centre of the cell and to a common time, the start of the epoch. So all that a `glance` asks about sixteen
-members lies in one piece of memory. The row of a cell is ``stride`` words of four bytes::
+to the centre of the cell and to a common time, the start of the epoch. So all that a `glance` asks about eight members
+lies in one piece of memory. The row of a cell is ``stride`` words of four bytes, whole lines of 64 bytes::
 
     | occupied . . . | names | x | y | z | vx | vy | vz | extent | names | x | ...
-      one line of      16     16  16  16   16   16   16     16
+      half a line of     8     8   8   8   8    8    8      8
       64 bytes       |<---------------- a block --------------->|<-- the next --
 
 The first 64 bits of a row tell which of its places are occupied, at most `MOST`. Extents are there only if molecules
@@ -37,12 +37,12 @@ from atmosbox.engine.exact.encounter import motion_at, size_and_radius, slots_of
 from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, PATH, SLACK, SPEEDS, SQUARE
 
 __all__ = [
-    "FEWEST", "LONGEST", "MORE", "MOST", "START", "STOP", "TOP_SPEED", "copies_of", "describe_cells", "enter", "fill",
-    "first_of_block", "has_place", "leave", "members_of", "name_in", "number_of", "number_of_places", "relative",
-    "row_stride", "start_of", "write_copy",
+    "FEWEST", "LONGEST", "MORE", "MOST", "START", "STOP", "TOP_SPEED", "centre_of", "copies_in_block", "copies_of",
+    "describe_cells", "enter", "fill", "has_place", "leave", "members_of", "name_at", "name_in", "number_of",
+    "number_of_places", "own_place", "path_of", "row_stride", "start_of", "write_copy",
 ]  # fmt: skip
 
-_HEAD = 16
+_HEAD = 8
 FEWEST, MORE, MOST = 32, 16, 64
 """How many places a row has at first, how many it gets more when it is full, and as many as it may have at most.
 
@@ -64,7 +64,7 @@ def row_stride(places, mixed):
     >>> row_stride(16, False), row_stride(32, True)
     (128, 272)
     """
-    return _HEAD + (8 if mixed else 7) * places
+    return -(-(_HEAD + (8 if mixed else 7) * places) // 16) * 16
 
 
 def copies_of(
@@ -177,21 +177,33 @@ def start_of(bit, slots, cells, modes):
 
 
 @kernel
-def _block(place, modes):
-    """Return where in a row the block of a place begins, plus its lane."""
-    return _HEAD + (place >> 4) * (8 * LANES if modes.mixed else 7 * LANES) + (place & (LANES - 1))
+def _length_of_block(modes):
+    """Return how many words a block of a row takes."""
+    return 8 * LANES if modes.mixed else 7 * LANES
 
 
 @kernel
-def first_of_block(start, block, modes):
+def _name_of(place, modes):
+    """Return where in a row the name of the molecule in a place stands."""
+    return _HEAD + place // LANES * _length_of_block(modes) + place % LANES
+
+
+@kernel
+def copies_in_block(start, block, modes):
     """Return where the copies of a block of a row begin."""
-    return start + _HEAD + block * (8 * LANES if modes.mixed else 7 * LANES) + _PLACE
+    return start + _HEAD + block * _length_of_block(modes) + _PLACE
 
 
 @kernel
 def number_of_places(cells, modes):
     """Return how many places a row has."""
-    return (cells.stride - _HEAD) // (8 if modes.mixed else 7)
+    return (cells.stride - _HEAD) // _length_of_block(modes) * LANES
+
+
+@kernel
+def name_at(start, place, cells, modes):
+    """Return the molecule in a place of a row that is occupied."""
+    return np.int64(cells.row[start + _name_of(place, modes)])
 
 
 @kernel
@@ -199,7 +211,7 @@ def name_in(start, place, cells, modes):
     """Return the molecule in a place of a row, -1 if the place is free."""
     if (cells.copies.occupied[start >> 1] >> place) & 1 == 0:
         return -1
-    return np.int64(cells.row[start + _block(place, modes)])
+    return name_at(start, place, cells, modes)
 
 
 @kernel
@@ -212,18 +224,18 @@ def _free_place(start, cells):
 @kernel
 def has_place(start, cells, modes):
     """Tell whether a row has a place left."""
-    return _block(_free_place(start, cells), modes) < cells.stride
+    return _free_place(start, cells) < number_of_places(cells, modes)
 
 
 @kernel
 def enter(i, bit, start, cells, modes):
     """Give molecule i a place in a row, whose copy is nowhere until it is written; tell whether there was none."""
     place = _free_place(start, cells)
-    if _block(place, modes) >= cells.stride:
+    if place >= number_of_places(cells, modes):
         return True
     cells.copies.occupied[start >> 1] |= np.int64(1) << place
     cells.copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE] = place
-    at = start + _block(place, modes)
+    at = start + _name_of(place, modes)
     cells.row[at] = i
     cells.copies.value[at + _PLACE] = np.nan
     return False
@@ -232,32 +244,37 @@ def enter(i, bit, start, cells, modes):
 @kernel
 def leave(i, bit, start, cells):
     """Strike molecule i from a row."""
-    place = np.int64(cells.copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
-    cells.copies.occupied[start >> 1] &= ~(np.int64(1) << place)
+    cells.copies.occupied[start >> 1] &= ~own_place(i, bit, cells.copies)
 
 
 @kernel
-def write_copy(i, bit, start, at, radius, since, gas, modes):
-    """Write the copy of molecule i, which is ``since`` after the start of the epoch where ``at`` says: see `Motion`.
+def path_of(at, since, gas, modes):
+    """Return the trajectory of a molecule that is where ``at`` says ``since`` after the start of the epoch: its copy.
 
-    ``at`` is relative to the centre of the cell.
+    It is a `Motion` at the start of the epoch, in the frame that falls from then; of a molecule faster than copies may
+    be it is no number (NaN).
     """
-    copies = gas.cells.copies
-    place = np.int64(copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
-    first = start + _block(place, modes)
-    value = copies.value
-    vz, fall = at.vz, 0.0
+    top = gas.cells.copies.epoch[TOP_SPEED]
+    vx, vz, fall = at.vx, at.vz, 0.0
     if modes.gravity:
         vz += gas.box.gravity * since
         fall = 0.5 * gas.box.gravity * since * since
-    speed_squared = at.vx * at.vx + at.vy * at.vy + vz * vz
-    x = at.x - at.vx * since
-    value[first + _PLACE] = x if speed_squared <= copies.epoch[TOP_SPEED] * copies.epoch[TOP_SPEED] else math.nan
-    value[first + _PLACE + LANES] = at.y - at.vy * since
-    value[first + _PLACE + 2 * LANES] = at.z + fall - vz * since
-    value[first + _SPEED] = at.vx
-    value[first + _SPEED + LANES] = at.vy
-    value[first + _SPEED + 2 * LANES] = vz
+    vx = vx if vx * vx + at.vy * at.vy + vz * vz <= top * top else math.nan
+    return Motion(at.x - vx * since, at.y - at.vy * since, at.z + fall - vz * since, vx, at.vy, vz)
+
+
+@kernel
+def write_copy(i, bit, start, path, centre, radius, copies, modes):
+    """Write the copy of molecule i, of this `path_of`, into the row of a cell with this `centre_of`."""
+    place = np.int64(copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
+    first = start + _name_of(place, modes)
+    value = copies.value
+    value[first + _PLACE] = path.x - centre[0]
+    value[first + _PLACE + LANES] = path.y - centre[1]
+    value[first + _PLACE + 2 * LANES] = path.z - centre[2]
+    value[first + _SPEED] = path.vx
+    value[first + _SPEED + LANES] = path.vy
+    value[first + _SPEED + 2 * LANES] = path.vz
     if modes.mixed:
         value[first + _EXTENT] = extent(radius)
 
@@ -296,6 +313,7 @@ def fill(now, gas, modes):
         at = motion_at(i, now, gas, modes)
         slots = slots_of(i, gas)
         _, radius = size_and_radius(i, gas, modes)
+        path = path_of(at, 0.0, gas, modes)
         members = members_of(slots)
         while members != 0:
             bit = lowest_bit(members)
@@ -303,17 +321,23 @@ def fill(now, gas, modes):
             start = start_of(bit, slots, cells, modes)
             if enter(i, bit, start, cells, modes):
                 return True
-            write_copy(i, bit, start, relative(at, bit, slots, copies), radius, 0.0, gas, modes)
+            write_copy(i, bit, start, path, centre_of(bit, slots, copies), radius, copies, modes)
     return False
 
 
 @kernel
-def relative(at, bit, slots, copies):
-    """Return a `Motion` relative to the centre of that cell of three slots that has the parity of a bit."""
-    x = at.x - copies.centre[0, number_of(bit, 0, slots)]
-    y = at.y - copies.centre[1, number_of(bit, 1, slots)]
-    z = at.z - copies.centre[2, number_of(bit, 2, slots)]
-    return Motion(x, y, z, at.vx, at.vy, at.vz)
+def centre_of(bit, slots, copies):
+    """Return the centre of that cell of three slots that has the parity of a bit."""
+    x = copies.centre[0, number_of(bit, 0, slots) & POSITIVE]
+    y = copies.centre[1, number_of(bit, 1, slots) & POSITIVE]
+    z = copies.centre[2, number_of(bit, 2, slots) & POSITIVE]
+    return x, y, z
+
+
+@kernel
+def own_place(i, bit, copies):
+    """Return the bit of the place of molecule i in the row of that of its cells which has the parity of ``bit``."""
+    return np.int64(1) << np.int64(copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
 
 
 @kernel

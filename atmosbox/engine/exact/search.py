@@ -17,11 +17,14 @@ from atmosbox.engine.exact.glance import CLOSING, DISTANCE, LANES, SQUARE, glanc
 from atmosbox.engine.exact.rows import (
     START,
     TOP_SPEED,
+    centre_of,
+    copies_in_block,
     enter,
-    first_of_block,
     leave,
     members_of,
-    relative,
+    name_at,
+    own_place,
+    path_of,
     start_of,
     write_copy,
 )
@@ -32,14 +35,24 @@ CONTACT = 6
 """What comes first: 0 to 5 is a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact."""
 
 
-class Seeker(NamedTuple):
-    """A molecule that looks for partners: number, time, its `Motion` then, its radius, the time since the epoch."""
+_OTHERS = (1 << 64 - LANES) - 1
+"""The bits of a word of occupied places that are left when those of a block are shifted out."""
 
-    i: int
+
+class Seeker(NamedTuple):
+    """A molecule that looks for partners.
+
+    The time, its `Motion` then and its radius; for `glance`, how much higher it is in the falling frame [length], and,
+    in single precision, its velocity in that frame, the time since the start of the epoch, and the slack.
+    """
+
     t: float
     at: Motion
     radius: float
-    since: float
+    fall: float
+    velocity: Any
+    since: Any
+    slack: Any
 
 
 class Found(NamedTuple):
@@ -107,60 +120,66 @@ def _image_shift(q, length, inverse):
 
 
 @kernel
-def _soonest_in_row(start, bit, slots, seeker, after, partner, gas, modes):
-    """Return the earlier of the contact known, ``after`` and ``partner``, and the first one with a member of a row."""
-    cells, box = gas.cells, gas.box
-    copies = cells.copies
-    i, t, at, radius, since = seeker
-    layer = slots[2] >> 1
-    here = relative(at, bit, slots, copies)
-    fall, gain = 0.0, 0.0
-    if modes.gravity:
-        fall = 0.5 * box.gravity * since * since
-        gain = box.gravity * since
-    speed_squared = at.vx * at.vx + at.vy * at.vy + (at.vz + gain) * (at.vz + gain)
-    top = copies.epoch[TOP_SPEED]
-    x = np.float32(here.x if speed_squared <= top * top else np.nan)
-    place = x, np.float32(here.y), np.float32(here.z + fall)
-    velocity = np.float32(at.vx), np.float32(at.vy), np.float32(at.vz + gain)
+def _seeker(t, at, radius, since, path, layer, gas, modes):
+    """Return the `Seeker` of a molecule in a layer: where it is at time t, and its `path_of`."""
+    copies = gas.cells.copies
+    fall = 0.5 * gas.box.gravity * since * since if modes.gravity else 0.0
+    velocity = np.float32(path.vx), np.float32(path.vy), np.float32(path.vz)
     distance = extent(radius) if modes.mixed else reach(radius, radius)
     slack = (
         np.float32(distance + copies.slack[layer, DISTANCE]),
         np.float32(copies.slack[layer, SQUARE]),
-        np.float32(copies.slack[layer, CLOSING] * top),
+        np.float32(copies.slack[layer, CLOSING] * copies.epoch[TOP_SPEED]),
     )
-    occupied = copies.occupied[start >> 1]
+    return Seeker(t, at, radius, fall, velocity, np.float32(since), slack)
+
+
+@kernel
+def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
+    """Return the earlier of the contact known, ``after`` and ``partner``, and the first one with a member of a row.
+
+    ``own`` is the bit of the seeker's own place in the row, 0 if it has none.
+    """
+    cells, box = gas.cells, gas.box
+    copies = cells.copies
+    t, at, radius = seeker.t, seeker.at, seeker.radius
+    x, y, z = at.x - centre[0], at.y - centre[1], at.z - centre[2]
+    place = np.float32(x), np.float32(y), np.float32(z + seeker.fall)
+    # who may be met? All blocks are looked at before anyone is judged: the processor then guesses fewer branches wrong
+    occupied = copies.occupied[start >> 1] & ~own
+    within = np.float32(after)
+    named = np.int64(0)
     block = 0
-    while occupied != 0:
-        first = first_of_block(start, block, modes)
-        named = glance(copies.value, first, modes.mixed, place, velocity, np.float32(since), slack, np.float32(after))
-        named &= occupied
-        while named != 0:
-            lane = lowest_bit(named)
-            named &= named - 1
-            j = np.int64(cells.row[first - LANES + lane])
-            if j != i:
-                # double precision judges; the image of a member is the one nearest to the centre of the cell
-                other = motion_at(j, t, gas, modes)
-                rx, ry, rz = at.x - other.x, at.y - other.y, at.z - other.z
-                if modes.periodic:
-                    rx += _image_shift(here.x - rx, box.length_x, box.inverse_x)
-                    ry += _image_shift(here.y - ry, box.length_y, box.inverse_y)
-                    if not (modes.gravity or modes.piston):
-                        rz += _image_shift(here.z - rz, box.length_z, box.inverse_z)
-                other_radius = radius
-                if modes.mixed:
-                    _, other_radius = size_and_radius(j, gas, modes)
-                distance = reach(radius, other_radius)
-                ux, uy, uz = at.vx - other.vx, at.vy - other.vy, at.vz - other.vz
-                discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
-                if discriminant > 0.0:
-                    then = predict(discriminant, b, c)
-                    if then < after and b < 0.0:
-                        after = then
-                        partner = j
-        occupied = (occupied >> LANES) & 0x0000FFFFFFFFFFFF
+    left = occupied
+    while left != 0:
+        first = copies_in_block(start, block, modes)
+        seen = glance(copies.value, first, modes.mixed, place, seeker.velocity, seeker.since, seeker.slack, within)
+        named |= seen << block * LANES
+        left = (left >> LANES) & _OTHERS
         block += 1
+    named &= occupied
+    # double precision judges them; the image of a member is the one nearest to the centre of the cell
+    while named != 0:
+        j = name_at(start, lowest_bit(named), cells, modes)
+        named &= named - 1
+        other = motion_at(j, t, gas, modes)
+        rx, ry, rz = at.x - other.x, at.y - other.y, at.z - other.z
+        if modes.periodic:
+            rx += _image_shift(x - rx, box.length_x, box.inverse_x)
+            ry += _image_shift(y - ry, box.length_y, box.inverse_y)
+            if not (modes.gravity or modes.piston):
+                rz += _image_shift(z - rz, box.length_z, box.inverse_z)
+        other_radius = radius
+        if modes.mixed:
+            _, other_radius = size_and_radius(j, gas, modes)
+        distance = reach(radius, other_radius)
+        ux, uy, uz = at.vx - other.vx, at.vy - other.vy, at.vz - other.vz
+        discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
+        if discriminant > 0.0:
+            then = predict(discriminant, b, c)
+            if then < after and b < 0.0:
+                after = then
+                partner = j
     return after, partner
 
 
@@ -219,18 +238,22 @@ def search(i, t, at, boundary, gas, modes):
     after = event.contact_time - t if crossing else copies.horizon[slots[2] >> 1]
     partner = -1
     full = False
-    seeker = Seeker(i, t, at, radius, t - copies.epoch[START])
+    since = t - copies.epoch[START]
+    path = path_of(at, since, gas, modes)
+    seeker = _seeker(t, at, radius, since, path, slots[2] >> 1, gas, modes)
     moved = crossing or gas.molecules[i].clock == t
     left = new & entered
     while left != 0:
         bit = lowest_bit(left)
         left &= left - 1
         start = start_of(bit, slots, cells, modes)
-        after, partner = _soonest_in_row(start, bit, slots, seeker, after, partner, gas, modes)
+        centre = centre_of(bit, slots, copies)
+        own = np.int64(0) if crossing else own_place(i, bit, copies)
+        after, partner = _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes)
         if crossing:
             full |= enter(i, bit, start, cells, modes)
         if moved and not full:
-            write_copy(i, bit, start, relative(at, bit, slots, copies), radius, seeker.since, gas, modes)
+            write_copy(i, bit, start, path, centre, radius, copies, modes)
     event.slot_x = sx
     event.slot_y = sy
     event.slot_z = sz
