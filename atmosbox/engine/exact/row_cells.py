@@ -69,9 +69,9 @@ def cell_widths(x, y, z, cells, planar):
 
 @kernel(plain=True)
 def widths_for_rows(x, y, z, radius, molecules, planar):
-    """Return the widths of cells that are wanted of molecules of a radius: eight or nine of them to a cell."""
-    dilute = filled_share(x, y, z, radius, molecules, planar) < 0.05
-    return cell_widths(x, y, z, molecules / (9.0 if dilute else 8.0), planar)
+    """Return the widths of cells that are wanted of molecules of a radius: eight to ten of them to a cell."""
+    filled = filled_share(x, y, z, radius, molecules, planar)
+    return cell_widths(x, y, z, molecules / (9.0 if filled < 0.05 else 8.0 if filled < 0.2 else 10.0), planar)
 
 
 @kernel(plain=True)
@@ -209,9 +209,10 @@ def _share_below(z, height, scale_height, shallow, whole):
 def write_even_layers(count, old, wanted, thinnest, edge):
     """Write the edges of layers that hold about equally many of the molecules that are there; return how many.
 
-    ``count`` tells how many there are in each of the layers with the edges ``old``, where they are taken to be spread
-    evenly. As in `write_layers` they are `wanted`, or fewer; 0 if there is no memory for them, or if the fullest layer
-    would be nearly as full as before.
+    ``count : (layer,)`` tells how many there are in each of the layers with the edges ``old : (layer + 1,)`` [length],
+    where they are taken to be spread evenly. As in `write_layers` there are as many as ``wanted``, or fewer, none
+    thinner than ``thinnest`` [length]; 0 if there is no memory for them, or if the fullest layer would be nearly as
+    full as before.
 
     Examples
     --------
