@@ -98,3 +98,4 @@ def pace_in_steps(found: Findings) -> None:
     ]  # fmt: skip
     head = ["engine", "gas in gravity between heat baths", "molecules", "threads", "million molecules moved per second"]
     found.table([*head, "bytes per molecule"], rows)
+    found.number("machine", machine("stepped"))
