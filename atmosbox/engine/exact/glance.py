@@ -59,7 +59,7 @@ SLACK = 2.0**-14
 DISTANCE, SQUARE, CLOSING = range(3)
 """What the slack of a layer is: e [length], m [length^2], and the bound of r.v [length^2/time]."""
 SPEEDS = 1e9
-"""A molecule faster than this [length/time] is nowhere: the squares of products must not overflow."""
+"""No copy is of a molecule faster than this [length/time]: the squares of products must not overflow."""
 TINY = 1e-30
 """A square product [length^4/time^2] far above the smallest of single precision: see the head of this file."""
 

@@ -64,6 +64,7 @@ def row_stride(places, mixed):
     >>> row_stride(16, False), row_stride(32, True)
     (128, 272)
     """
+    # rounded up to whole lines of 16 words
     return -(-(_HEAD + (8 if mixed else 7) * places) // 16) * 16
 
 
@@ -184,7 +185,7 @@ def _length_of_block(modes):
 
 @kernel
 def _name_of(place, modes):
-    """Return where in a row the name of the molecule in a place stands."""
+    """Return at which word of a row the name of the molecule in a place stands."""
     return _HEAD + place // LANES * _length_of_block(modes) + place % LANES
 
 
@@ -229,7 +230,7 @@ def has_place(start, cells, modes):
 
 @kernel
 def enter(i, bit, start, cells, modes):
-    """Give molecule i a place in a row, whose copy is nowhere until it is written; tell whether there was none."""
+    """Give molecule i a place in a row, whose copy is no number (NaN) until it is written; tell if there was none."""
     place = _free_place(start, cells)
     if place >= number_of_places(cells, modes):
         return True
