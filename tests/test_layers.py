@@ -123,8 +123,8 @@ def refusal(importer, name, late):
     home, target = layer_of(importer), name.split(".")
     layer = LAYERS[home]
     if name == "a computed name":
-        lazy = importer[-1] == "__init__" and home in ("scenarios", "engine", "scene")
-        return None if lazy else "only a folder that imports its names when they are used may"
+        lazy = importer[-1] == "__init__" and home in ("scenarios", "engine", "scene", "cli")
+        return None if lazy else "only the __init__ of a folder that imports its own files may"
     if target[0] == "atmosbox":
         thing, allowed = layer_of(target), layer.parts.split()
         if thing == "cli" and home not in ("cli", "__main__"):

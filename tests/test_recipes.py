@@ -54,8 +54,8 @@ print(json.dumps([atmosbox.__file__, run.largest_kinetic_energy.units, bool(((sh
     assert held == ["J", True]
 
 
-def test_a_new_command_is_two_files_and_answers(tmp_path):
-    assert len(follow("A new command", tmp_path)) == 2
+def test_a_new_command_is_one_file_and_answers(tmp_path):
+    assert len(follow("A new command", tmp_path)) == 1
     code = "from atmosbox.cli import main\nsys.argv[1:] = [{!r}]\nmain()"
     assert python(tmp_path, code.format("hello")) == "hello\n"
     assert re.search(r"^ +hello +Greet\.$", python(tmp_path, code.format("--help")), re.MULTILINE)

@@ -1,6 +1,6 @@
 """The command line: it parses and calls, and decides nothing.
 
-Each command is one file: its options on top, below what it does. They share
+Each command is one file: its options on top, below what it does. A new file is a new command. They share
 
 `application`  what all commands belong to
 `option`       the options that several commands have
@@ -17,36 +17,18 @@ terminate.
 """
 
 import atexit
+import importlib
+import pkgutil
 import signal
 import sys
 import warnings
 
 from atmosbox.cli.application import app
 
-# In the order in which ``--help`` lists them.
-from atmosbox.cli import tour, list_scenes, info, run, sweep, tradeoff, plot, view, live, lab  # isort: skip
-from atmosbox.cli import animate, compare, export, sheet, check, prepare  # isort: skip
+__all__ = ["app", "main"]
 
-__all__ = [
-    "animate",
-    "app",
-    "check",
-    "compare",
-    "export",
-    "info",
-    "lab",
-    "list_scenes",
-    "live",
-    "main",
-    "plot",
-    "prepare",
-    "run",
-    "sheet",
-    "sweep",
-    "tour",
-    "tradeoff",
-    "view",
-]
+for _file in pkgutil.iter_modules(__path__):
+    importlib.import_module(f"atmosbox.cli.{_file.name}")
 
 
 def main() -> None:

@@ -15,14 +15,20 @@ __all__ = ["app", "examples", "typed"]
 
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
+# In the order in which the help lists them: what one meets first comes first, and behind them any other by its name.
+_ORDER = "tour list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
 
 
 class _Group(TyperGroup):
-    """A group that remembers what was typed, and whose help shows the summary of each command in full."""
+    """A group that remembers what was typed; its help has the commands in an order, each with its whole summary."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         ctx.meta[_WORDS] = list(args)
         return super().parse_args(ctx, args)
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        order = {name: place for place, name in enumerate(_ORDER.split())}
+        return sorted(self.commands, key=lambda name: (order.get(name, len(order)), name))
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         with formatter.section("Commands"):
