@@ -1,7 +1,7 @@
 """The file of a run that is not finished yet, so that a run that is killed leaves a file that opens.
 
-While a run goes on, a `Checkpoint` keeps what there is so far in ``NAME.part.nc``. Each writing replaces the one
-before as a whole, as `atmosbox.file.netcdf.write` does, and the finished run takes the part's place.
+While a run goes on, a `Checkpoint` writes its frames so far to ``NAME.part.nc``, the part. Each checkpoint replaces the
+one before as a whole, as `atmosbox.file.netcdf.write` does; the finished run replaces the last.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Checkpoint"]
 
-SHARE = 0.02  # of a run's time, which its checkpoints may take
+SHARE = 0.02  # largest share of a run's time that its checkpoints may take
 
 
 class Checkpoint:
-    """The file of a run that is not finished: call it after every frame, it writes now and then.
+    """The file of a run that is not finished: call the checkpoint after every frame, and it writes when it is time to.
 
-    It writes the whole dataset so far to `part`, at most every so many seconds and so seldom that writing
-    takes less than a fiftieth of the run's time. The part of an earlier run that was killed is replaced.
+    It writes the whole dataset so far to `part`, at most once in `every_seconds`, and so seldom that writing is
+    expected to take less than a fiftieth of the run's time. The part of an earlier run that was killed is replaced.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ class Checkpoint:
     force
         Whether the finished run may replace a file.
     clock
-        What tells the time [s].
+        Function that returns the time [s].
 
     Attributes
     ----------
     path, part
-        The file of the finished run, and the one of the run so far.
+        The file of the finished run, and the file of the run so far.
     stale
         Whether an earlier run left a part there, which the first writing will replace.
 
@@ -86,12 +86,12 @@ class Checkpoint:
         self._lock: OutputLock | None = None
 
     def begin(self) -> Checkpoint:
-        """Take the file for this run alone, and remove what a run that was killed has half written.
+        """Lock the file for this run alone, and remove the temporary files that a killed run has left.
 
         Raises
         ------
         FileError
-            If another run writes it.
+            If another run is writing the file.
         """
         if self._lock is None:
             self._lock = OutputLock(self.path)
@@ -101,31 +101,31 @@ class Checkpoint:
 
     @staticmethod
     def load_libraries() -> None:
-        """Import all that a writing needs, which no Ctrl-C may break off: what is half imported stays so."""
+        """Import all libraries that writing needs, before the run: Ctrl-C must not interrupt an import half-way."""
         import xarray as xr
 
         image(xr.Dataset({"x": ("y", [0.0])}, attrs={"atmosbox_parameters": "{}"}))
 
     def release(self) -> None:
-        """Let other runs have the file; the part, if there is one, stays."""
+        """Unlock the file for other runs; the part, if there is one, stays."""
         lock, self._lock = self._lock, None
         if lock is not None:
             lock.release()
 
     def __call__(self, make_dataset: Callable[[], xr.Dataset]) -> bool:
-        """Write the run so far if it is time to, and return whether it was.
+        """Write the run so far if it is time to, and return whether it was written.
 
         Parameters
         ----------
         make_dataset
-            Makes the dataset of the run so far; called only if it is to be written.
+            Function that returns the dataset of the run so far; called only if the dataset is to be written.
 
         Raises
         ------
         DiskFullError
             If the disk is full; what was written before is kept.
         FileError
-            If the file cannot be written any more.
+            If the file can no longer be written.
         """
         now = self._clock()
         if self._lock is not None:
@@ -140,7 +140,7 @@ class Checkpoint:
         return True
 
     def save(self, dataset: xr.Dataset) -> Path:
-        """Write the run so far at once, for instance when it is interrupted, and return where it is."""
+        """Write the run so far at once, for instance when the run is interrupted, and return the path of the part."""
         self.begin()
         write_whole(self.part, image(dataset))
         self._saved = True
@@ -154,7 +154,7 @@ class Checkpoint:
         DiskFullError
             If the disk is full; the part that was written before is kept.
         FileError
-            If a file of that name has appeared meanwhile; the finished run is kept as the part.
+            If a file of that name has appeared during the run; the finished run is kept as the part.
         """
         self.save(dataset)
         if self.path.exists() and not self._force:
@@ -170,7 +170,7 @@ class Checkpoint:
         return self.path
 
     def abandon(self) -> None:
-        """Remove the part that this run has written, when nothing of it is worth keeping."""
+        """Remove the part that this run has written, for a run that is not worth keeping."""
         if self._saved:
             self.part.unlink(missing_ok=True)
         self.release()

@@ -22,7 +22,7 @@ _LABELS = {"wall": ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high"), "a
 
 
 class _Headline(Protocol):
-    """One of the few numbers that a run is about, as a scene states it; None where it states nothing."""
+    """A headline, one of the few main results of a run; None for each part that the scene does not state."""
 
     @property
     def name(self) -> str: ...
@@ -51,20 +51,20 @@ class _Headline(Protocol):
 
 
 def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
-    """Return the variables that hold one headline: its value, error, answer and tolerance.
+    """Return the variables that hold one headline: its value, standard error, closed-form answer and tolerance.
 
     Parameters
     ----------
     headline
-        The headline in SI units. A value of None becomes NaN, another None no variable.
+        The headline in SI units. If the value is None, it becomes NaN; other parts that are None get no variable.
 
     Returns
     -------
     dict
         Variables without dimensions by their names; the attribute ``display_units`` keeps the unit in which
-        a table shows them. Where there is a theory, ``misfit_allowed_by_chance`` and ``misfit_allowed_as_known`` say
-        how far the value may be from it, and ``within_error`` whether it is: yes by chance alone, as stated with what
-        the model is known to be off by, or no.
+        a table shows them. If the headline has a verdict, ``misfit_allowed_by_chance`` and ``misfit_allowed_as_known``
+        say how far the value may be from theory, and ``within_error`` whether it is that near: yes (within chance
+        alone), as stated (within the known error of the model), or no.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
 
 
 def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Return the values in their declared type; refuse those of the state that are not finite."""
+    """Return the values in their declared type; refuse values of the state that are not finite."""
     array = np.asarray(values)
     if array.ndim != len(declared.dims):
         raise ValueError(f"{declared.name} has the shape {array.shape}, but the dimensions {declared.dims}")
@@ -107,7 +107,7 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
 
 
 def _measured(frames: Mapping[str, npt.ArrayLike]) -> dict[str, xr.Variable]:
-    """Return the variables that hold some arrays."""
+    """Return the variables that hold these arrays."""
     held = {}
     for name, values in frames.items():
         declared = variable(name)
@@ -139,20 +139,20 @@ def dataset(
     headlines: Iterable[_Headline] = (),
     time_unit: str = "ns",
 ) -> xr.Dataset:
-    """Put the numbers of a run into one dataset that carries all that CF asks for.
+    """Put the numbers of a run into one dataset with all names and attributes that the CF conventions ask for.
 
     Parameters
     ----------
     frames
         Arrays by the name of their variable, in SI, with the dimensions that `variable` declares.
     coords
-        Arrays by the name of their coordinate: ``elapsed_time`` in `time_unit`, the others in SI, and the
-        bounds of their cells as ``elapsed_time_bnds``, ``height_bnds``, ``speed_bnds``, ``energy_bnds``, shape (n, 2).
-        The labels of six walls and three axes need not be given.
+        Arrays by the name of their coordinate: ``elapsed_time`` in `time_unit`, the others in SI; and the bounds of
+        their cells as ``elapsed_time_bnds``, ``height_bnds``, ``speed_bnds``, ``energy_bnds``, of shape (n, 2).
+        The labels of the six walls and three axes need not be given.
     attrs
         The global attributes.
     headlines
-        The numbers that the run is about.
+        The main results of the run.
     time_unit
         The unit of ``elapsed_time``: s, ns or ps.
 
@@ -166,7 +166,7 @@ def dataset(
     KeyError
         If a name is not declared, or a dimension lacks its coordinate.
     ValueError
-        If a shape is not the declared one, a coordinate does not rise, or a headline bears a variable's name.
+        If a shape is not the declared one, a coordinate does not rise, or a headline has the name of a variable.
     EngineError
         If a value of a ledger variable or a count is not finite.
 
@@ -193,14 +193,14 @@ def dataset(
 
 
 def extended(run: xr.Dataset, frames: Mapping[str, npt.ArrayLike], headlines: Iterable[_Headline] = ()) -> xr.Dataset:
-    """Return a dataset with more variables, such as the answers of theory, and with headlines.
+    """Return a dataset with more variables, such as those that theory predicts, and with headlines.
 
     Parameters
     ----------
     run
-        From `dataset`; it stays as it is.
+        A dataset from `dataset`; it is not changed.
     frames, headlines
-        As `dataset` takes them; a variable of the same name is replaced.
+        As for `dataset`; a variable of the same name is replaced.
 
     Raises
     ------

@@ -1,8 +1,8 @@
-"""How a variable of a file is declared, and what a file says and stores of it.
+"""How a variable of a file is declared: its attributes and how it is stored.
 
-Values are SI throughout. A *ledger* variable is one of the state (energies, counts, positions), so a value
-that is not finite means that the run is broken. Any other may be NaN where there was nothing to measure, as in a
-layer that no molecule visited. The variables themselves stand in :mod:`atmosbox.file.variables`.
+All values are in SI units. A *ledger* variable is part of the state (energies, counts, positions), so a value
+that is not finite means that the run is broken. Any other variable may be NaN where there was nothing to measure, for
+example in a layer that no molecule visited. The variables themselves are listed in :mod:`atmosbox.file.variables`.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import numpy as np
 
 __all__ = ["SUFFIXES", "Variable", "derived"]
 
-CHUNK_FRAMES = 100  # the frames of some molecules that are compressed as one block
-CHUNK_VALUES = 1_000_000  # the most numbers in a block
+CHUNK_FRAMES = 100  # largest number of frames in a block of data that is compressed as one
+CHUNK_VALUES = 1_000_000  # largest number of values in a block
 
 
 @dataclass(frozen=True)
 class Variable:
-    """What a file says about one of its variables.
+    """The declaration of one variable of a file.
 
     Parameters
     ----------
@@ -30,22 +30,22 @@ class Variable:
     units
         Its SI unit as UDUNITS writes it; empty for labels and flags, which have none.
     long_name
-        What it is, in words.
+        What the variable is, in words.
     standard_name
-        Its name in the CF standard name table, if that has one and no other variable has it; none is invented.
+        Its name in the CF standard name table, if the table has one and no other variable here uses it.
     cell_methods
-        How a value stands for its cell, for example ``elapsed_time: mean``.
+        How a value represents its cell, for example ``elapsed_time: mean``.
     dtype
         numpy's code of the type in the file: ``f8``, ``f4``, ``i8``, ``i1``, or ``U`` for labels.
     ledger
-        Whether the variable is of the state of the run, so that all its values must be finite.
+        Whether the variable is part of the state of the run, so that all its values must be finite.
     difference
-        Whether a temperature is a difference of two, and not one on the scale of a thermometer.
+        Whether a temperature is a difference of two temperatures, and not a temperature on the scale.
     axis, positive
-        CF's marks of a vertical coordinate.
+        CF's attributes of a vertical coordinate.
     coordinate
-        Whether it is an auxiliary coordinate: a place, such as the pressure at which the parcel is, along which the
-        others can be drawn.
+        Whether the variable is an auxiliary coordinate, such as the pressure of the parcel: other variables can be
+        drawn against it.
     comment
         What else a reader must know.
     flags
@@ -77,14 +77,14 @@ class Variable:
 
     @property
     def units_metadata(self) -> str | None:
-        """What CF asks of a temperature: whether it is on the scale or a difference, as every lapse rate is."""
+        """The CF attribute of a temperature: whether it is on the scale or a difference, as in every lapse rate."""
         parts = self.units.split()
         if not any(part.startswith("K") and not part[1:].strip("-0123456789") for part in parts):
             return None
         return f"temperature: {'difference' if self.difference or len(parts) > 1 else 'on_scale'}"
 
     def attributes(self) -> dict[str, Any]:
-        """Return the netCDF attributes, without those that are not set."""
+        """Return the netCDF attributes that are set."""
         known = {
             "standard_name": self.standard_name,
             "long_name": self.long_name,
@@ -100,7 +100,7 @@ class Variable:
         return {name: value for name, value in known.items() if value is not None}
 
     def encoding(self, shape: tuple[int, ...]) -> dict[str, Any]:
-        """Return how xarray shall store an array of this shape: its fill value, chunks and compression."""
+        """Return how xarray stores an array of this shape: its type, fill value, chunks and compression."""
         if self.dtype == "U":
             return {"dtype": "S1", "_FillValue": None}
         missing = np.array(np.nan, self.dtype)[()] if self.dtype[0] == "f" and not self.ledger else None
@@ -115,11 +115,11 @@ class Variable:
 
 
 SUFFIXES = ("_se", "_count", "_theory", "_tolerance")
-"""What the name of a variable ends in that is derived from another."""
+"""Endings of the names of variables that are derived from another variable."""
 
 
 def derived(parent: Variable, suffix: str) -> Variable:
-    """Return the companion of a variable: its standard error, count, answer or tolerance.
+    """Return the declaration of a variable's standard error, number of samples, closed-form answer or tolerance.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def derived(parent: Variable, suffix: str) -> Variable:
     Returns
     -------
     Variable
-        The declaration of the companion.
+        The declaration of the derived variable.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The heaps of an HDF5 file, in which its texts lie, and a damage of them that the library HDF5 does not survive."""
+"""The heaps of an HDF5 file, which hold its texts, and a kind of damage to them on which the HDF5 library hangs."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _HEAD = 16
 
 
 def has_endless_heap(path: str | os.PathLike[str]) -> bool:
-    """Return whether a file has a heap in which an object begins where it ends.
+    """Return whether a file has a heap with a piece of free space of length zero.
 
-    HDF5 (seen in 2.2) goes from object to object by their lengths, and never comes to the end of such a heap: no signal
-    handler of Python is heard until then. A whole file has none.
+    HDF5 (seen in 2.2) steps through a heap by the lengths of its pieces, so it never comes to the end of such a heap,
+    and Python cannot handle a signal such as Ctrl-C meanwhile. An undamaged file has no such heap.
 
     Parameters
     ----------
     path
-        A file that is not empty, of whatever kind.
+        A file of any kind that is not empty.
 
     References
     ----------
@@ -41,7 +41,7 @@ def has_endless_heap(path: str | os.PathLike[str]) -> bool:
         while heap >= 0:
             size = int.from_bytes(content[heap + 8 : heap + _HEAD], "little")
             place, end = heap + _HEAD, min(heap + size, len(content))
-            # an object has a number, a length and, in steps of eight bytes, what it holds; number 0 is what is free
+            # an object has a number, a length and its content, padded to eight bytes; number 0 marks free space
             while place + _HEAD <= end:
                 number = int.from_bytes(content[place : place + 2], "little")
                 length = int.from_bytes(content[place + 8 : place + _HEAD], "little")

@@ -1,7 +1,7 @@
-"""The journal of a sweep, or of a tradeoff: one line for each run that is complete, on the disk before the next begins.
+"""The journal of a sweep or a tradeoff: one line for each complete run, on the disk before the next run begins.
 
-It stands beside the file that all runs make together as ``NAME.part.jsonl``. The first line says what was asked for; a
-line that a crash has cut short is no line, and its run is computed again.
+It is the file ``NAME.part.jsonl`` beside the output file of all runs together. Its first line holds the request. A
+line that a crash has cut short is ignored, and its run is computed again.
 """
 
 from __future__ import annotations
@@ -21,42 +21,42 @@ __all__ = ["Journal"]
 FORMAT = 1
 
 Record = dict[str, Any]
-"""What is kept of a run, as JSON can hold it, with its ``point`` and ``member``."""
+"""The results of a run that are kept, as JSON can hold them, with its ``point`` and ``member``."""
 
 
 class Journal:
-    """What is saved of a sweep that is not finished; open it, append, and remove it when the file is written.
+    """The saved runs of a sweep that is not finished; open it, append runs, and remove it when the sweep is written.
 
     Parameters
     ----------
     path
         The file that the finished sweep will have.
     request
-        All that decides what the sweep computes, by what a sentence calls it.
+        All that decides what the sweep computes: values by the names that messages use for them.
     history
         The line that this command adds to the history of the file.
     force
         Whether a journal of another request is thrown away.
     kind
-        What all runs are together: a sweep, or a tradeoff.
+        What all runs make together: a sweep, or a tradeoff.
 
     Attributes
     ----------
     path
-        The journal.
+        The file of the journal.
     records
-        What is saved, by point and member.
+        The saved records by point and member.
     history
-        The lines of all commands that took part.
+        The history lines of all commands that took part.
 
     Raises
     ------
     FileError
-        If there is a journal of another request, or another program writes it right now.
+        If there is a journal of another request, or another program is writing the journal.
 
     Examples
     --------
-    A sweep that is killed goes on with what it has saved:
+    A sweep that was killed continues from the runs it has saved:
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -96,12 +96,12 @@ class Journal:
 
     @staticmethod
     def place(path: Path) -> Path:
-        """Return where the journal of a file stands."""
+        """Return the path of the journal of a file."""
         return part_path(path.with_suffix(".jsonl"))
 
     @property
     def _head(self) -> str:
-        """What the first line is known by."""
+        """The key in the first line that marks a journal of this kind."""
         return f"atmosbox_{self._kind}"
 
     def __enter__(self) -> Journal:
@@ -113,14 +113,14 @@ class Journal:
         self._file.close()
 
     def append(self, record: Record) -> None:
-        """Save a run; when this returns, it is on the disk.
+        """Save a run; when this returns, the run is on the disk.
 
         Raises
         ------
         DiskFullError
             If the disk is full; what was saved before is kept.
         FileError
-            If it cannot be written for another reason.
+            If the journal cannot be written for another reason.
         """
         self._write(record)
         self.records[record["point"], record["member"]] = record
@@ -131,8 +131,8 @@ class Journal:
         self.path.unlink(missing_ok=True)
 
     def _lock(self) -> None:
-        """Refuse a journal that another program writes."""
-        with contextlib.suppress(ImportError):  # Windows itself lets no two programs write
+        """Refuse a journal that another program is writing."""
+        with contextlib.suppress(ImportError):  # Windows has no fcntl
             import fcntl
 
             try:
@@ -146,7 +146,7 @@ class Journal:
                 return
 
     def _recalled(self, request: Mapping[str, Any], force: bool) -> bool:
-        """Read what is saved; False if there is nothing, or what there is may be thrown away."""
+        """Read the saved records; return False if there are none, or if the journal may be thrown away."""
         content = self._file.read()
         lines = content.split(b"\n")
         whole = len(content) - len(lines.pop())
@@ -183,7 +183,7 @@ class Journal:
         self._file.truncate()
 
     def _write(self, entry: Mapping[str, Any]) -> None:
-        """Write a line down to the disk, or leave no trace of it."""
+        """Write a line to the disk; if that fails, remove the part that was written."""
         size = self._file.tell()
         left = f"{json.dumps(entry)}\n".encode()
         try:
@@ -203,7 +203,7 @@ def _plain(request: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _difference(saved: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
-    """Return in what the first of all differing parts differ, empty where two requests are one."""
+    """Return in words how the first differing part differs; empty if the two requests are equal."""
     for name in dict.fromkeys([*saved, *asked]):
         if saved.get(name) != asked.get(name):
             if name.startswith("content of"):

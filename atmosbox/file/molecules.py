@@ -1,4 +1,4 @@
-"""The molecules of a saved run and their box, in SI units, frame by frame: what a page, a film and a picture draw."""
+"""The molecules of a saved run and their box, in SI units, frame by frame, for pages, films and pictures."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ class Molecules(NamedTuple):
     discs : bool
         Whether it is a planar scene, whose molecules are called discs.
     time : (frame,)
-        In the unit of the file.
+        Times of the frames, in the unit of the file.
     position, speed : (frame, molecule, axis) and (frame, molecule)
-        Of the molecules [m, m s-1], NaN in the liquid.
+        Positions and speeds of the molecules [m, m s-1], NaN for a molecule in the liquid.
     mass, diameter : (molecule,)
-        Of each [kg, m].
+        Mass and diameter of each molecule [kg, m].
     water : (molecule,) or None
-        Which are water.
+        Which molecules are water; None if there is no water.
     side : (frame, axis)
         Sides of the box [m].
     walls : (wall,)
-        What each wall is: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
+        Kind of each wall: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
         x high, y low, y high, z low, z high.
     wall_temperature : (frame, wall)
         Temperatures of the walls [K], NaN for a wall that has none.
@@ -50,9 +50,9 @@ class Molecules(NamedTuple):
     liquid, rained : (frame,) or None
         Numbers of molecules in the liquid, and of those that have rained out.
     neighbours : (frame, molecule) or None
-        Where molecules attract each other, in how many wells each is.
+        If molecules attract each other: the number of molecules in whose wells each molecule is.
     right : (molecule,) or None
-        Which belong to the second of two gases.
+        Which molecules belong to the second of two gases.
     """
 
     discs: bool
@@ -75,7 +75,7 @@ class Molecules(NamedTuple):
 
     @property
     def step(self) -> float:
-        """The median distance that a molecule moves between two frames, in largest sides of the box."""
+        """The median distance that a molecule moves between two frames, in units of the longest side of the box."""
         if len(self.position) < 2:
             return 1.0
         moved = np.linalg.norm(np.diff(self.position, axis=0), axis=2)
@@ -91,7 +91,7 @@ def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
     dataset : xarray.Dataset
         A run with ``--save-molecules``, or one of a planar scene, which always keeps its discs.
     otherwise : str
-        What else a user can do if there are no molecules, for the end of the refusal.
+        What else a user can do if there are no molecules: the end of the error message.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
     Raises
     ------
     FileError
-        If the run holds no molecules or no frame, or does not say in which box they are.
+        If the run holds no molecules or no frame, or does not describe the box around the molecules.
 
     Examples
     --------
@@ -135,7 +135,7 @@ def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
 
 
 def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return what the instrument of ``--save-molecules`` has kept."""
+    """Return the fields of `Molecules` from what ``--save-molecules`` has saved."""
     position = _values(dataset, "molecule_position", "molecule axis")
     names = dataset["wall_law"].attrs["flag_meanings"].split()
     neighbours = _values(dataset, "molecule_neighbour_count", "molecule")
@@ -163,7 +163,7 @@ def _molecules(dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _falls(dataset: xr.Dataset) -> bool:
-    """Tell whether molecules have energy in gravity, and not only in each other's wells."""
+    """Return whether molecules have potential energy of gravity, and not only of each other's wells."""
     if "potential_energy" not in dataset:
         return False
     potential = dataset["potential_energy"].values
@@ -174,9 +174,10 @@ def _falls(dataset: xr.Dataset) -> bool:
 
 
 def _about_the_drop(position: Any, neighbours: Any, side: Any, periodic: list[bool]) -> Any:
-    """Return positions moved along periodic axes, all frames alike, so that the drop of the last one is in the middle.
+    """Return positions shifted along periodic axes, so that the drop of the last frame is in the middle of the box.
 
-    The middle of what is periodic is a mean on a circle; those with many neighbours are the drop.
+    All frames are shifted by the same share of the box. The middle of the drop along a periodic axis is a circular
+    mean, weighted with molecules that have more than four neighbours.
     """
     weight = np.maximum(neighbours.astype(np.float64) - 4.0, 0.0) ** 2
     moved = position.astype(np.float64)
@@ -188,7 +189,7 @@ def _about_the_drop(position: Any, neighbours: Any, side: Any, periodic: list[bo
 
 
 def _discs(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the discs that a planar scene keeps."""
+    """Return the fields of `Molecules` from the discs of a planar scene."""
     position = _values(dataset, "disc_position", "molecule axis")
     return {
         "position": position,
@@ -204,7 +205,7 @@ def _discs(dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _values(dataset: xr.Dataset, name: str, dimensions: str, otherwise: Any = None) -> Any:
-    """Return a variable with time as its first dimension, in the order of the others."""
+    """Return a variable with time as its first dimension and then `dimensions`; `otherwise` if there is none."""
     if name not in dataset:
         return otherwise
     return dataset[name].transpose("elapsed_time", *dimensions.split()).values

@@ -1,4 +1,4 @@
-"""Datasets to netCDF files and back.
+"""Write datasets to netCDF files, and read them.
 
 A file is built in memory, and written whole or not at all as `atmosbox.file.output_path` does.
 """
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 __all__ = ["STATE", "image", "read", "read_state", "write"]
 
 STATE = "atmosbox_state"
-"""The variable that holds the state of a run which can go on; no reader of its numbers needs it."""
+"""The variable that holds the state from which a run can continue; readers of results do not need it."""
 
 
 def image(dataset: xr.Dataset) -> memoryview:
     """Return the bytes of the netCDF file of a dataset.
 
-    The file is built in memory, because HDF5 reports a full disk as a lack of permission or as nothing in
-    particular, and keeps hold of the broken file.
+    The file is built in memory, because HDF5 reports a full disk as a lack of permission or as an unspecific
+    error, and keeps the broken file open.
     """
     import netCDF4
     from xarray.backends import NetCDF4DataStore
@@ -42,7 +42,7 @@ def image(dataset: xr.Dataset) -> memoryview:
     whole = dataset.copy()
     for variable in whole.variables.values():
         variable.encoding.setdefault("_FillValue", None)
-    # not Dataset.to_netcdf, which first imports Dask, where that is installed, to ask for its scheduler
+    # not Dataset.to_netcdf, which first imports Dask, if that is installed, to look for its scheduler
     file = netCDF4.Dataset("run.nc", "w", format="NETCDF4", memory=1)
     try:
         whole.dump_to_store(NetCDF4DataStore(file))  # type: ignore[no-untyped-call]
@@ -52,12 +52,13 @@ def image(dataset: xr.Dataset) -> memoryview:
 
 
 def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
-    """Write a dataset to a netCDF file that is there whole or not at all.
+    """Write a dataset to a netCDF file, completely or not at all.
 
     Parameters
     ----------
     dataset
-        What `atmosbox.file.dataset.dataset` made, with the attributes of `atmosbox.file.provenance.global_attributes`.
+        A dataset of `atmosbox.file.dataset.dataset`, with the attributes of
+        `atmosbox.file.provenance.global_attributes`.
     path
         The file.
     force
@@ -92,7 +93,7 @@ def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
 
 
 def read(path: AnyPath) -> xr.Dataset:
-    """Return the run in a file, in memory; the file is closed again.
+    """Load the run in a file into memory; the file is closed again.
 
     Parameters
     ----------
@@ -107,8 +108,8 @@ def read(path: AnyPath) -> xr.Dataset:
     Raises
     ------
     FileError
-        If the file is missing, empty, damaged, no netCDF, of another program or of a later atmosbox, or does not fit
-        into memory.
+        If the file is missing, empty, damaged, not netCDF, of another program, in another format than this atmosbox
+        reads, or does not fit into memory.
 
     Examples
     --------
@@ -155,7 +156,7 @@ def read(path: AnyPath) -> xr.Dataset:
 
 
 def read_state(path: AnyPath) -> NDArray[np.uint8] | None:
-    """Return the bytes of the state that a file which `read` has read holds; None if it holds none.
+    """Return the bytes of the saved state in a file that `read` can read; None if the file holds no state.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One writer for one file: a lock beside it, which says whose it is, and whether its owner is still there."""
+"""One writer for one file: a lock file beside it names the process that writes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from atmosbox.file.provenance import moment
 __all__ = ["OutputLock", "alive", "host"]
 
 ABANDONED = 3600.0
-"""Seconds after which the lock of another computer, which nothing here can ask after, counts as left behind."""
+"""Seconds after which the lock of a process on another computer, which cannot be checked, counts as abandoned."""
 
 
 def host() -> str:
@@ -39,7 +39,7 @@ def alive(pid: int) -> bool:
     (True, False)
     """
     if os.name == "nt":
-        return True  # there, to ask after a process could end it; age alone tells
+        return True  # on Windows, os.kill could end the process, so only the age of the lock tells
     try:
         os.kill(pid, 0)
     except PermissionError:
@@ -52,8 +52,8 @@ def alive(pid: int) -> bool:
 class OutputLock:
     """The right to write one file: ``.NAME.lock`` beside it, with the process and the computer of its owner.
 
-    The system holds the lock for as long as the process lives, so that one that was killed leaves a file but no lock.
-    Where the file system knows no locks, or the owner is another computer, what the file says decides.
+    The system holds the lock as long as the process lives, so a process that was killed leaves a file but no lock.
+    If the file system has no locks, or the owner is on another computer, the content of the file decides.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class OutputLock:
     Raises
     ------
     FileError
-        If another process writes it, or the lock cannot be made.
+        If another process is writing the file, or the lock cannot be made.
 
     Examples
     --------
@@ -85,7 +85,7 @@ class OutputLock:
             self._file = self._taken(path)
 
     def _taken(self, path: Path) -> int | None:
-        """Open the lock and make it ours; None if it went while it was looked at."""
+        """Open the lock file and take the lock; None if the lock file was removed meanwhile."""
         try:
             opened = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
@@ -112,18 +112,18 @@ class OutputLock:
                 os.close(opened)
 
     def _lives(self, owner: dict[str, Any], held: bool, opened: int) -> bool:
-        """Return whether an owner that is named in the file may still be there."""
+        """Return whether the owner that the file names may still be running."""
         if owner["host"] != host():
             return time.time() - os.fstat(opened).st_mtime < ABANDONED
         return not held and owner["pid"] != os.getpid() and alive(owner["pid"])
 
     def keep(self) -> None:
-        """Tell other computers that the owner still lives."""
+        """Renew the time of the lock file, so that other computers know that the owner still runs."""
         with contextlib.suppress(OSError):
             os.utime(self.path)
 
     def release(self) -> None:
-        """Give the right back, and leave nothing behind."""
+        """Release the lock and remove its file."""
         opened, self._file = self._file, None
         if opened is not None:
             with contextlib.suppress(OSError):
@@ -133,7 +133,7 @@ class OutputLock:
 
 
 def _hold(opened: int) -> bool | None:
-    """Ask the system for a lock; None where it knows none."""
+    """Try to lock the file; False if another process has the lock, None if the system has no locks."""
     try:
         import fcntl
     except ImportError:
@@ -148,7 +148,7 @@ def _hold(opened: int) -> bool | None:
 
 
 def _owner(content: bytes) -> dict[str, Any]:
-    """Return who is named in a lock, nothing if it was never filled in."""
+    """Return the owner that a lock file names; empty if the file names none."""
     try:
         said = json.loads(content)
         return {"pid": int(said["pid"]), "host": str(said["host"]), "since": str(said["since"])}

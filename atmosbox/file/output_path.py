@@ -1,4 +1,4 @@
-"""The one way to write a file: a path that cannot be written is refused early, and no file is half written."""
+"""The one way to write a file: a path that cannot be written is refused early, and a file is written whole or not."""
 
 from __future__ import annotations
 
@@ -38,27 +38,27 @@ LONGEST_NAME = 200  # bytes; file systems allow 255, and the temporary name is l
 SMALLEST_FILE = 65536  # bytes; netCDF builds a file in blocks of this size
 _NUMBERS = itertools.count()
 LEFT_OVER = (
-    3600.0  # seconds after which a temporary file of another computer can only be that of a program that was killed
+    3600.0  # seconds after which a temporary file of another computer is taken as left by a program that was killed
 )
 
 
 def named(
     path: AnyPath, format: str | None, formats: tuple[str, ...], *, force: bool, what: str = "figure"
 ) -> tuple[Path, str]:
-    """Return the output path and the format, where either may be given; refuse a path that cannot be written.
+    """Return the output path and the format, from the suffix or from `format`; refuse a path that cannot be written.
 
     Parameters
     ----------
     path : str or path-like
-        The file; its suffix says the format, and is added if only `format` does.
+        The file; its suffix says the format, or is added if only `format` says it.
     format : str or None
-        The format, where the suffix does not say it.
+        The format, if the suffix does not say it.
     formats : tuple of str
-        The formats that there are.
+        The known formats.
     force : bool
         Whether a file of that name may be replaced.
     what : str
-        What is in the file: its name in an example.
+        What is in the file: used as the file name in an example.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def named(
     FileError
         If the file cannot be written, for one of the reasons of `check_writable`.
     SettingError
-        If the format is unknown.
+        If the format is unknown, is not given, or differs from the suffix.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def named(
 
 
 def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc") -> Path:
-    """Refuse an output path that cannot be written, before a run is spent on it; write nothing.
+    """Refuse an output path that cannot be written, before the run begins; write nothing.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
     force
         Whether it may replace a file.
     example
-        A name for such a file, where none was given.
+        File name that the error message suggests.
 
     Returns
     -------
@@ -152,7 +152,7 @@ def check_writable(path: AnyPath, force: bool = False, *, example: str = "run.nc
 
 
 def part_path(path: AnyPath) -> Path:
-    """Return where a run that is to be written to a file keeps what it has so far.
+    """Return the path of the part: the file of a run that is not finished.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def part_path(path: AnyPath) -> Path:
 
 
 def whole_path(part: AnyPath) -> Path:
-    """Return the file of the finished run, of which a part is there.
+    """Return the path of the finished run's file, given the path of the part.
 
     Examples
     --------
@@ -176,14 +176,14 @@ def whole_path(part: AnyPath) -> Path:
 
 
 def clear(path: Path, *, everything: bool = False) -> None:
-    """Remove the temporary files of a file that programs have left which were killed.
+    """Remove the temporary files of a file that were left by programs which were killed.
 
     Parameters
     ----------
     path
         The file.
     everything
-        Whether all of them are such, because no other program can be writing the file.
+        Whether to remove all temporary files, because no other program can be writing the file.
 
     Examples
     --------
@@ -203,26 +203,26 @@ def clear(path: Path, *, everything: bool = False) -> None:
 
 
 def temporary_path(path: Path) -> Path:
-    """Return where a file is written before it is whole: the name says which process of which computer does so."""
+    """Return the path of the temporary file, whose name identifies the computer and the process that writes."""
     return path.with_name(f".{path.name}.{_here()}.{os.getpid()}.{next(_NUMBERS)}.tmp")
 
 
 def _here() -> str:
-    """Return this computer in eight letters."""
+    """Return eight hexadecimal digits that identify this computer."""
     return f"{zlib.crc32(host().encode()):08x}"
 
 
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Yield a temporary path beside a file; what is written there replaces the file when the block ends well.
+    """Yield a temporary path beside a file; the temporary file replaces the file when the block ends without error.
 
     If the block fails or is interrupted, the temporary file is removed and the file stays as it was. A program that
-    is killed leaves the temporary file, which the next writing of the same file removes.
+    is killed leaves the temporary file, and the next program that writes the same file removes it.
 
     Parameters
     ----------
     path
-        The file, which `check_writable` has let through.
+        The file, which `check_writable` has checked.
 
     Raises
     ------
@@ -244,7 +244,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     temporary = temporary_path(path)
     try:
         yield temporary
-        # without this, a file can be under its name and yet empty after a power failure
+        # without this, the file can have its final name and yet be empty after a power failure
         with temporary.open("r+b") as stream:
             os.fsync(stream.fileno())
         os.replace(temporary, path)
@@ -262,9 +262,9 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
     Parameters
     ----------
     path
-        The file, which `check_writable` or `named` has let through.
+        The file, which `check_writable` or `named` has checked.
     content
-        What is in it.
+        Its content.
 
     Raises
     ------
@@ -286,7 +286,7 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
 
 
 def write_failure(error: OSError, path: Path) -> FileError:
-    """Return the refusal that a failure to write a file amounts to.
+    """Return the error to raise for a failure to write a file.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a file says of where it comes from, and how the run can be repeated from that."""
+"""Provenance: the attributes of a file that say how it was made, and from which the run can be repeated."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FORMAT = 1
 
 
 def moment() -> str:
-    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that the same run can have the same content.
+    """Return the time in UTC; SOURCE_DATE_EPOCH sets it, so that a repeated run can give an identical file.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def moment() -> str:
 
 
 def history_line(command: str | Sequence[str]) -> str:
-    """Return the line that a step adds to a file's history: the time in UTC and the command.
+    """Return the line that a command adds to a file's history: the time in UTC and the command.
 
     Parameters
     ----------
@@ -84,22 +84,22 @@ def global_attributes(
     panels: str = "[]",
     status: str = "complete",
 ) -> dict[str, Any]:
-    """Return what a file says about itself: what it is, where it comes from and how to repeat it.
+    """Return the global attributes of a file: what it contains, how it was made and how to repeat the run.
 
     Parameters
     ----------
     parameters
-        Everything that makes the run, as JSON can hold it: ``scene``, ``settings``, ``engine``, ``version``.
+        Everything that determines the run, as JSON can hold it: ``scene``, ``settings``, ``engine``, ``version``.
     title
-        What the file holds, in a line.
+        What the file contains, in one line.
     command
-        The command that made it, as typed, or its words.
+        The command that made the file, as typed, or its words.
     comment
         The assumptions of the scene.
     references
-        What the scene is built on.
+        The literature that the scene uses.
     panels
-        The scene's figure, as JSON.
+        The panels of the scene's figure, as JSON.
     status
         ``complete``, ``partial`` or ``interrupted``.
 
@@ -143,7 +143,7 @@ def global_attributes(
 
 
 def parameters(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return everything that made a run, from which it can be repeated.
+    """Return everything that determines a run, so that it can be repeated.
 
     Parameters
     ----------
@@ -153,12 +153,12 @@ def parameters(dataset: xr.Dataset) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``scene``, ``settings``, ``engine`` and ``version``, as `global_attributes` was given them.
+        ``scene``, ``settings``, ``engine`` and ``version``, as they were given to `global_attributes`.
 
     Raises
     ------
     FileError
-        If the dataset does not say, or says something that is not JSON.
+        If the dataset has no such attribute, or the attribute is not a JSON object.
 
     Examples
     --------

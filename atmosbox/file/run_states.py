@@ -1,4 +1,4 @@
-"""The states of many runs that are under way, one file for each in a folder beside the file that all make together."""
+"""The states of many runs that are not finished: one file for each, in a folder beside the output file of all."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ __all__ = ["RunStates", "StateCheckpoint"]
 
 
 class StateCheckpoint(Checkpoint):
-    """The state of one run among many, which never becomes a file of its own.
+    """The state of one run among many; the finished run gets no file of its own.
 
-    What comes of the run is kept elsewhere, so that a disk which is full costs the state and not the run. Whoever has
-    kept what came of it removes the state, see `RunStates`.
+    The result of the run is kept elsewhere, so on a full disk only the state is lost and the run goes on. The
+    caller removes the state after it has kept the result, see `RunStates`.
 
     Parameters
     ----------
     path
-        What the file of the run would be; its state stands in ``NAME.part.nc``.
+        The path that a file of the run would have; its state is in ``NAME.part.nc``.
     """
 
     def __init__(self, path: AnyPath) -> None:
         super().__init__(path, force=True)
 
     def save(self, dataset: xr.Dataset) -> Path:
-        """Write the run so far, if there is room for it."""
+        """Write the run so far; if that fails, for example on a full disk, go on without."""
         with contextlib.suppress(FileError):
             super().save(dataset)
         return self.part
 
     def finish(self, dataset: xr.Dataset) -> Path:
-        """Let the state be what it is."""
+        """Leave the state as it is, and unlock it."""
         self.release()
         return self.part
 
@@ -51,14 +51,15 @@ class RunStates:
     Parameters
     ----------
     path
-        The file; None where nothing is kept.
+        The output file; None if no states are kept.
     complete
-        The runs whose outcome is kept, by point and member: a process that was killed may have left their states.
+        Point and member of the runs whose results are kept: their states, which a killed process may have left, are
+        removed.
 
     Attributes
     ----------
     begun
-        How many runs have left a state, when this was made.
+        Number of runs that had left a state when this object was made.
 
     Examples
     --------
@@ -81,15 +82,15 @@ class RunStates:
         self.begun = 0 if self._folder is None else len(list(self._folder.glob("*.part.nc")))
 
     def place(self, point: int, member: int) -> str | None:
-        """Return what the file of a run would be, beside which its state stands; None where none is kept."""
+        """Return the path that `StateCheckpoint` takes for a run; None if no states are kept."""
         if self._folder is None:
             return None
-        with contextlib.suppress(OSError):  # where none can be made, the runs keep no states
+        with contextlib.suppress(OSError):  # if the folder cannot be made, the runs keep no states
             self._folder.mkdir(exist_ok=True)
         return os.fspath(self._folder / f"{point}-{member}.nc")
 
     def remove(self, point: int, member: int) -> None:
-        """Remove the state of a run whose outcome is kept, with all that a process which was killed has left of it."""
+        """Remove the state of a run whose result is kept, with its lock and temporary files."""
         if self._folder is None or not self._folder.exists():
             return
         path = self._folder / f"{point}-{member}.nc"
@@ -100,12 +101,12 @@ class RunStates:
         clear(part, everything=True)
 
     def close(self, *, everything: bool = False) -> None:
-        """Remove the folder, unless there is a state in it that is still needed.
+        """Remove the folder, unless a state in it is still needed.
 
         Parameters
         ----------
         everything
-            Whether none is, because all runs are complete.
+            Whether no state is needed any more, because all runs are complete.
         """
         if self._folder is None or (any(self._folder.glob("*.part.nc")) and not everything):
             return

@@ -1,4 +1,4 @@
-"""A saved run as tables for a spreadsheet: one CSV file for each thing that its numbers run along."""
+"""A saved run as tables for a spreadsheet: one CSV file for each dimension of its variables."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _LABELLED = ("wall", "axis")
 
 
 def tables(dataset: xr.Dataset) -> dict[str, bytes]:
-    """Return the tables of a run as CSV, by what their rows are.
+    """Return the tables of a run as CSV, one for each dimension.
 
-    A column is headed by the name of the variable and its unit, in SI units but for the time; what a file has for each
-    wall or axis becomes a column for each. Molecules are left out: a trajectory is no table.
+    A column is headed by the name of the variable and its unit; all units but that of time are SI. A variable with a
+    value for each wall or axis becomes one column for each. Molecules are left out: a trajectory is not a table.
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ def tables(dataset: xr.Dataset) -> dict[str, bytes]:
     Returns
     -------
     dict
-        ``headlines``, the numbers that the run is about, and a table for each dimension, such as ``elapsed_time``,
-        ``height`` or ``speed``.
+        The tables by name: ``headlines``, the main results of the run, and one for each dimension, such as
+        ``elapsed_time``, ``height`` or ``speed``.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def tables(dataset: xr.Dataset) -> dict[str, bytes]:
 
 
 def _headed(values: xr.DataArray, which: str) -> tuple[str, list[object]]:
-    """Return a column: its head and its cells, empty where there was nothing to measure."""
+    """Return a column: its heading and its cells, empty for values that are not finite."""
     unit = str(values.attrs.get("units", ""))
     shown = f" [{unit}]" if unit not in ("", "1") else ""
     cells = [
@@ -74,7 +74,7 @@ def _headed(values: xr.DataArray, which: str) -> tuple[str, list[object]]:
 
 
 def _headlines(dataset: xr.Dataset) -> bytes:
-    """Return the headline numbers, one a row."""
+    """Return the table of headlines, one in each row."""
     rows: list[tuple[object, ...]] = [("name", "what it is", "value", "standard error", "theory", "unit")]
     for name in json.loads(dataset.attrs["atmosbox_headlines"]):
         if name in dataset and dataset[name].ndim == 0:

@@ -1,7 +1,7 @@
 """The molecules of a saved run for programs that show trajectories: OVITO and VMD.
 
-Extended XYZ is text that both read, and ASE. GSD is a packed file of the HOOMD family. Both are written in the units of
-small things where the box is small, in SI where it is a column of kilometres.
+Extended XYZ is a text format that OVITO, VMD and ASE read; GSD is the binary format of HOOMD. Both are written in
+angstrom, picoseconds and dalton if the box is small, and in metres and kilograms if it is larger than a micrometre.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ __all__ = ["extended_xyz", "gsd_file"]
 
 _SMALL = 1e-6  # m; a box that is larger is written in metres
 _DALTON = 1.66053906892e-27  # kg, CODATA 2022
-_NAMES = ("N", "O")  # for a molecule of air and one of water: readers allow only names of elements
+_NAMES = ("N", "O")  # for a molecule of air and of water: readers allow only names of elements
 
 
 class _Units(NamedTuple):
-    """What the numbers of a trajectory are multiplied by, and what its units are then called."""
+    """The factors from SI units to the units of the trajectory, and the names of those units."""
 
     length: float
     velocity: float
@@ -44,7 +44,7 @@ def _units(held: Molecules) -> _Units:
 
 
 def _velocity(dataset: xr.Dataset, held: Molecules) -> NDArray[Any]:
-    """Return the velocities, or refuse a run that was saved with speeds alone."""
+    """Return the velocities; refuse a run that was saved with speeds only."""
     name = "disc_velocity" if held.discs else "molecule_velocity"
     if name not in dataset:
         source = dataset.encoding.get("source") or "The run"
@@ -62,9 +62,9 @@ def _time(dataset: xr.Dataset) -> NDArray[Any]:
 def extended_xyz(dataset: xr.Dataset) -> bytes:
     """Return the molecules of a run as extended XYZ, one frame after the other.
 
-    A molecule of air is called N and one of water O, since readers allow only names of elements. One that is in the
-    liquid at a time is left out of that frame; its ``id`` stays its own. The second line of each frame has the box as
-    ``Lattice``, the ``Time`` in picoseconds, which sides are periodic, and the units.
+    A molecule of air is called N and one of water O, since readers allow only names of elements. A molecule that is in
+    the liquid is left out of the frame; when it returns, it has the same ``id``. The second line of each frame has the
+    box as ``Lattice``, the ``Time`` in picoseconds, which sides are periodic, and the units.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def extended_xyz(dataset: xr.Dataset) -> bytes:
 def gsd_file(dataset: xr.Dataset) -> bytes:
     """Return the molecules of a run as a GSD file of the schema ``hoomd``.
 
-    Its box has its middle at the origin, as that schema wants it. A molecule that is in the liquid is left out of the
+    The middle of the box is at the origin, as the schema demands. A molecule that is in the liquid is left out of the
     frame.
 
     Parameters

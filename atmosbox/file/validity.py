@@ -1,4 +1,4 @@
-"""What is asked of a file before its numbers are loaded: that they fit into memory, and are what they must be."""
+"""Checks of a file before its numbers are loaded: that they fit into memory, and are of the declared kind."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["check_valid", "free_memory"]
 
 DENSEST = 1100
-"""How many bytes of numbers a byte of a file can hold: deflate packs at most 1032 into one."""
+"""Largest number of bytes in memory for one byte of a file: deflate packs at most 1032 into one."""
 
 SMALL = 50_000_000
-"""Bytes that any computer can hold, so that nothing is asked about them."""
+"""Size in bytes up to which a file is not checked, because it fits into the memory of any computer."""
 
 _JSON: dict[str, type | tuple[type, ...]] = {
     "atmosbox_parameters": dict,
@@ -32,7 +32,7 @@ _JSON: dict[str, type | tuple[type, ...]] = {
 
 
 def free_memory() -> float:
-    """Return the bytes of memory that are free, infinite where the system does not say.
+    """Return the number of bytes of free memory; infinite if the system does not say.
 
     Examples
     --------
@@ -56,13 +56,13 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     file
         The open file.
     source
-        Where it is.
+        Its path.
 
     Raises
     ------
     FileError
-        If it declares more numbers than it can hold or than fit into memory; if an attribute that holds JSON holds
-        something else; or if a variable of atmosbox holds text where numbers belong, or nothing at all.
+        If it declares more numbers than it can hold or than fit into memory; if an attribute that should hold JSON
+        holds something else; or if a variable of atmosbox holds text where numbers belong, or nothing at all.
     """
     declared = float(sum(_bytes(each) for each in file.variables.values()))
     if declared > max(SMALL, DENSEST * source.stat().st_size):
@@ -83,7 +83,7 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
 
 
 def _bytes(held: netCDF4.Variable[Any]) -> float:
-    """Return how much memory a variable takes; of a text, the least."""
+    """Return the memory that a variable takes [bytes]; for texts of unknown length a lower bound."""
     size = np.dtype(held.dtype).itemsize if isinstance(held.dtype, np.dtype) else 8
     return float(math.prod(held.shape)) * size
 
@@ -96,7 +96,7 @@ def _parsed(text: object) -> Any:
 
 
 def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> None:
-    """Refuse a variable that is declared, and is not what its declaration says."""
+    """Refuse a declared variable that does not agree with its declaration."""
     numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
     try:
         declared = variable(name)

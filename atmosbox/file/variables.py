@@ -1,13 +1,13 @@
 """Every variable that a run can put into its file, declared once.
 
-A variable's name, dimensions, unit and CF names stand in `VARIABLES` and nowhere else. A name that ends in
+A variable's name, dimensions, unit and CF names are in `VARIABLES` and nowhere else. A name that ends in
 ``_se``, ``_count``, ``_theory`` or ``_tolerance`` needs no entry of its own: `variable` derives it from its
-parent, as the standard error, the number of samples, the closed-form answer or the deviation allowed. What a
-declaration says is told in :mod:`atmosbox.file.declaration`.
+parent, as the standard error, the number of samples, the closed-form answer or the allowed deviation. The parts of a
+declaration are explained in :mod:`atmosbox.file.declaration`.
 
-A CF standard name stands at one variable only, so that a program that asks a file for ``air_temperature`` by that
-name finds one answer: what was measured in the whole box. What is of a part of it, of its environment or of
-theory says so in its ``long_name`` alone.
+Only one variable has a given CF standard name, so that a program that looks for ``air_temperature`` by that name
+finds one variable: the value measured in the whole box. Variables of a part of the box, of its environment or of
+theory have only a ``long_name`` that says so.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _SUM = "Summed since the start of the run."
 
 
 def _declared(dims: tuple[str, ...], *rows: tuple[str, ...], **common: Any) -> dict[str, Variable]:
-    """Return variables of the same dimensions, each row a name, a unit, the words and a CF standard name."""
+    """Return variables of the same dimensions; each row is a name, a unit, a long name and maybe a CF standard name."""
     return {
         name: Variable(name, dims, unit, words, standard[0] if standard else None, **common)
         for name, unit, words, *standard in rows
@@ -246,7 +246,7 @@ VARIABLES: dict[str, Variable] = {
         cell_methods=_POINT, ledger=True,
     ),
     **_declared(
-        _TIME,  # unknown where walls were warmed by hand
+        _TIME,  # NaN where walls were warmed by hand
         ("momentum_residual", "1", "momentum that neither the discs have nor the walls took, as a share"),
         cell_methods=_POINT,
     ),
@@ -261,7 +261,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(_MOLECULE, ("disc_mass", "kg", "mass of the disc"), ledger=True),
     **_declared(_MOLECULE, ("disc_diameter", "m", "diameter of the disc"), ledger=True),
-    # Molecules, on request; one that condensed has no position
+    # Molecules, on request; a molecule that condensed has no position
     **_declared(_PATH, ("molecule_position", "m", "position of the molecule"),
                 ("molecule_velocity", "m s-1", "velocity of the molecule"), cell_methods=_POINT, dtype="f4"),
     **_declared(_PATH[:2], ("molecule_speed", "m s-1", "speed of the molecule"),
@@ -272,7 +272,7 @@ VARIABLES: dict[str, Variable] = {
                 dtype="i1", flags=("dry_air", "water")),
     **_declared(_MOLECULE, ("molecule_mass", "kg", "mass of the molecule"), ledger=True),
     **_declared(_MOLECULE, ("molecule_diameter", "m", "diameter with which the molecule collides"), ledger=True),
-    # The box around them, and the drops in it; those that have merged into others have no position
+    # The box around the molecules, and the drops in it; a drop that has merged into another has no position
     **_declared((*_TIME, "axis"), ("box_side", "m", "length of the box at this time"),
                 cell_methods=_POINT, ledger=True),
     **_declared(("wall",), ("wall_law", "", "what the wall does to a molecule that hits it"),
@@ -285,7 +285,7 @@ VARIABLES: dict[str, Variable] = {
 
 
 def variable(name: str) -> Variable:
-    """Return what is declared under a name, also under that of a standard error or of an answer.
+    """Return the declaration of a variable, or of its standard error, number of samples, theory or tolerance.
 
     Parameters
     ----------
