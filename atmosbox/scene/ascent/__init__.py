@@ -1,4 +1,4 @@
-"""A parcel of air that rises under its piston: what the scenes of lifted air have in common."""
+"""A parcel of air that rises under its piston: the common parts of the scenes with lifted air."""
 
 from atmosbox.scene.ascent.convection import convection_headlines
 from atmosbox.scene.ascent.display import atmosphere_panel, lifted_headlines, lifted_panels, lifted_theory

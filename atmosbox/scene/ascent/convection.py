@@ -1,9 +1,9 @@
-"""CAPE, CIN, LFC and EL of a parcel that has been measured, with their errors.
+"""CAPE, CIN, LFC and EL of a measured parcel, with their errors.
 
-What counts is how dense the parcel is: its temperature, its vapour and its liquid, all as measured. Its difference from
-the environment is smoothed, for the levels are where curves cross, and noise crosses often. How far chance takes the
-numbers, and what the smoothing does to them, is told by parcels drawn at random about theory's, which are measured in
-the same way.
+Buoyancy depends on the density of the parcel: on its temperature, its vapour and its liquid, all as measured. The
+difference from the environment is smoothed, because the levels are where two curves cross, and noisy curves cross
+often. The standard error of the numbers, and the effect of the smoothing on them, come from parcels drawn at random
+about theory's parcel and measured in the same way.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ __all__ = ["convection_headlines"]
 
 Array = NDArray[np.float64]
 _NEAR = 4
-"""How many frames on either side smooth one of them."""
+"""Number of frames on either side that smooth one frame."""
 _DRAWN = 1000
 _SEED = 20
 _LEAST = 0.9
-"""Which share of the parcels drawn must have a level for it to be reported."""
+"""Share of the parcels drawn that must have a level for it to be reported."""
 
 
 def convection_headlines(
@@ -50,11 +50,11 @@ def convection_headlines(
     dataset
         A whole ascent.
     ascent
-        The way.
+        The ascent that was planned.
     frames, samples
-        How many frames the way has, and how many samples each.
+        Number of frames of the whole ascent, and number of samples in each.
     around
-        Virtual temperature [K] of the environment at pressures [Pa].
+        Function that gives the virtual temperature [K] of the environment at pressures [Pa].
     ideal
         Whether molecules have no volume.
     """
@@ -78,7 +78,7 @@ def convection_headlines(
     at_frames = np.interp(-np.log(outside), -np.log(route), dense)
     noise = temperature_covariance(cloud, samples, density=True) * np.outer(at_frames, at_frames)
     known = finite_size.drift(ascent, ideal=ideal)
-    # a molecule that is clustered warms the parcel, and is missing among the light ones
+    # a molecule in a cluster warms the parcel, and is missing among the light molecules of the gas
     light = known.clusters * (1.0 - 3.5 / known.latent)
     off = np.interp(-np.log(outside), -np.log(route), known.rate + known.flow + light - known.colder)
     root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
@@ -97,7 +97,7 @@ def convection_headlines(
         if value is None or answer is None or len(others) < _LEAST * _DRAWN:
             continue
         shift, scatter = float(np.mean(others)) - answer, float(np.std(others, ddof=1))
-        if unit == "J kg-1" and abs(shift) > 0.5 * abs(answer) > 0.0:  # clusters leave no energy to be measured
+        if unit == "J kg-1" and abs(shift) > 0.5 * abs(answer) > 0.0:  # the clusters hide the energy
             continue
         reason = "the ascent is not infinitely slow, vapour must find liquid, and curves are smoothed before they cross"
         found.append(Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label))
@@ -105,11 +105,11 @@ def convection_headlines(
 
 
 def _smoother(number: int) -> Array:
-    """Return the matrix that lays a parabola through each value and its neighbours.
+    """Return the matrix that fits a parabola to each value and its neighbours, and takes the parabola's value.
 
     Examples
     --------
-    A parabola stays as it is:
+    A parabola is not changed:
 
     >>> curve = np.arange(20.0) ** 2
     >>> bool(np.allclose(_smoother(20) @ curve, curve))

@@ -1,4 +1,4 @@
-"""What a lifted parcel of moist air shows: its curves, its numbers, its figure."""
+"""The output of a lifted parcel of moist air: its theory curves, its headline numbers, its panels."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ __all__ = ["atmosphere_panel", "lifted_headlines", "lifted_panels", "lifted_theo
 
 Array = NDArray[np.float64]
 BLOCK = 7
-"""Over how many frames a temperature is averaged that is compared with the adiabat."""
+"""Number of frames over which a temperature is averaged before it is compared with the adiabat."""
 LEAST, CLUSTERED = 0.1, 3.0
-"""From which share of all water on liquid counts as a cloud, and how many times its scatter that is at least."""
+"""Least liquid that counts as a cloud: as a share of all water, and in standard deviations of the liquid."""
 _DRAWN = 1000
 _SEED = 21
 REASON = "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid"
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
-    """Return temperature against pressure with its kink, vapour and liquid, beside the parcel on its way.
+    """Return the panels of temperature against pressure, of vapour and liquid, and of the parcel on its ascent.
 
     Parameters
     ----------
     ascent
-        The way up.
+        The ascent.
     adiabat
-        What the adiabat is called.
+        Label of the adiabat.
     """
     cloud = ascent.base > 1.02 * ascent.top_pressure
     base = (Line("adiabat_temperature", "cloud_base_theory", "condensation level", "reference"),) if cloud else ()
@@ -85,23 +85,23 @@ def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
 
 
 def atmosphere_panel(title: str, headlines: tuple[str, ...] = (), way: str = "") -> Panel:
-    """Return the picture of the parcel on its way, with ground, cloud and rain.
+    """Return the picture of the parcel on its ascent, with ground, cloud and rain.
 
     Parameters
     ----------
     title
-        What is seen.
+        Title of the panel.
     headlines
-        Names of the numbers that go with it.
+        Names of the numbers that are shown with it.
     way
-        What is written along the way across; nothing for a parcel that rises where it is.
+        Label of the horizontal axis; empty for a parcel that rises vertically.
     """
     line = Line("elapsed_time", "parcel_height", "parcel")
     return Panel("atmosphere", title, (line,), x_label=way, y_label="height", y_unit="km", headlines=headlines)
 
 
 def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict[str, Array]:
-    """Return what theory expects on the way: water, humidity, and the adiabat if nothing condensed."""
+    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed."""
     pressure = dataset.parcel_pressure.values
     if ascent.rains:
         shares, along = ascent.planned
@@ -109,7 +109,7 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
         planned = np.exp(np.interp(middle, shares, np.log(ascent.route)))
         if np.allclose(planned, dataset.environment_pressure.values, rtol=1e-6):
             path = law.ParcelPath(*(np.interp(middle, shares, each) for each in along))
-        else:  # its altitude was set by a knob
+        else:  # a knob has set its altitude
             path = ascent.path(pressure, middle)
     else:
         path = ascent.path(pressure, pressure)
@@ -127,16 +127,16 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
 def lifted_headlines(
     dataset: xr.Dataset, ascent: MoistAscent, frames: int, samples: int, *, ideal: bool
 ) -> tuple[Headline, ...]:
-    """Return the cloud base, and the temperature at some levels of a way up.
+    """Return the cloud base, and the temperature at some pressure levels of an ascent.
 
     Parameters
     ----------
     dataset
-        What was measured.
+        The measured ascent.
     ascent
-        The way.
+        The ascent that was planned.
     frames, samples
-        How many frames the whole way has, and how many samples each.
+        Number of frames of the whole ascent, and number of samples in each.
     ideal
         Whether molecules have no volume.
     """
@@ -150,7 +150,7 @@ def lifted_headlines(
     known = finite_size.drift(ascent, ideal=ideal)
     found = _cloud_base(dataset, ascent, cloud, samples, known)
     for level in ascent.levels:
-        if outside.min() > 1.02 * level:  # the parcel's own pressure scatters
+        if outside.min() > 1.02 * level:  # the parcel's own pressure fluctuates
             continue
         first = int(np.argmin(np.abs(np.log(outside / level)))) - BLOCK // 2
         first = min(max(first, 0), len(pressure) - BLOCK)
@@ -175,7 +175,7 @@ def lifted_headlines(
 def _cloud_base(
     dataset: xr.Dataset, ascent: MoistAscent, cloud: Cloud, samples: int, known: finite_size.Drift
 ) -> list[Headline]:
-    """Return where the liquid of the parcel begins, and by how much that level is known to be off."""
+    """Return the pressure at which the liquid of the parcel begins, and the known error of that level."""
     vapour, liquid = (dataset[name].values for name in ("humidity_mixing_ratio", "cloud_liquid_water_mixing_ratio"))
     condensed = liquid + (dataset.rain_mixing_ratio.values if "rain_mixing_ratio" in dataset else 0.0)
     if not ascent.base > ascent.top_pressure:
@@ -187,7 +187,7 @@ def _cloud_base(
     base = law.measured_cloud_base(dataset.parcel_pressure.values, vapour, condensed, noise, least)
     if base is None:
         return []
-    # the same measurement of theory's parcel, with what is known to be off: in frames as wide
+    # measure theory's parcel in the same way, with its known errors, in frames of the same width
     path = ascent.planned[1]
     warmer = (known.rate - known.room - known.piston) / path.temperature
     held = np.where(
@@ -196,9 +196,10 @@ def _cloud_base(
     off = path.vapor + held + unit * (known.late - known.clustered)
     frames = dataset.environment_pressure.values
     v = np.interp(np.log(frames[::-1]), np.log(np.array(ascent.route))[::-1], off[::-1])[::-1]
-    # what noise does to the level goes by the slope of the curve, which is noisy itself: where that of a run happens to
-    # be flat its error would be several times too large, and the level too low. So parcels are drawn about theory's;
-    # their mean is off by what is known and by what noise does to the level on average
+    # noise shifts the level by an amount that depends on the slope of the curve, and the measured slope is noisy
+    # itself: where it happens to be flat the error would come out several times too large, and the level too low. So
+    # parcels are drawn at random about theory's parcel; their mean contains the known errors and the mean effect of the
+    # noise
     root = np.linalg.cholesky(noise + 1e-12 * np.trace(noise) * np.eye(len(noise)))
     drawn = np.clip(
         v + np.random.default_rng(_SEED).standard_normal((_DRAWN, len(v))) @ root.T, 0.0, ascent.total_water

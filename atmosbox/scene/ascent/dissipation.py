@@ -1,21 +1,22 @@
-r"""Entropy that a parcel gains on its way because it is not infinitely slow, and by how much chance changes it.
+r"""Entropy that a parcel gains because its ascent is not infinitely slow, and how far the gain scatters.
 
-An infinitely slow parcel keeps its entropy S. Four things change it; rates are per mean free time at the start, S is
-that of the whole parcel, over k, and e the rate of expansion.
+An infinitely slow parcel keeps its entropy S. Four processes change S; rates are per mean free time at the start, S is
+that of the whole parcel, in k, and e is the rate of expansion.
 
-* **Friction**: :math:`D e^2 \tau N`, with D as in `atmosbox.theory.DISSIPATION`. What a molecule carries of the flow it
-  forgets at its contacts and, sooner, at the droplets.
-* **Condensing**: the fluxes :math:`\dot x` of molecules and heat into the liquid need forces :math:`L^{-1} \dot x`, and
-  make :math:`\dot x^T L^{-1} \dot x`.
-* **The piston** gives way when the pressure happens to be high, within the time :math:`t_c` in which it closes a gap,
-  and so takes work out of fluctuations that would have gone by themselves: :math:`-N \langle(\delta \ln p)^2\rangle /
-  \gamma t_c`.
-* **Droplets** flow with the air, :math:`v_z = e z`, and molecules that hit them push them up and down. The work of
-  these pushes is zero on average; by chance it is :math:`\tfrac89 m e^2 h^2 / kT` in the square for each hit, that is
-  :math:`e^2 \langle z^2 \rangle = e^2 h^2 / 3` times the mean square :math:`\tfrac83 m kT` of a push. This is the
-  largest of all chances: it leaves the air at 300 hPa by itself two or three tenths of a kelvin warmer or colder.
+* **Friction**: :math:`D e^2 \tau N`, with D as in `atmosbox.theory.DISSIPATION`. A molecule carries momentum of the
+  flow until it collides or, sooner, hits a droplet.
+* **Condensation**: the fluxes :math:`\dot x` of molecules and heat into the liquid need forces :math:`L^{-1} \dot x`,
+  and produce the entropy :math:`\dot x^T L^{-1} \dot x`.
+* **The piston** yields when the pressure happens to be high, within the time :math:`t_c` in which it closes a gap. So
+  it extracts work from fluctuations that would otherwise decay by themselves: :math:`-N \langle(\delta \ln p)^2\rangle
+  / \gamma t_c`.
+* **Droplets** flow with the air, :math:`v_z = e z`, and molecules that hit them push them up and down. The mean work of
+  these pushes is zero; its mean square per hit is :math:`\tfrac89 m e^2 h^2 / kT`, that is :math:`e^2 \langle z^2
+  \rangle = e^2 h^2 / 3` times the mean square :math:`\tfrac83 m kT` of a push. This is the largest source of scatter:
+  by itself it leaves the air at 300 hPa two or three tenths of a kelvin warmer or colder.
 
-By the theorem of fluctuation and dissipation the variance of S grows twice as fast as friction and condensing make S.
+By the fluctuation-dissipation theorem friction and condensation make the variance of S grow at twice the rate at which
+they produce S.
 """
 
 from __future__ import annotations
@@ -33,11 +34,11 @@ __all__ = ["Gain", "entropy_gain", "gathered"]
 
 Array = NDArray[np.float64]
 _SHEAR = 4.0 / 3.0 * 1.016 * 1.25
-"""Share of shear in `law.DISSIPATION`, and of it the time in which contacts take away a shear: three quarters."""
+"""Share of shear in `law.DISSIPATION`; three quarters of it is the relaxation time of a shear in mean free times."""
 _ROTATION = 8.0 / 25.0
-"""Share of the rotation that stays behind, which follows within 2 mean free times."""
+"""Share in `law.DISSIPATION` of the rotation, which lags behind the other motion by 2 mean free times."""
 _FAST_MEET = 1.6
-"""How much sooner than the average the molecules that carry a shear, v^2, meet a droplet: <v^5> / <v^4> <v>."""
+"""How much sooner than average the molecules that carry a shear, weighted by v^2, hit a droplet: <v^5> / <v^4> <v>."""
 
 
 class Gain(NamedTuple):
@@ -46,13 +47,13 @@ class Gain(NamedTuple):
     friction: Array
     condensing: Array
     piston: Array
-    """Negative: what the piston takes away."""
+    """Negative: the entropy that the piston takes away."""
     variance: Array
-    """By how much the variance of the entropy grows."""
+    """Rate at which the variance of the entropy grows."""
 
 
 def entropy_gain(cloud: Cloud) -> Gain:
-    """Return how fast a parcel gains entropy, see the head of this file."""
+    """Return the rates at which a parcel gains entropy, see the head of this file."""
     number, e = cloud.gas, cloud.expansion
     often = cloud.free_time / cloud.meets
     shear = _SHEAR / (1.0 + 0.75 * _SHEAR * _FAST_MEET * often)

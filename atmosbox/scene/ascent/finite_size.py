@@ -1,7 +1,8 @@
-r"""The errors of the model itself: how far from its adiabat a parcel is known to be.
+r"""The systematic errors of the model: how far a parcel is known to be from its adiabat.
 
-Three things are not as in a cloud of kilometres. The way takes nanoseconds; molecules have volume; and few of
-them are vapour, so that a cloud consists of few molecules. What that does is known, with its sign: see `drift`.
+The model differs from a cloud of kilometres in three ways: the ascent takes nanoseconds; molecules have volume; and few
+of the molecules are vapour, so that a cloud consists of few molecules. The sign and size of the errors that follow are
+known: see `drift`.
 """
 
 import functools
@@ -24,48 +25,49 @@ _PLACES = 24
 
 
 class Drift(NamedTuple):
-    """By how much a parcel is known to be off along its planned way, each not negative, (moment,)."""
+    """Known deviations of a parcel from its adiabat along its planned ascent, none of them negative, (moment,)."""
 
     pressure: Array
-    """Where on the way [Pa]."""
+    """Pressure of the environment at each moment [Pa]."""
     rate: Array
-    """Too warm, by friction and by condensing at a finite rate [K]."""
+    """Too warm, because of friction and of condensation at a finite rate [K]."""
     flow: Array
-    """Too warm, by the energy of the flow, :math:`m e^2 h^2 / 6` for each molecule [K]."""
+    """Too warm, because of the energy of the flow, :math:`m e^2 h^2 / 6` for each molecule [K]."""
     clusters: Array
-    """Too warm, by molecules that are clustered in clear air and at the cloud base [K]."""
+    """Too warm, because of molecules in clusters in clear air and at the cloud base [K]."""
     lag: Array
+    """Too cold, because vapour and heat are still on their way to the liquid [K]."""
     """Too cold, because vapour and heat are under way to the liquid [K]."""
     piston: Array
     """Too cold, because the piston gives way to fluctuations [K]."""
     room: Array
     """Too cold, because molecules have volume [K]."""
     late: Array
-    """Molecules of vapour that are under way to the liquid."""
+    """Molecules of vapour that are still on their way to the liquid."""
     clustered: Array
-    """Molecules that chance adds to the liquid."""
+    """Mean number of liquid molecules that fluctuations add to theory's liquid."""
     latent: Array
-    """Latent heat of a molecule over kT."""
+    """Latent heat of a molecule, in kT."""
 
     @property
     def warmer(self) -> Array:
-        """All that makes it too warm [K]."""
+        """Sum of all that makes the parcel too warm [K]."""
         return self.rate + self.flow + self.clusters
 
     @property
     def colder(self) -> Array:
-        """All that makes it too cold [K]."""
+        """Sum of all that makes the parcel too cold [K]."""
         return self.lag + self.piston + self.room
 
     def at(self, pressure: float) -> tuple[float, float]:
-        """Return how much too warm and how much too cold it is where it first meets a pressure [Pa], in K."""
+        """Return how much too warm and how much too cold the parcel is where it first meets a pressure [Pa], in K."""
         rising = slice(0, int(np.argmin(self.pressure)) + 1)
         where = np.log(self.pressure[rising][::-1])
         warmer, colder = (np.interp(math.log(pressure), where, x[rising][::-1]) for x in (self.warmer, self.colder))
         return float(warmer), float(colder)
 
     def allowed(self, pressure: float) -> float:
-        """Return how far off it may be to either side [K]: the two kinds may make up for each other."""
+        """Return how far off the parcel may be to either side [K]: the two kinds of error may cancel each other."""
         return max(self.at(pressure))
 
 
@@ -77,15 +79,15 @@ def _planned_cloud(ascent: MoistAscent, ideal: bool) -> Cloud:
 
 @functools.lru_cache(maxsize=8)
 def drift(ascent: MoistAscent, *, ideal: bool) -> Drift:
-    r"""Return how far from its adiabat a parcel is known to be along its way.
+    r"""Return how far a parcel is known to be from its adiabat along its ascent.
 
-    Entropy that is gained shows as :math:`T \, \delta S / C_p`, see `dissipation`; vapour and heat that are under way
-    to the liquid are :math:`(L G)^{-1} \dot x` behind it, see `near_equilibrium`.
+    An entropy gain :math:`\delta S` warms the parcel by :math:`T \, \delta S / C_p`, see `dissipation`; vapour and heat
+    on their way to the liquid lag behind it by :math:`(L G)^{-1} \dot x`, see `near_equilibrium`.
 
     Parameters
     ----------
     ascent
-        The way.
+        The ascent.
     ideal
         Whether molecules have no volume.
     """
@@ -96,7 +98,7 @@ def drift(ascent: MoistAscent, *, ideal: bool) -> Drift:
     flow = cloud.gas * (cloud.expansion * cloud.height) ** 2 / 6.0
     room = np.zeros_like(t)
     if not ideal:
-        # by volume alone, as in dry air; in a cloud the heat of condensing makes good a part of it
+        # by excluded volume alone, as in dry air; in a cloud the heat of condensation compensates a part of it
         dry = law.Ascent((ascent.pressure, ascent.top_pressure), ascent.length, 0.0)
         places = np.geomspace(float(cloud.pressure.min()), float(cloud.pressure.max()), _PLACES)
         share = [dry.room(float(p), ascent.box(ideal=False)[0]) for p in places]
@@ -116,9 +118,9 @@ def drift(ascent: MoistAscent, *, ideal: bool) -> Drift:
 
 
 def least_cloud(ascent: MoistAscent) -> float:
-    """Return how much liquid a cloud must hold before it rains, so that no chance surplus does [kg kg-1].
+    """Return how much liquid a cloud must hold before it rains, so that fluctuations alone make no rain [kg kg-1].
 
-    Three times by how much the liquid scatters: what a cluster loses as rain does not come back.
+    This is three standard deviations of the liquid: what a cluster loses as rain does not come back.
     """
     if not ascent.vapour:
         return 0.0
@@ -128,12 +130,12 @@ def least_cloud(ascent: MoistAscent) -> float:
 
 
 def comparable(ascent: MoistAscent) -> bool:
-    """Tell whether theory, which leaves chance out, says how much it rains."""
+    """Tell whether theory, which leaves fluctuations out, can predict how much it rains."""
     return not ascent.rains or ascent.most_liquid >= least_cloud(ascent)
 
 
 def rained(ascent: MoistAscent) -> law.ParcelPath:
-    """Return the path of a parcel that rains, and whose liquid scatters as much as that of so few molecules."""
+    """Return the path of a parcel that rains, with the scatter that the liquid of so few molecules has."""
     cloud = _planned_cloud(ascent, False)
     raining = cloud.liquid > 0.0
     if not raining.any():
@@ -144,6 +146,6 @@ def rained(ascent: MoistAscent) -> law.ParcelPath:
 
 
 def rain_scatter(ascent: MoistAscent) -> float:
-    """Return by how much the rain of a whole way scatters, per dry air [kg kg-1]; at least by one molecule."""
+    """Return the standard deviation of the rain of a whole ascent, per dry air [kg kg-1]; at least one molecule."""
     lost = math.sqrt(max(float(walk(_planned_cloud(ascent, False)).covariance[-1, 1, -1, 1]), 1.0))
     return law.WATER_MASS_RATIO * lost / (ascent.molecules - ascent.vapour)

@@ -1,13 +1,13 @@
-r"""How far chance takes a parcel from its adiabat, and for how long: the covariance of its frames.
+r"""How far fluctuations take a parcel from its adiabat, and for how long: the covariance of its frames.
 
-A single run cannot tell it: what its entropy has gathered by chance stays to the end, and so neighbouring frames are
-off to the same side. Three parts follow from the molecules.
+A single run cannot tell this: a random gain of entropy stays to the end, so that neighbouring frames deviate to the
+same side. Three parts follow from the molecules.
 
-* **Vapour and heat** that have not found their way to the liquid, or not back: `near_equilibrium` says how far x
-  scatters and how fast it returns, :math:`C(t) = e^{-L G t} G^{-1}`. It is forgotten within a frame or two.
-* **Entropy** that has been gathered by chance: `dissipation` says how its variance grows. At a given pressure it shows
-  in the temperature as :math:`\delta T = T \, \delta S / C_p`, where C_p counts the heat of condensing.
-* **Rain**, if it rains: of what has fallen by chance nothing evaporates again, see `raining`.
+* **Vapour and heat** that have not yet reached the liquid, or have not yet left it: `near_equilibrium` gives the
+  scatter of x and how fast x relaxes, :math:`C(t) = e^{-L G t} G^{-1}`. This part decays within a frame or two.
+* **Entropy** that has been gained at random: `dissipation` gives the growth of its variance. At a given pressure it
+  shows in the temperature as :math:`\delta T = T \, \delta S / C_p`, where C_p includes the heat of condensation.
+* **Rain**, if it rains: rain that has fallen by chance does not evaporate again, see `raining`.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ def along_frames(ascent: MoistAscent, pressure: Array, frames: int, samples: int
     Parameters
     ----------
     ascent
-        The way.
+        The ascent.
     pressure : (frame,)
         Pressure of the environment in the middle of each frame [Pa].
     frames, samples
-        How many frames the whole way has, and how many samples each.
+        Number of frames of the whole ascent, and number of samples in each.
     ideal
         Whether molecules have no volume.
     """
@@ -54,13 +54,13 @@ def along_frames(ascent: MoistAscent, pressure: Array, frames: int, samples: int
 
 
 def _of_means(covariance: Array, samples: int) -> Array:
-    """Return the covariance of the means over so many neighbours."""
+    """Return the covariance of the means over ``samples`` neighbours."""
     frames = len(covariance) // samples
     return np.asarray(covariance.reshape(frames, samples, frames, samples).mean(axis=(1, 3)))
 
 
 def _covariance(cloud: Cloud, seen: Array, cloudy: Array, clear: Array, samples: int) -> Array:
-    """Return the covariance of frame means of what x shows as ``seen``, and S and R in a cloud and in clear air."""
+    """Return the covariance of frame means: of x with the weights ``seen``, and of S and R in cloud and clear air."""
     root = np.linalg.cholesky(cloud.resists)
     rate, mode = np.linalg.eigh(np.einsum("tji,tjk,tkl->til", root, cloud.forgets, root))
     size = np.einsum("tji,tj->ti", mode, np.linalg.solve(root, seen[:, :, None])[:, :, 0])
@@ -74,16 +74,16 @@ def _covariance(cloud: Cloud, seen: Array, cloudy: Array, clear: Array, samples:
 
 
 def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False) -> Array:
-    """Return the covariance of the frame means of a parcel minus its adiabat, as shares of the temperature.
+    """Return the covariance of the frame means of parcel minus adiabat, as shares of the temperature.
 
     Parameters
     ----------
     cloud
         The parcel at each sample.
     samples
-        How many of them make a frame.
+        Number of samples in a frame.
     density
-        Whether the density temperature is meant, to which vapour and liquid count.
+        Whether to take the density temperature, which depends on vapour and liquid, too.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False)
     none = np.zeros_like(cloud.moment)
     cloudy = np.stack([1.0 / cloud.cloudy_heat, none], axis=1)
     clear = np.stack([1.0 / cloud.clear_heat, (cloud.latent - np.log(cloud.humidity)) / cloud.clear_heat], axis=1)
-    if density:  # warmer air holds more vapour, and water that has rained weighs nothing
+    if density:  # warmer air holds more vapour, and water that has rained has no weight in the parcel
         carried = law.WATER_MASS_RATIO / (cloud.air + law.WATER_MASS_RATIO * (cloud.vapour + cloud.liquid))
         cloudy += np.stack([cloud.dries / cloud.gas, carried], axis=1)
         clear[:, 1] += carried - 1.0 / cloud.gas
@@ -104,7 +104,8 @@ def vapour_covariance(cloud: Cloud, samples: int) -> Array:
     none = np.zeros_like(cloud.moment)
     gone = np.zeros((len(none), 2))
     gone[:, 0] = -1.0
-    # beside theory's vapour at the pressure that the gas then has
+    # deviation from theory's vapour at the pressure that the gas then has
+
     pressure = cloud.warms - np.array([1.0, 0.0]) / cloud.gas[:, None]
     seen = gone - cloud.vapour_slope[:, None] * pressure
     return _covariance(

@@ -1,4 +1,4 @@
-"""A parcel of moist air under its piston, ready to go."""
+"""A parcel of moist air under its piston, ready to start."""
 
 import math
 from collections.abc import Callable
@@ -35,20 +35,20 @@ def rise(
     samples: int,
     seed: int,
 ) -> Setup:
-    """Return a parcel of moist air at the start of its way.
+    """Return a parcel of moist air at the start of its ascent.
 
-    Vapour that is more than saturation condenses in the first moments.
+    Vapour in excess of saturation condenses in the first moments.
 
     Parameters
     ----------
     ascent
-        The way.
+        The ascent.
     engine
         The engine with its options.
     height, around
-        Height of the parcel [m] and temperature of the environment [K] when a share of the time, 0 to 1, has passed.
+        Height of the parcel [m] and temperature of the environment [K], as functions of the share of the time, 0 to 1.
     frames, samples
-        Into how many frames the way is divided, and how many samples of the parcel are taken in each.
+        Number of frames of the whole ascent, and number of samples of the parcel in each frame.
     seed
         Seed of all random numbers.
     """
@@ -119,5 +119,5 @@ def rise(
 
 
 def _climbs(height: Profile) -> bool:
-    """Return whether the way goes up all the time."""
+    """Return whether the height increases all the time."""
     return bool(np.all(np.diff([height(float(share)) for share in np.linspace(0.0, 1.0, 101)]) > 0.0))

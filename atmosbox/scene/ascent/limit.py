@@ -1,4 +1,4 @@
-"""What a parcel that is to be lifted may not be."""
+"""Checks of the settings of an ascent: what a lifted parcel may not be."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ def refuse_descent(top_pressure: float, ground_pressure: float, ground: str = "t
     Parameters
     ----------
     top_pressure, ground_pressure
-        Pressure where it ends and where it begins [hPa].
+        Pressure at the end and at the start of the ascent [hPa].
     ground
-        What the second is called.
+        Name of the pressure at the start, for the message.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def refuse_supersaturation(dewpoint: float, temperature: float) -> None:
     Raises
     ------
     SettingError
-        If there is more vapour than saturates the air.
+        If the air holds more vapour than saturation.
 
     Examples
     --------

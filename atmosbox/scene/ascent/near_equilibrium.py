@@ -1,29 +1,32 @@
-r"""A parcel with a cloud, close to its equilibrium: how fast vapour and heat come to rest, how far they scatter.
+r"""A parcel with a cloud, close to its equilibrium: how fast vapour and heat relax, and how far they fluctuate.
 
-Two things may be out of balance: how many molecules n are liquid, and how much energy E the liquid holds. The second
-derivatives of the entropy, :math:`S = -\tfrac12 x^T G x` for x = (n, E), say how far they scatter, and how hard they
-are driven back; the counted rates at which molecules meet the droplets make Onsager's matrix L, so that
+Two quantities may be out of equilibrium: the number n of liquid molecules and the energy E of the liquid. Let x be the
+deviation of (n, E) from its equilibrium value. The second derivatives of the entropy, :math:`S = -\tfrac12 x^T G x`,
+give the size of the fluctuations and the forces :math:`-G x` that drive x back; the rates at which molecules hit the
+droplets give Onsager's matrix L, so that
 
 .. math:: \dot x = -L G x + \text{noise}, \qquad \langle x x^T \rangle = G^{-1} .
 
-Both follow from what is put into the box; nothing is fitted. Energies are over kT, times in mean free times at the
-start.
+G and L both follow from what is put into the box; nothing is fitted. Energies are in units of kT, times in mean free
+times at the start.
 
-**The slow ones wait.** Fast molecules meet the droplets first, slow ones stay behind until a contact makes them fast.
-Were contacts so frequent that all speeds are always there, L would count the molecules that meet the droplets; in a
-small box, whose droplets are nearer than a mean free path, it is a fifth less, and what is out of balance lasts as much
-longer. For a time :math:`1/\nu` in which contacts make good the speeds, the gas :math:`f (1 + \varphi)` beside a liquid
-of the force :math:`\psi`, from which a flux s is taken as by hydrodynamics, rests where :math:`k v (\varphi - \psi) +
-\nu \varphi = -s`, with the rate k v at which a molecule meets the droplets. All three are sums of what contacts keep, B
-= (1 for vapour, 1 for air, energy), and :math:`\varphi` contains none of it; with :math:`M = \langle B B \rangle` and
-:math:`S = \langle B B / (k v + \nu) \rangle` the flux for a force is
+**The speeds near the droplets.** Fast molecules reach the droplets first; slow molecules stay behind until a collision
+makes them fast. If collisions were so frequent that the speeds always had the Maxwell distribution, L would count the
+molecules that hit the droplets. In a small box, whose droplets are nearer than a mean free path, L is smaller by a
+fifth, and a deviation lasts longer by as much. Let collisions restore the Maxwell distribution f at the rate
+:math:`\nu`, and let the gas have the distribution :math:`f (1 + \varphi)` beside a liquid with the force :math:`\psi`.
+If hydrodynamics takes the flux s from the gas, the steady state is :math:`k v (\varphi - \psi) + \nu \varphi = -s`,
+where k v is the rate at which a molecule of speed v hits the droplets. Here :math:`\psi` and s are linear combinations
+of the quantities that collisions conserve, B = (1 for vapour, 1 for air, energy), and :math:`\varphi` is orthogonal to
+all of B. With :math:`M = \langle B B \rangle` and :math:`S = \langle B B / (k v + \nu) \rangle` the flux per force is
 
 .. math:: L = M S^{-1} M - \nu M .
 
 References
 ----------
 Onsager, L. (1931), doi:10.1103/PhysRev.37.405. Landau and Lifshitz, Statistical Physics, part 1, sections 110 and 118
-to 120. Bhatnagar, Gross and Krook (1954), doi:10.1103/PhysRev.94.511, for contacts that make good the speeds.
+to 120. Bhatnagar, Gross and Krook (1954), doi:10.1103/PhysRev.94.511, for collisions that restore the distribution at
+one rate.
 """
 
 from __future__ import annotations
@@ -42,26 +45,26 @@ __all__ = ["Cloud", "cloud_along"]
 
 Array = NDArray[np.float64]
 _CARRIED = np.array([[1.0, 3.5], [3.5, 3.5**2 + 3.5]])
-"""A molecule arrives with 7/2 kT on average, of variance 7/2: means of 1, e and e^2."""
+"""Means of 1, e and e^2 for a molecule that hits a droplet: its energy e has mean 7/2 kT and variance 7/2 (kT)^2."""
 _NO_VAPOUR = 1e-6
-"""Molecules of vapour, and relative humidity, of dry air: so that no logarithm is infinite."""
+"""Molecules of vapour, and relative humidity, that dry air is given, so that no logarithm is infinite."""
 _NODES, _FASTEST = 48, 6.0
-"""Of the sums over speeds: how many, and up to which, over sqrt(2 kT/m)."""
+"""Number of nodes of the sums over speeds, and the largest speed, in units of sqrt(2 kT/m)."""
 _AIR_ROTATION, _VAPOUR_ROTATION = 1.0, 1.5
-"""Mean energy of the rotation, over kT, and its variance."""
+"""Mean energy of the rotation of a molecule, in kT; also its variance, in (kT)^2."""
 _SPEEDS = 1.5 * 1.016 * 1.25
-"""Within how many mean free times contacts make good the speeds: three halves of the time of a shear.
+"""Relaxation time of the distribution of speeds [mean free times]: three halves of that of a shear.
 
-So theory has it for the fourth moment of the velocity. A rotation takes 2, a molecule of water in air 1.4; between the
-two L differs by a hundredth.
+Theory gives this for the fourth moment of the velocity. A rotation takes 2, a molecule of water in air 1.4; L differs
+by a hundredth between these two times.
 """
 
 
 class Cloud(NamedTuple):
-    """The parcel at some moments of its way; see the head of this file.
+    """The parcel at some moments of its ascent; see the head of this file.
 
-    ``moment`` is in mean free times; ``resists : (moment, 2, 2)`` is G and ``yields : (moment, 2, 2)`` is L;
-    ``warms : (moment, 2)`` by how much a change of x warms the gas, as a share of its temperature, at constant volume.
+    ``moment`` is in mean free times at the start; ``resists : (moment, 2, 2)`` is G and ``yields : (moment, 2, 2)`` is
+    L; ``warms : (moment, 2)`` is the derivative of the logarithm of the gas temperature by x at constant volume.
     """
 
     moment: Array
@@ -70,62 +73,62 @@ class Cloud(NamedTuple):
     temperature: Array
     """[K]."""
     vapour: Array
-    """Molecules of vapour, by theory."""
+    """Molecules of vapour according to theory."""
     liquid: Array
-    """Molecules of liquid, by theory, that forgets clusters in clear air."""
+    """Molecules of liquid according to theory, which leaves out clusters in clear air."""
     clustered: Array
-    """Molecules that chance adds to those."""
+    """Mean number of liquid molecules that fluctuations add to ``liquid``."""
     resists: Array
     yields: Array
     warms: Array
     air_heat: Array
     """Heat capacity of the gas at constant volume, in k."""
     clear_heat: Array
-    """Heat capacity at constant pressure of all, if no vapour condenses, in k."""
+    """Heat capacity of the whole parcel at constant pressure if no vapour condenses, in k."""
     slope: Array
     """d ln T / d ln p along the adiabat."""
     expansion: Array
-    """Rate at which the logarithm of the volume grows."""
+    """Time derivative of the logarithm of the volume."""
     height: Array
     """Height of the box over the thermal speed sqrt(kT/m) of air [mean free times]."""
     free_time: Array
-    """Mean free time of the gas."""
+    """Mean free time of the gas, in mean free times at the start."""
     meets: Array
-    """How long a molecule of air flies until it meets the mist."""
+    """Mean time until a molecule of air hits the mist."""
     hits: Array
-    """How many molecules meet or leave the mist per time."""
+    """Number of molecules that hit or leave the mist per unit of time."""
 
     liquid_heat: Array
     """Heat capacity of liquid and nuclei, in k."""
     bounded: Array
-    """How much longer the number of liquid molecules is remembered because it cannot be less than none, 1 to 2."""
+    """Factor, 1 to 2, by which a fluctuation of the liquid lasts longer because no number of molecules is negative."""
     air: float
     """Molecules of dry air."""
     humidity: Array
     """Relative humidity, at most 1."""
     keeps: float
-    """Molecules of liquid that the cloud holds before it rains, infinite if it does not."""
+    """Molecules of liquid that the cloud holds before it rains; infinite if it does not rain."""
     rains: float
-    """How often a molecule that is too many for the cloud falls out."""
+    """Rate at which each molecule in excess of ``keeps`` falls out."""
 
     @property
     def cloudy_heat(self) -> Array:
-        """Heat capacity at constant pressure of all, that of condensing included, in k."""
+        """Heat capacity of the whole parcel at constant pressure with the heat of condensation, in k."""
         return np.asarray(self.clear_heat + self.vapour * (1.0 + self.vapour / self.air) * self.latent**2)
 
     @property
     def dries(self) -> Array:
-        """By how many molecules of vapour there are more in a cloud that has a unit of entropy more."""
+        """Number of molecules of vapour that a cloud gains per unit of entropy, which is k, at constant pressure."""
         return np.asarray(self.vapour * (1.0 + self.vapour / self.air) * self.latent / self.cloudy_heat)
 
     @property
     def heat(self) -> Array:
-        """The heat capacity at constant pressure that theory has there, in k."""
+        """Heat capacity of the whole parcel at constant pressure according to theory, in k: with or without a cloud."""
         return np.where(self.liquid > 0.0, self.cloudy_heat, self.clear_heat)
 
     @property
     def forgets(self) -> Array:
-        """The matrix L by which fluctuations are forgotten, (moment, 2, 2)."""
+        """The matrix L that sets how fast fluctuations decay, (moment, 2, 2)."""
         part = (1.0 - 1.0 / self.bounded) * self.yields[:, 0, 0]
         return np.asarray(self.yields - part[:, None, None] * _CARRIED)
 
@@ -135,12 +138,14 @@ class Cloud(NamedTuple):
         return self.air + self.vapour
 
     def seen(self, *, density: bool = False) -> Array:
-        """Return by how much x shifts the gas from the adiabat at the pressure that it then has, as a share of T.
+        """Return how far a unit of x shifts the gas from the adiabat, as a share of T.
+
+        The adiabat is taken at the pressure that the gas has after the shift.
 
         Parameters
         ----------
         density
-            Whether the density temperature is meant, which counts the molecules of vapour that are lost, too.
+            Whether to take the density temperature, which also depends on the molecules of vapour that have condensed.
 
         Returns
         -------
@@ -152,19 +157,19 @@ class Cloud(NamedTuple):
 
     @property
     def density_slope(self) -> Array:
-        """The same slope of the density temperature, to which the vapour counts."""
+        """The slope d ln T / d ln p of the adiabat for the density temperature, which depends on the vapour, too."""
         return np.asarray(self.slope + self.vapour_slope / self.gas)
 
     @property
     def vapour_slope(self) -> Array:
-        """By how many molecules of vapour there are more for a rise of ln p along the adiabat: none in clear air."""
+        """Derivative of the number of molecules of vapour by ln p along the adiabat: zero in clear air."""
         share = self.vapour / self.air
         along = self.vapour * (1.0 + share) * (self.latent * self.slope - 1.0)
         return np.where(self.liquid > 0.0, along, 0.0)
 
     @property
     def latent(self) -> Array:
-        """Latent heat of a molecule over kT."""
+        """Latent heat of a molecule, in kT."""
         excess = law.LIQUID_HEAT_CAPACITY - law.VAPOR_HEAT_CAPACITY
         return np.asarray(law.BINDING_TEMPERATURE / self.temperature - excess)
 
@@ -176,7 +181,7 @@ class Cloud(NamedTuple):
 
     @property
     def change(self) -> Array:
-        """How fast theory's x changes on the way, (moment, 2)."""
+        """Rate at which x has to change so that the parcel stays on theory's adiabat, (moment, 2)."""
         condenses = -np.gradient(self.vapour, self.moment)
         binding, capacity = law.BINDING_TEMPERATURE / self.temperature, law.LIQUID_HEAT_CAPACITY
         warming = np.gradient(np.log(self.temperature), self.moment) * self.liquid_heat
@@ -184,7 +189,7 @@ class Cloud(NamedTuple):
 
 
 def _counted(mode: Array, scatter: Array) -> tuple[Array, Array]:
-    r"""Return mean and variance of a whole number n, none or more, with the chance :math:`e^{-(n - m)^2 / 2 s^2}`.
+    r"""Return mean and variance of an integer n >= 0 with a probability proportional to :math:`e^{-(n - m)^2 / 2 s^2}`.
 
     Examples
     --------
@@ -204,10 +209,11 @@ def _counted(mode: Array, scatter: Array) -> tuple[Array, Array]:
 
 @functools.cache
 def _memories() -> tuple[Array, Array]:
-    r"""Return a = m/s, and how much longer a number that scatters about m, but cannot be less than none, is remembered.
+    r"""Return values of a = m/s, and how much longer a fluctuation lasts about m if the number cannot be negative.
 
-    Diffusion with the density f keeps its correlation for :math:`\int g^2/f \, dx` over its variance, with
-    :math:`g(x) = \int_x^\infty (y - \bar x) f dy`: once for a normal distribution, twice for an exponential one.
+    Diffusion with the stationary density f has the correlation time :math:`\int g^2/f \, dx` over the variance, with
+    :math:`g(x) = \int_x^\infty (y - \bar x) f dy`. Compared with a normal distribution of the same variance this is the
+    same time for a normal distribution and twice as long for an exponential one.
     """
     a = np.linspace(-30.0, 6.0, 145)
     widest = np.where(a < 0.0, 30.0 / (1.0 + np.abs(a)), 10.0 + a)
@@ -224,7 +230,7 @@ def _memories() -> tuple[Array, Array]:
 
 
 def _longer(a: Array) -> Array:
-    """Return how much longer a number is remembered that cannot be less than none, by its mean over its scatter.
+    """Return how much longer a fluctuation lasts if the number cannot be negative, for a = m/s as in `_memories`.
 
     Examples
     --------
@@ -235,11 +241,21 @@ def _longer(a: Array) -> Array:
 
 
 def _conducts(vapour: Array, air: float, vapour_meets: Array, air_meets: Array, speeds: Array) -> Array:
-    """Return L of vapour and air, for the times in which either meets the droplets and contacts make good the speeds.
+    """Return L of vapour and air.
+
+    Parameters
+    ----------
+    vapour, air
+        Numbers of molecules; vapour : (moment,).
+    vapour_meets, air_meets : (moment,)
+        Mean times until a molecule of either gas hits the droplets.
+    speeds : (moment,)
+        Relaxation time of the distribution of speeds.
 
     Examples
     --------
-    With very frequent contacts it counts who meets the droplets and what they carry; the slow make it less:
+    With very frequent collisions L counts the molecules that hit the droplets and the energy that they carry; a lack of
+    fast molecules makes it less:
 
     >>> one = np.ones(1)
     >>> for speeds in (1e-4, 1.9):
@@ -268,7 +284,7 @@ def _conducts(vapour: Array, air: float, vapour_meets: Array, air_meets: Array, 
             matrix[:, 2, 2] += share * share * (two + 2.0 * r * one + (r * r + r) * none)
     waiting, kept = found
     whole = kept @ np.linalg.solve(waiting, kept) - kept / speeds[:, None, None]
-    # no air stays in the liquid
+    # the net flux of air into the liquid is zero
     pair = np.linalg.inv(np.linalg.inv(whole)[:, ::2, ::2])
     size = np.stack([root_vapour, root_air], axis=1)
     return np.asarray(pair * size[:, :, None] * size[:, None, :])
@@ -277,24 +293,24 @@ def _conducts(vapour: Array, air: float, vapour_meets: Array, air_meets: Array, 
 def cloud_along(
     ascent: MoistAscent, pressure: Array, share: Array, *, ideal: bool = False, path: law.ParcelPath | None = None
 ) -> Cloud:
-    r"""Return the parcel along its way, by theory.
+    r"""Return the parcel along its ascent, according to theory.
 
-    The chance that n molecules are clustered is a product of relative humidities, one for each that joins, and each
-    lowers the next: it leaves the vapour, and warms the air. In clear air, where n cannot be less than none, the mean
-    is nearly RH / (1 - RH). There G is as stiff as the variance is small.
+    The probability that n molecules are in clusters is a product of relative humidities, one for each molecule that
+    joins; each molecule lowers the next factor, because it leaves the vapour and warms the air. In clear air, where n
+    cannot be negative, the mean is nearly RH / (1 - RH), and G is the larger the smaller the variance is there.
 
     Parameters
     ----------
     ascent
-        The way.
+        The ascent.
     pressure : (moment,)
-        Pressures in the order in which they are met [Pa].
+        Pressures in the order in which the parcel meets them [Pa].
     share : (moment,)
-        Which share of the time has passed by then.
+        Share of the time of the whole ascent that has passed at each of them, 0 to 1.
     ideal
         Whether molecules have no volume.
     path
-        Temperature and water there, if they are known already.
+        Temperature and water at these pressures, if they are known already.
 
     Examples
     --------
@@ -319,14 +335,14 @@ def cloud_along(
     warms = np.stack([3.0 / gas_heat, -1.0 / gas_heat], axis=1)
 
     def stiffness(liquid_heat: Array) -> Array:
-        """Return G: minus what drives molecules and energy from gas to liquid, for a change of either."""
+        """Return G: minus the derivative by x of the forces that drive molecules and energy from gas to liquid."""
         warmer = np.stack([(binding - capacity) / liquid_heat, 1.0 / liquid_heat], axis=1)
         driven = -3.0 * warms + (capacity - binding)[:, None] * warmer
         driven[:, 0] -= 1.0 / vapour
         return -np.stack([driven, warms - warmer], axis=1)
 
     free = np.linalg.inv(stiffness(ascent.nuclei + capacity * liquid))[:, 0, 0]
-    # the last to join and the first to leave are half a molecule from the whole number where both are as likely
+    # where joining and leaving are equally likely, n and n + 1 are equally probable: the peak is halfway between them
     mode = 0.5 + np.where(liquid > 0.0, liquid, np.log(humidity) * free)
     mean, variance = _counted(mode, np.sqrt(free))
     clustered = mean - liquid

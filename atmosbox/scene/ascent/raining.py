@@ -1,28 +1,30 @@
-r"""How far chance takes the rain of a parcel, and what more or less of it does to the temperature from there on.
+r"""How far fluctuations change the rain of a parcel, and how more or less rain changes the temperature afterwards.
 
-A cloud of few molecules scatters about its equilibrium, its surplus falls out one by one, and what has fallen is gone.
-Two numbers tell what chance has done: R, by how many molecules more have rained than on average, and S, by how much
-more entropy the parcel has, over k, than theory's parcel at the same temperature with as much water.
+A cloud of few molecules fluctuates about its equilibrium; its surplus falls out molecule by molecule, and what has
+fallen does not come back. Two numbers describe the result: R, the number of molecules that have rained in excess of the
+average, and S, the excess of entropy of the parcel, in k, over theory's parcel at the same temperature with as much
+water.
 
-**How they grow.** The cloud holds m molecules more than it keeps, on average, and as many as :math:`m + x`, where x
-scatters by s (`near_equilibrium`). A molecule that has fallen is missing in the cloud, and so is one that warmer air
-holds as vapour, :math:`v_S = v (1 + v/N) \lambda / C_p` for a unit of entropy. With the rate r and :math:`a = m/s`,
+**How they grow.** On average the cloud holds m molecules more than it can keep; at a given moment it holds
+:math:`m + x` more, where x has the standard deviation s (`near_equilibrium`). The cloud lacks each molecule that has
+fallen, and also each molecule that warmer air holds as vapour, :math:`v_S = v (1 + v/N) \lambda / C_p` for a unit of
+entropy. With the rate r and :math:`a = m/s`,
 
 .. math:: dR = -r \, \Phi(a) \, (R + v_S S) \, dt + dW, \qquad
    \frac{d \langle W^2 \rangle}{dt} = r \langle (m + x)_+ \rangle
-   + 2 r^2 \int_0^\infty \mathrm{cov}\big[(m + x)_+, (m + x_t)_+\big] \, dt ,
+   + 2 r^2 \int_0^\infty \mathrm{cov}\big[(m + x)_+, (m + x_t)_+\big] \, dt .
 
-since a surplus rains for the share :math:`\Phi(a)` of the time, as a mean :math:`\langle (m + x)_+ \rangle = m \Phi(a)
-+ s \varphi(a)`, one molecule after the other, and x is remembered for a time :math:`\tau`. In Hermite's polynomials the
-integral is :math:`s^2 \tau [\Phi^2 + \varphi^2 \sum_{k \geq 2} He_{k-2}^2(a) / k \, k!]`, with :math:`s^2 \tau =
-(G^{-1} L^{-1} G^{-1})_{nn}`. So R is none before it rains, follows the surplus while it rains, and stays. The entropy
-walks as `dissipation` says; beside, water that is missing would have changed its entropy with the temperature,
-:math:`dS = c_l R \, d \ln T`.
+Here :math:`\Phi(a)` is the share of the time in which there is a surplus, the mean surplus is :math:`\langle (m + x)_+
+\rangle = m \Phi(a) + s \varphi(a)`, it rains one molecule after the other, and x has the correlation time :math:`\tau`.
+In Hermite polynomials the integral is :math:`s^2 \tau [\Phi^2 + \varphi^2 \sum_{k \geq 2} He_{k-2}^2(a) / k \, k!]`,
+with :math:`s^2 \tau = (G^{-1} L^{-1} G^{-1})_{nn}`. So R is zero before it rains, follows the surplus while it rains,
+and keeps its value afterwards. The entropy does the random walk of `dissipation`; in addition, water that is missing
+would have changed its entropy with the temperature, :math:`dS = c_l R \, d \ln T`.
 
-**What they show.** At a given pressure a cloud is warmer by :math:`T S / C_p`, whatever has rained. Where the cloud has
-evaporated, a molecule that is missing needed no latent heat: :math:`T \, [S + (\lambda - \ln f) R] / C_p`, with the
-relative humidity f and the heat capacity of clear air. Where rain decides whether there is a cloud still, both count,
-by the chance of either.
+**How they change the temperature.** At a given pressure a cloud is warmer by :math:`T S / C_p`, whatever has rained.
+Where the cloud has evaporated, a molecule that is missing needed no latent heat: the air is warmer by :math:`T \, [S +
+(\lambda - \ln f) R] / C_p`, with the relative humidity f and the heat capacity of clear air. Where the amount of rain
+decides whether there is still a cloud, both expressions count, each with its probability.
 """
 
 from __future__ import annotations
@@ -41,27 +43,27 @@ __all__ = ["Walk", "walk"]
 
 Array = NDArray[np.float64]
 _TERMS = 12
-"""Of Hermite's polynomials: the twelfth adds a millionth."""
+"""Order at which the sum over Hermite polynomials ends: the twelfth term adds a millionth."""
 _FAR = 30.0
 
 
 class Walk(NamedTuple):
-    """What entropy and rain have gathered by chance."""
+    """Fluctuations of entropy and rain that have accumulated along the ascent."""
 
     covariance: Array
-    """Of S and R, (moment, 2, moment, 2)."""
+    """Covariance of S and R, (moment, 2, moment, 2)."""
     more: Array
-    """Molecules that have rained more on average, because the cloud scatters, (moment,)."""
+    """Mean number of molecules that have rained in addition because the cloud fluctuates, (moment,)."""
     clear: Array
-    """The chance that there is no cloud, (moment,)."""
+    """Probability that there is no cloud, (moment,)."""
 
     def shown(self, gain: Array) -> Array:
-        """Return the covariance between moments of what S and R show by a gain, (moment, 2)."""
+        """Return the covariance between moments of the sum of S and R, each times its ``gain``, (moment, 2)."""
         return np.asarray(np.einsum("ti,tiuj,uj->tu", gain, self.covariance, gain, optimize=True))
 
 
 def _normal(a: float) -> tuple[float, float]:
-    """Return the share of a normal distribution below a, and its density there.
+    """Return the probability of a standard normal variable to be below a, and its density at a.
 
     Examples
     --------
@@ -72,11 +74,11 @@ def _normal(a: float) -> tuple[float, float]:
 
 
 def _remembered(a: float) -> float:
-    r"""Return :math:`\int \mathrm{cov}[(a + z)_+, (a + z_t)_+] \, dt` for a z that is forgotten as :math:`e^{-t}`.
+    r"""Return :math:`\int \mathrm{cov}[(a + z)_+, (a + z_t)_+] \, dt` for a z whose correlation is :math:`e^{-t}`.
 
     Examples
     --------
-    Far above zero it is that of z itself, one:
+    Far above zero it equals the integral for z itself, which is one:
 
     >>> [round(_remembered(a), 3) for a in (-9.0, 0.0, 9.0)]
     [0.0, 0.292, 1.0]
@@ -101,11 +103,11 @@ def _mean(rate: float) -> float:
 
 
 def walk(cloud: Cloud) -> Walk:
-    """Return what a parcel has gathered by chance along its way, see the head of this file.
+    """Return the fluctuations that a parcel has accumulated along its ascent, see the head of this file.
 
     Examples
     --------
-    Without rain there is only the entropy, which is kept:
+    Without rain there is only the entropy, and it keeps what it has gained:
 
     >>> from atmosbox import scenarios
     >>> from atmosbox.scene.ascent import along_frames
@@ -127,7 +129,7 @@ def walk(cloud: Cloud) -> Walk:
     scatter = inverse[:, 0, 0]
     lasting = (inverse @ np.linalg.inv(cloud.yields) @ inverse)[:, 0, 0]
     dries = cloud.dries
-    # what clear air lacks to be saturated: it would cool by what evaporates into it
+    # vapour that clear air lacks for saturation: air cools while that vapour evaporates into it
     lacks = cloud.vapour * (1.0 / cloud.humidity - 1.0) * cloud.clear_heat / cloud.cloudy_heat
     holds = cloud.liquid - lacks
     now, excess, more, clear = np.zeros((2, 2)), 0.0, np.zeros(number), np.zeros(number)
@@ -138,7 +140,8 @@ def walk(cloud: Cloud) -> Walk:
         a = min(max((surplus - excess) / spread, -_FAR), _FAR)
         often, density = _normal(a)
         falls = spread * max(a * often + density, 0.0)
-        # within a step all of them relax towards where they would stay
+    # within a step R and its mean relax exponentially towards their steady values
+
         passes = cloud.rains * often * steps[k]
         part = passes * _mean(passes)
         moves = np.array([[1.0, warms[k]], [-part * dries[k], 1.0 - part]])

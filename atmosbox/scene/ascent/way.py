@@ -1,4 +1,4 @@
-"""The way of a parcel of moist air, by theory."""
+"""The ascent of a parcel of moist air according to theory."""
 
 import functools
 import math
@@ -20,36 +20,38 @@ Array = NDArray[np.float64]
 FLATNESS = 0.1
 """Height of the box over its width at the start.
 
-The droplets flow with the air, the faster the higher they are, and the pushes of the molecules on them do work by
-chance: a low box has less of it, see `atmosbox.scene.ascent.dissipation`.
+The droplets flow with the air, the faster the higher they are, and the random pushes of the molecules on them do random
+work: there is less of it in a low box, see `atmosbox.scene.ascent.dissipation`.
 """
 RAIN = 0.05
-"""How often a molecule that is too many for the cloud falls out per mean free time at the start, if it rains.
+"""Rate at which each molecule in excess of what the cloud holds falls out as rain, per mean free time at the start.
 
-Few molecules are liquid, and how many scatters: were it faster, each chance surplus would rain before it is gone.
+Few molecules are liquid, and their number fluctuates: at a higher rate each random surplus would rain before it is
+gone.
 """
 
 
 @dataclass(frozen=True)
 class MoistAscent:
-    """A way up of moist air, by theory.
+    """The ascent of moist air according to theory.
 
     Parameters
     ----------
     molecules
-        How many there are at the start, of air and of vapour.
+        Number of molecules at the start, of air and of vapour together.
     diameter
-        Of a molecule [m].
+        Diameter of a molecule [m].
     temperature, pressure, vapour_pressure
         At the start [K, Pa, Pa].
     route
-        Pressure of the environment at equal times, from the start to the end [Pa].
+        Pressure of the environment at equal intervals of time, from the start to the end [Pa].
     length
-        How long the way is, in mean free times at its start.
+        Duration of the ascent, in mean free times at its start.
     area
-        Area of all droplets, in floors of the box at the start.
+        Area of all droplets, in units of the floor of the box at the start.
     most_liquid
-        Liquid that the cloud holds before it rains, in mass per dry air; infinite if it does not [kg kg-1].
+        Liquid that the cloud holds before it rains, as mass per mass of dry air; infinite if it does not rain [kg
+        kg-1].
     """
 
     molecules: int
@@ -64,12 +66,12 @@ class MoistAscent:
 
     @property
     def top_pressure(self) -> float:
-        """Lowest pressure on the way [Pa]."""
+        """Lowest pressure of the ascent [Pa]."""
         return min(self.route)
 
     @property
     def travel(self) -> float:
-        """By how much the logarithm of the pressure changes on the way, up and down."""
+        """Total change of the logarithm of the pressure along the ascent, up and down."""
         return float(np.abs(np.diff(np.log(self.route))).sum())
 
     @property
@@ -78,24 +80,24 @@ class MoistAscent:
         return Scale(self.diameter, DRY_AIR.molecule_mass, BOLTZMANN * self.temperature)
 
     def box(self, *, ideal: bool) -> tuple[float, Array, float]:
-        """Return density, sides that centres can reach, and (Z - 1) / n at the start; see `size_of_parcel`."""
+        """Return density, sides within reach of the centres, and (Z - 1) / n at the start; see `size_of_parcel`."""
         return size_of_parcel(self.scale, self.molecules, self.pressure, ideal=ideal, flatness=FLATNESS)
 
     def mean_free_time(self, *, ideal: bool) -> float:
         """Return the mean free time at the start, in units of the box."""
         density = self.box(ideal=ideal)[0]
         time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-        # molecules without volume meet each other less often
+        # molecules without volume collide less often
         return rounded(time * (float(law.contact_value(law.packing_fraction(density, 1.0))) if ideal else 1.0))
 
     @property
     def vapour(self) -> int:
-        """How many molecules are vapour at the start."""
+        """Number of molecules of vapour at the start."""
         return vapour_molecules(self.molecules, self.vapour_pressure, self.pressure)
 
     @property
     def total_water(self) -> float:
-        """Water per dry air, in mass: whole molecules make it a little other than asked for [kg kg-1]."""
+        """Mass of water per mass of dry air [kg kg-1]; whole molecules make it differ a little from the setting."""
         return law.WATER_MASS_RATIO * self.vapour / (self.molecules - self.vapour)
 
     @property
@@ -110,7 +112,7 @@ class MoistAscent:
 
     @property
     def keeps(self) -> int:
-        """How many molecules of liquid the cloud holds before it rains, if it does."""
+        """Number of molecules of liquid that the cloud holds before it rains; 0 if it does not rain."""
         if math.isinf(self.most_liquid):
             return 0
         return round(self.most_liquid / law.WATER_MASS_RATIO * (self.molecules - self.vapour))
@@ -121,9 +123,9 @@ class MoistAscent:
         return math.isfinite(self.most_liquid)
 
     def path(self, pressure: Array, share: Array, scatter: float = 0.0) -> law.ParcelPath:
-        """Return temperature and water along pressures [Pa], met when these shares of the time, 0 to 1, have passed.
+        """Return temperature and water at pressures [Pa] that are met at these shares of the time, 0 to 1.
 
-        If it rains, liquid that scatters so much [kg kg-1] rains more.
+        If it rains, ``scatter`` is the standard deviation of the liquid [kg kg-1], which makes more rain.
         """
         start = self.pressure, self.temperature, self.total_water
         if not self.rains:
@@ -133,7 +135,7 @@ class MoistAscent:
 
     @functools.cached_property
     def planned(self) -> tuple[Array, law.ParcelPath]:
-        """The shares of the time of the route, and the path along it."""
+        """The shares of the time at the points of the route, and the path along the route."""
         shares = np.linspace(0.0, 1.0, len(self.route))
         return shares, self.path(np.array(self.route), shares)
 
@@ -155,6 +157,6 @@ class MoistAscent:
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """Where its temperature is compared with the adiabat [Pa]."""
+        """Pressures at which the temperature is compared with the adiabat [Pa]."""
         shown = dict.fromkeys((85_000.0, 70_000.0, 50_000.0, self.top_pressure))
         return tuple(p for p in shown if self.top_pressure <= p < self.pressure)
