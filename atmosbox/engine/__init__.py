@@ -2,17 +2,17 @@
 
 Read `core` first, then `exact`; the other folders when you need them. Each lists its files in reading order.
 
-`core`     molecules, walls, schedules, random numbers, the laws of contact, tallies, refusals
-`start`    where molecules stand at the start, and how they move
-`exact`    from event to event, with nothing in between; and the slow reference
-`wells`    molecules that attract each other, from event to event
-`liquid`   condensed water: a reservoir, as a mist, as drops or as a pool
-`stepped`  in time steps: all move, those that overlap collide
+`core`     molecules, walls, schedules, random numbers, collision laws, tallies, refusals
+`start`    positions and velocities of the molecules at the start
+`exact`    event-driven: time jumps from one event to the next; and a slow reference
+`wells`    molecules that attract each other, event-driven too
+`liquid`   condensed water: as a reservoir, a mist, drops or a pool
+`stepped`  in time steps: all molecules move, then those that overlap collide
 `dsmc`     direct simulation Monte Carlo
-`classic`  the schemes of teaching applets
+`classic`  the time-stepped schemes of common teaching applets
 
 Everything is in reduced units; the engine knows no kelvin, no file and no scenario. The names below are imported when
-they are first used, so that a program which only asks for a schedule does not wait for the compiler.
+they are first used, so that a program that needs only a schedule does not wait for the compiler.
 """
 
 import importlib

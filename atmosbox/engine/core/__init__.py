@@ -1,30 +1,30 @@
-"""The parts that every engine shares: molecules, walls, laws of contact, tallies.
+"""The parts that every engine shares: molecules, walls, collision laws, tallies.
 
-`state`         what is known of a molecule, of its box, of what lies ahead
+`state`         the data of molecules, box and events, as NamedTuples of arrays
 `motion`        free flight
-`elementary`    logarithms, exponentials and their like, the same bits everywhere
+`elementary`    logarithms, exponentials and the like, with the same bits on every machine
 `random`        random numbers
-`hard_sphere`   the law of hard spheres: when two touch, what becomes of their velocities
-`square_well`   the law of spheres that attract each other: edge and core of a well
-`pair`          how far molecules feel each other, when they meet: by whichever law
+`hard_sphere`   hard spheres: when two of them touch, and their velocities after the collision
+`square_well`   spheres that attract each other: the core and the edge of a square well
+`pair`          the interface to the pair laws: range, time of meeting, change of velocity
 `schedule`      numbers that change with time
-`walls`         what walls do, one law each
+`walls`         the laws of the walls, one each
 `refusal`       the errors
-`inputs`        what is refused
-`packing`       which part of the space molecules fill
-`account`       what a box has counted, and whether its energy adds up
+`inputs`        checks of the numbers that a box is given
+`packing`       packing fraction: the part of the space that molecules fill
+`account`       the tallies of a box, and whether its energy ledger closes
 `saved_state`   the state of a box as named arrays and plain numbers, for copies and files
-`adjustment`    what may be changed while time passes
-`parcel`        the box: what it is given, holds and tells; what may move its piston
-`box`           the box, as the kernels know it
-`kind`          molecules that are alike
-`marching`      the box, advanced in equal time steps
-`measure`       what is read off the molecules
+`adjustment`    changes by hand during a run: piston, heat baths, gravity
+`parcel`        the box: its parameters, its state, and the driver of its piston
+`box`           the box in the form that the kernels take
+`kind`          kinds: molecules of equal mass, size and rotation
+`marching`      a box that is advanced in equal time steps
+`measure`       temperature, layers, speeds and mean free path, computed from the molecules
 `course`        how far along its planned ascent a parcel is
 `lift`          a piston that follows a pressure
 `jit`           how a kernel is compiled when it is first called
-`compiler`      what numba makes of it
-`kernel_cache`  where the machine code is kept, and who is told when some is made
-`by_reference`  NamedTuples that kernels hand on by reference
+`compiler`      how numba compiles a kernel
+`kernel_cache`  where the machine code is kept, and reports of compilations
+`by_reference`  NamedTuples that kernels pass on by reference
 `constant_modes`  the flags of a set of modes as constants
 """

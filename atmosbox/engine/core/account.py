@@ -1,4 +1,4 @@
-"""What a box has counted since its start, and whether the account of energy closes."""
+"""The tallies of a box since its start, and whether its energy ledger closes."""
 
 import math
 from abc import ABC, abstractmethod
@@ -29,7 +29,7 @@ class Snapshot(NamedTuple):
 
 
 class Account(ABC):
-    """The tallies of a box of molecules, read in words; `Parcel` keeps them."""
+    """The tallies of a box of molecules as properties with names and units; `Parcel` is one."""
 
     _tallies: Tallies
     _walls: Walls
@@ -62,7 +62,7 @@ class Account(ABC):
 
     @abstractmethod
     def snapshot(self) -> Snapshot:
-        """Return all molecules as they are now; nothing in the box changes by being looked at."""
+        """Return all molecules as they are now; the box does not change."""
 
     @property
     def contacts(self) -> int:
@@ -87,12 +87,12 @@ class Account(ABC):
 
     @property
     def wall_hits(self) -> NDArray[np.int64]:
-        """How often each wall has been hit since the start."""
+        """Number of hits on each wall since the start."""
         return np.array(self._tallies.hits)
 
     def wall_kT(self) -> Array:
         """Return the temperature of each wall now [energy], NaN for one that has none."""
-        plain = getattr(wall_kT, "py_func", wall_kT)  # asked once a frame: not worth compiling
+        plain = getattr(wall_kT, "py_func", wall_kT)  # called once a frame: not worth compiling
         kT = [
             plain(self._walls, w, self.time) if law == HEAT_BATH else math.nan for w, law in enumerate(self._walls.law)
         ]
@@ -114,7 +114,7 @@ class Account(ABC):
         return np.array(self._tallies.virial)
 
     def energy(self) -> tuple[float, float, float]:
-        """Return kinetic, rotational and potential energy now [energy]; that of gravity, and of attraction if any."""
+        """Return kinetic, rotational and potential energy now [energy]; potential: of gravity, and of attraction."""
         position, velocity, spin = self.snapshot()[1:]
         kinetic = 0.5 * float(np.sum(self.mass * np.sum(velocity * velocity, axis=1)))
         rotational = float(np.sum(spin)) if self._rotates else 0.0
@@ -122,49 +122,49 @@ class Account(ABC):
         return kinetic, rotational, potential
 
     def ledger(self) -> float:
-        """Return by how much the energy ledger fails to close, relative to the energy that there is or has passed.
+        """Return the error of the energy ledger, relative to the largest of the energies in it [1].
 
         Kinetic + rotational + potential energy and that of a liquid = what there was at the start + heat from the
-        walls and from a random bath + work of the piston + what changes of gravity and of attraction gave + what an
-        approximate scheme has made by itself.
+        walls and from a random bath + work of the piston + energy from changes of gravity and of attraction + energy
+        that an approximate scheme has made by itself.
         """
         parts = self.energy()
         total = sum(parts) + self.condensed_energy
         given = self._given()
         passed = float(np.abs(self._tallies.heat).sum()) + abs(self.work) + abs(self.gravity_work)
         passed += abs(self.bath_heat) + abs(self.attraction_work)
-        # in deep wells a large kinetic energy and a large negative potential one may add up to little
+        # in deep wells a large kinetic and a large negative potential energy may have a small sum
         scale = max(abs(total), abs(self._start_energy), passed, *(abs(part) for part in parts))
         return abs(total - self._start_energy - given) / scale if scale > 0.0 else 0.0
 
     def _given(self) -> float:
-        """Return all energy that has come in since the start [energy]."""
+        """Return all energy that has entered since the start [energy]."""
         walls = float(self._tallies.heat.sum())
         given = walls + self.work + self.gravity_work + self.numerical_heat
         return given + self.bath_heat + self.attraction_work
 
     @property
     def bath_heat(self) -> float:
-        """Heat that a random bath has given since the start [energy]; most boxes have none."""
+        """Heat that a random bath has given since the start [energy]; 0 without one."""
         return 0.0
 
     @property
     def attraction_work(self) -> float:
-        """Energy that changes of an attraction have given since the start [energy]; hard spheres have none."""
+        """Energy that changes of the attraction have given since the start [energy]; 0 for hard spheres."""
         return 0.0
 
     @property
     def numerical_heat(self) -> float:
-        """Energy that the engine's scheme itself has made, beside heat and work [energy]; an exact one makes none."""
+        """Energy that the engine's scheme itself has made, apart from heat and work [energy]; 0 for an exact engine."""
         return 0.0
 
     @property
     def condensed_energy(self) -> float:
-        """Energy of the liquid, of its vapour's binding and of the rain [energy]; dry air has none."""
+        """Energy of the liquid, of the binding of its vapour, and of the rain [energy]; 0 for dry air."""
         return 0.0
 
     def escaped(self) -> int:
-        """Return how many molecules are outside the box or nowhere: none, or the engine is wrong."""
+        """Return how many molecules are outside the box or have no finite position: 0, unless the engine is wrong."""
         position, velocity = self.snapshot()[1:3]
         lawful = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
         for axis in (0, 2) if self._planar else (0, 1, 2):
@@ -175,8 +175,8 @@ class Account(ABC):
         return int(np.sum(~lawful))
 
     def internal_energy(self) -> float:
-        """Return kinetic + rotational energy from the ledger, without looking at the molecules [energy].
+        """Return kinetic + rotational energy from the ledger, without a sum over the molecules [energy].
 
-        Meant for boxes without gravity, where it costs nothing however many molecules there are.
+        For boxes without gravity; there it costs the same for any number of molecules.
         """
         return self._start_energy + self._given() - self.condensed_energy

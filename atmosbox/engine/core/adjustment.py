@@ -1,4 +1,4 @@
-"""What may be changed by hand while time passes, and how the books still close."""
+"""Changes by hand during a run: the piston, heat baths, gravity; the energy ledger still closes."""
 
 import math
 from abc import abstractmethod
@@ -14,8 +14,9 @@ __all__ = ["Adjustable"]
 class Adjustable(Account):
     """A box whose piston, heat baths and gravity may be changed between two advances; `Parcel` is one.
 
-    What was planned for the old walls or in the old field is planned anew, and what a change gives to the molecules
-    is entered in the ledger. A box that is left unchanged gives the same bytes as one that cannot be changed.
+    Events that were predicted for the old walls or the old gravity are predicted anew, and the energy that a change
+    gives to the molecules is entered in the ledger. A box that is not changed gives the same bytes as one that cannot
+    be changed.
     """
 
     _now: float
@@ -32,17 +33,17 @@ class Adjustable(Account):
 
     @abstractmethod
     def _piston_turned(self) -> None:
-        """Take note that the piston moves at another velocity from now on."""
+        """Update what depends on the velocity of the piston, which has just changed."""
 
     @abstractmethod
     def _field_changes(self, gravity: float) -> None:
-        """Set another gravity from now on, refused where the engine could not go on with it."""
+        """Set another gravity from now on, or refuse it if the engine could not go on with it."""
 
     def _bath_changes(self, kT: float) -> None:
-        """Take note that a wall has this temperature [energy] from now on, or refuse it."""
+        """Update what depends on the temperature of a wall [energy], which is about to change, or refuse it."""
 
     def set_piston_velocity(self, velocity: float) -> None:
-        """Let the piston move at another velocity [length/time] from now on.
+        """Set the velocity of the piston [length/time] from now on.
 
         Raises
         ------
@@ -56,23 +57,23 @@ class Adjustable(Account):
         self._piston_turned()
 
     def set_wall_kT(self, kT: float, wall: int | None = None) -> None:
-        """Keep a wall, or all that are heat baths, at another temperature from now on.
+        """Set the temperature of a wall, or of all heat baths, from now on.
 
-        A schedule that the wall had is forgotten. Molecules learn of it when they hit the wall, and the heat that
-        it then gives is in the ledger as ever.
+        It replaces the wall's schedule. Molecules are affected when they hit the wall, and the heat that it then
+        gives is entered in the ledger as always.
 
         Parameters
         ----------
         kT
             The temperature [energy].
         wall
-            Which wall, in the order of `walls.WALL_NAMES`; all heat baths if none is named.
+            Number of the wall, in the order of `walls.WALL_NAMES`; all heat baths if none is given.
 
         Raises
         ------
         RefusedError
             If the temperature is not finite and above 0, the wall is no heat bath, or there is none at all; or if the
-            molecules would become too fast for the step of an engine that marches.
+            molecules would become too fast for the time step of a stepped engine.
 
         Examples
         --------
@@ -97,20 +98,20 @@ class Adjustable(Account):
             self._walls.schedule_kT[first:last] = kT
 
     def set_wall(self, wall: int, law: Specular | HeatBath) -> None:
-        """Make a smooth wall a heat bath, or a heat bath a smooth wall, from now on.
+        """Turn a smooth wall into a heat bath, or a heat bath into a smooth wall, from now on.
 
         Parameters
         ----------
         wall
-            Which wall, in the order of `walls.WALL_NAMES`.
+            Number of the wall, in the order of `walls.WALL_NAMES`.
         law
-            What it is from now on; a heat bath of one temperature.
+            The new law: `Specular`, or a `HeatBath` of one temperature.
 
         Raises
         ------
         RefusedError
             If the wall is a piston, a pool or periodic, if the law is neither of the two or its temperature changes
-            with time; or if the molecules would become too fast for the step of an engine that marches.
+            with time; or if the molecules would become too fast for the time step of a stepped engine.
 
         Examples
         --------
@@ -140,9 +141,9 @@ class Adjustable(Account):
         self._walls.accommodation[wall] = new.accommodation[wall]
 
     def set_gravity(self, gravity: float) -> None:
-        """Let gravity be another from now on.
+        """Set the gravity from now on.
 
-        No molecule moves in that moment, but all are higher up or lower down in energy; the ledger has it as
+        No molecule moves at that moment, but the potential energy of all changes; the ledger holds the change as
         `gravity_work`.
 
         Parameters
@@ -154,11 +155,11 @@ class Adjustable(Account):
         ------
         RefusedError
             If gravity is negative or not finite, or the box cannot have any: one that is periodic along z, or holds
-            a liquid; or if molecules would fall too far in a step.
+            a liquid; or if molecules would fall too far in a time step.
 
         Examples
         --------
-        A molecule one unit above the floor has one unit of energy more when gravity is doubled:
+        The potential energy of a molecule one unit above the floor rises by one unit when gravity is doubled:
 
         >>> from atmosbox.engine import ParcelSet
         >>> box = ParcelSet([[2, 2, 1]], [[0, 0, 0]], length=(4, 4, 4), gravity=1.0)

@@ -1,4 +1,4 @@
-"""The box, as the kernels know it."""
+"""The box in the form that the kernels take."""
 
 import math
 
@@ -20,7 +20,7 @@ def new_box(
     exchange: float,
     stall: float,
 ) -> Box:
-    """Return the box; a ceiling that moves is not part of it.
+    """Return the box as a `Box`; with a moving ceiling its height is ``inf``, as the position is kept in `Walls`.
 
     Examples
     --------

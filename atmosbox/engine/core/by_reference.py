@@ -1,4 +1,4 @@
-"""NamedTuples that kernels hand on by reference: what `jit.by_reference` is in compiled code."""
+"""NamedTuples that kernels pass on by reference: the compiled version of `jit.by_reference`."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ _NAMED = (types.containers.NamedTuple, types.containers.NamedUniTuple)
 
 
 class Reference(types.Type):
-    """The type of a NamedTuple that kernels hand on by its place in memory, and not value by value."""
+    """The numba type of a NamedTuple that kernels pass on by its address, not value by value."""
 
     def __init__(self, bundle: Any) -> None:
         self.bundle = bundle

@@ -1,6 +1,6 @@
-"""What numba makes of a kernel; imported when one is first called.
+"""How numba compiles a kernel; this file is imported when a kernel is first called.
 
-Besides this file only `stepped.window` calls numba, for its vectors.
+Besides this file, `constant_modes`, `by_reference` and `exact.lanes` extend numba, and `stepped.window` its vectors.
 """
 
 import functools
@@ -28,17 +28,17 @@ if sys.platform != "win32":
 __all__ = ["by_reference", "compiled", "prange", "prefetch", "type_of", "use_threads"]
 
 prange = numba.prange
-"""The ``range`` of a loop whose turns a kernel that is ``parallel`` shares among threads."""
+"""The ``range`` of a loop whose iterations a ``parallel`` kernel shares among threads."""
 
-# Nothing of "fastmath", not even the fusing of products and sums, which some processors have and some have not: what
-# is computed is the same to the last bit everywhere.
+# No "fastmath" option, not even the fusing of products and sums, which only some processors have: results are the
+# same to the last bit on all processors.
 _SHARED: dict[str, Any] = {"error_model": "numpy"}
 _CACHE = cache_folder()
 _LONGEST = 120.0  # seconds
 
 
 class _Locator(caching._CacheLocator):  # type: ignore[misc]
-    """Tells numba where to keep a kernel: in a folder whose name stands for all sources, so that no file has a date."""
+    """Tells numba the folder of a kernel; its name holds the digest of all sources, so no file needs a time stamp."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._folder = str(_CACHE / function.__module__)  # type: ignore[operator]
@@ -62,12 +62,12 @@ class _KeptKernel(caching.CompileResultCacheImpl):  # type: ignore[misc]
 
 
 class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
-    """The machine code of a kernel on disk; who does not find it there compiles it, and all others wait."""
+    """The machine code of a kernel on disk; one process compiles what is not there while the others wait."""
 
     _impl_class = _KeptKernel
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the machine code for some types, or None if it must be compiled, which others are told."""
+        """Return the machine code for some types, or None if it must be compiled; then announce the compilation."""
         found = self._kept(sig, target_context)
         if found is None and self._wait_for_others(sig, target_context):
             found = self._kept(sig, target_context)
@@ -76,7 +76,7 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
         return found
 
     def _kept(self, sig: Any, target_context: Any) -> Any:
-        """Return what is on disk; a damaged file, whose reading may end in any error, is as good as none, and goes."""
+        """Return what is on disk, or None; a damaged file may raise any error, counts as missing, and is removed."""
         try:
             return super().load_overload(sig, target_context)
         except Exception:
@@ -89,9 +89,9 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
         announce(self._py_func.__qualname__, False)
 
     def _wait_for_others(self, sig: Any, target_context: Any) -> bool:
-        """Take the right to compile; tell whether another process had it until now.
+        """Take the right to compile; return whether another process had it until now.
 
-        The right ends with the process, and is not waited for longer than any compilation lasts.
+        A process that ends gives up its right. The wait is no longer than the longest compilation.
         """
         if sys.platform == "win32":
             return False
@@ -116,7 +116,7 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
         return waited
 
     def let_others_go_on(self) -> None:
-        """Give up the right to compile."""
+        """Give up the right to compile, so that waiting processes go on."""
         for lock in self._locks:
             lock.close()
         self._locks.clear()
@@ -129,10 +129,10 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
 def compiled(
     function: Callable[..., Any], *, entry: bool, early: bool, allocates: bool, parallel: bool, kept: bool = True
 ) -> Any:
-    """Return what numba makes of a function, which is compiled for the types it is called with: see `jit.kernel`.
+    """Return a function compiled by numba, for the types of the arguments of each call: see `jit.kernel`.
 
-    Only an entry can be called by Python, and is ``kept`` on disk. For all others numba is told to leave out the
-    functions through which Python and C would call them, which take a fifth of the time of a compilation.
+    Python can call only an entry, and an entry can be ``kept`` on disk. For all others numba leaves out the wrappers
+    through which Python and C would call them, which take a fifth of the compilation time.
     """
     options = _SHARED | {"_nrt": allocates, "parallel": parallel, "pipeline_class": KernelCompiler}
     if early:
@@ -149,7 +149,7 @@ def compiled(
 
 
 def _without_garbage_collection(compile: Callable[[Any], Any], kernels: _KeptKernels | None) -> Callable[[Any], Any]:
-    """Switch the garbage collector off while a kernel is compiled: it takes a tenth of the time and finds little."""
+    """Switch the garbage collector off while a kernel is compiled: it takes a tenth of that time and frees little."""
 
     def uncollected(signature: Any) -> Any:
         collects = gc.isenabled()
@@ -166,10 +166,10 @@ def _without_garbage_collection(compile: Callable[[Any], Any], kernels: _KeptKer
 
 
 def _of_plain_types(made: Any) -> Any:
-    """Let a compiled function be compiled once for all whole numbers, not once for each that stands in the source.
+    """Have a function compiled once for all whole numbers, not once for each constant in the source.
 
-    The code is inlined, and the processor's code is optimised for each number after that. Of the modes it is given
-    those that it reads, so that it is compiled once for all boxes that differ in others.
+    The code is inlined, and the optimiser adapts it to each constant afterwards. Of the modes, the function gets only
+    the flags that it reads, so that one version serves all boxes that differ in other flags.
     """
     template = made.get_call_template
 
@@ -182,13 +182,13 @@ def _of_plain_types(made: Any) -> Any:
 
 
 def type_of(thing: Any) -> Any:
-    """Return the type of a compiled function, as other compiled code sees it."""
-    cpu_target.typing_context.refresh()  # instructions of our own may have been imported since
+    """Return the numba type of a compiled function, for the code of other kernels."""
+    cpu_target.typing_context.refresh()  # intrinsics of ours may have been imported since
     return cpu_target.typing_context.resolve_value_type(thing)
 
 
 def use_threads(number: int) -> None:
-    """Let parallel kernels run on so many threads, or on as many as this machine has."""
+    """Set the number of threads of parallel kernels, at most as many as this machine has."""
     numba.set_num_threads(min(number, config.NUMBA_NUM_THREADS))
 
 

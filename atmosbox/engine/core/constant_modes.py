@@ -1,7 +1,8 @@
-"""The flags of a set of modes as constants, known to numba before it compiles anything.
+"""The flags of a set of modes as constants that numba knows before it compiles a kernel.
 
-`Modes` is a type of its own for each set of flags, so that a kernel which is given one is compiled for just that set.
-What other kernels call is compiled for the flags alone that it reads: boxes that differ in other ones share it.
+Each set of flags is a numba type of its own, so that a kernel which is given `Modes` is compiled for just that set.
+A kernel that other kernels call is compiled for the flags that it reads alone: boxes that differ only in other flags
+share it.
 """
 
 import dis
@@ -25,7 +26,7 @@ __all__ = ["KernelCompiler", "for_flags_read"]
 
 
 class _SetOfModes(types.Dummy):
-    """The type of one set of `Modes`: every flag of it is known before a kernel is compiled."""
+    """The numba type of one set of `Modes`: all its flags are known before a kernel is compiled."""
 
     def __init__(self, modes: Modes) -> None:
         self.modes = modes
@@ -51,19 +52,19 @@ def _unbox_modes(kind: Any, _: Any, passed: Any) -> NativeValue:
 
 @lower_cast(_SetOfModes, _SetOfModes)
 def _leave_out_flags(_context: Any, _builder: Any, _from: Any, _to: Any, value: Any) -> Any:
-    return value  # a set of modes is nothing when the code runs
+    return value  # a set of modes takes no memory in compiled code
 
 
 @functools.cache
 def _flags_read(function: Callable[..., Any]) -> frozenset[str]:
-    """Return the flags that a kernel reads, itself or in what it calls."""
+    """Return the flags that a kernel reads, itself or in the kernels that it calls."""
     flags = set()
     # an attribute that is loaded just after the modes; some versions of Python load two names at once
     for before, line in pairwise(dis.get_instructions(function)):
         loaded = before.argval if isinstance(before.argval, tuple) else (before.argval,)
         if line.opname == "LOAD_ATTR" and loaded[-1:] == ("modes",):
             flags.add(line.argval)
-    # and what the kernels read that it names
+    # and the flags that the kernels read which it calls
     seen = inspect.getclosurevars(function)
     for named in (*seen.globals.values(), *seen.nonlocals.values()):
         called = getattr(named, "py_func", None)
@@ -73,7 +74,7 @@ def _flags_read(function: Callable[..., Any]) -> frozenset[str]:
 
 
 def for_flags_read(function: Callable[..., Any], kind: Any) -> Any:
-    """Return the type that a kernel is compiled for where it is given an argument of some type."""
+    """Return the type for which a kernel is compiled when its argument has the type ``kind``."""
     if not isinstance(kind, _SetOfModes):
         return kind
     return _SetOfModes(kind.modes.without(*set(Modes._fields) - _flags_read(function)))
@@ -81,10 +82,11 @@ def for_flags_read(function: Callable[..., Any], kind: Any) -> Any:
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _WriteOutModes(FunctionPass):  # type: ignore[misc]
-    """Writes each flag of the modes into the code as the constant that it is.
+    """Replaces each flag of the modes in the code by its constant value.
 
-    The branches of features that a scene leaves out are then dropped before anything is compiled; left to the
-    optimiser, which sees the constants only after everything has been inlined, they take most of its time.
+    The branches of features that a scene does not use are then dropped before anything is compiled. If they were left
+    to the optimiser, which sees the constants only after everything has been inlined, it would spend most of its time
+    on them.
     """
 
     _name = "write_out_modes"
@@ -93,7 +95,7 @@ class _WriteOutModes(FunctionPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        """Go through the code of a function whose arguments have the types ``state.args``."""
+        """Replace the flags in the code of a function whose arguments have the types ``state.args``."""
         code = state.func_ir
         for block in code.blocks.values():
             for line in block.find_insts(Assign):
@@ -116,7 +118,7 @@ class _WriteOutModes(FunctionPass):  # type: ignore[misc]
 
 
 class KernelCompiler(Compiler):  # type: ignore[misc]
-    """numba's compiler, with `_WriteOutModes` before it looks for branches that are never taken."""
+    """numba's compiler, with `_WriteOutModes` before it removes branches that are never taken."""
 
     def define_pipelines(self) -> list[Any]:
         """Return the passes that a function goes through."""

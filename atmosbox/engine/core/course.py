@@ -1,4 +1,4 @@
-"""How far along its planned way a parcel is: as planned, or led by hand."""
+"""How far along its planned ascent a parcel is: as planned, or moved by hand."""
 
 import math
 
@@ -14,7 +14,7 @@ __all__ = ["Course", "interpolate"]
 
 @kernel(plain=True)
 def interpolate(x, xs, ys):
-    """Return y at x of a polygon, constant beyond its ends.
+    """Return y at x, interpolated linearly between the points (xs, ys) and constant beyond both ends.
 
     Examples
     --------
@@ -37,11 +37,11 @@ def interpolate(x, xs, ys):
 
 
 class Course:
-    """The planned moment that a parcel is at, as a function of time.
+    """The moment of its plan that a parcel has reached, as a function of time.
 
-    A plan says what the air outside is like at each moment from 0 to its end. Left alone, a parcel keeps to it: at
-    time t it is at the moment t. Led by hand it makes for another moment, forwards or backwards, always at the pace
-    of the plan, and rests there; so nothing that the plan's slowness guarantees is lost.
+    A plan gives the environment at each moment from 0 to its end. By default a parcel follows the plan: at time t it
+    is at the moment t. When led by hand it goes to another moment, forwards or backwards, always at the pace of the
+    plan, and stays there. So it never moves faster than planned.
 
     Parameters
     ----------
@@ -66,17 +66,17 @@ class Course:
 
     @property
     def led(self) -> bool:
-        """Whether anybody has led the parcel."""
+        """Whether `lead` has been called."""
         return len(self._time) > 1
 
     def moment(self, time: float) -> float:
-        """Return the planned moment at a time [time]."""
+        """Return the moment of the plan [time] at a time [time]."""
         if not self.led:
             return min(time, self.end)
         return float(interpolate(time, np.array(self._time), np.array(self._moment)))
 
     def corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the times and moments between which the way is straight; it rests after the last.
+        """Return the times and moments between which the moment is linear in time; it is constant after the last.
 
         Examples
         --------
@@ -88,25 +88,25 @@ class Course:
         return np.array([0.0, self.end]), np.array([0.0, self.end])
 
     def lead(self, time: float, towards: float) -> None:
-        """Make for another moment of the plan, and rest there.
+        """Go to another moment of the plan, and stay there.
 
         Parameters
         ----------
         time
-            Now [time]; what was the way before is kept.
+            The time now [time]; earlier parts of the course stay as they were.
         towards
-            The moment [time].
+            The moment to go to [time].
 
         Raises
         ------
         RefusedError
-            If a number is not finite, the moment is not of the plan, or now lies before the last call.
+            If a number is not finite, the moment is not in the plan, or the time lies before that of the last call.
         """
         time, towards = number(time, "time"), number(towards, "the moment", least=0.0, most=self.end)
         if time < self._changed:
             raise RefusedError(f"time = {time} lies before the last change, at {self._changed}: give a later time")
         here = self.moment(time)
-        if not self.led and time > self.end:  # it has come to rest there by itself
+        if not self.led and time > self.end:  # it reached the end of the plan earlier
             self._time.append(self.end)
             self._moment.append(self.end)
         while self._time[-1] > time:

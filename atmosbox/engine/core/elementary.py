@@ -1,12 +1,12 @@
 r"""Elementary functions from +, -, \*, /, square roots and whole-number arithmetic alone.
 
-Every C library rounds the last digit of a logarithm in its own way, and numpy's own loops do so by processor. IEEE 754
-fixes each of the five operations above to the last bit. So what is made of them alone, in one order, is the same on
-every processor and in every browser, compiled or not; each function here is within one unit in the last place of the
-true value, `lgamma` below 3 within 1.5 (a test compares them with 60-digit arithmetic).
+C libraries differ in the last digit of a logarithm, and so do numpy's own loops between processors. IEEE 754 fixes each
+of the five operations above to the last bit. So a function that is made of them alone, in one order, gives the same
+bits on every processor and in every browser, compiled or not. Each function here is within one unit in the last place
+of the true value, `lgamma` below 3 within 1.5 (a test compares them with 60-digit arithmetic).
 
-Called from Python they run as they are written, called by a kernel they are compiled into it: the bits are the same.
-`log_of_normal`, `log1p`, `expm1` and `circle` take arrays, too, where they are called from Python.
+Python runs them as they are written; a kernel that calls them has them compiled into it: the bits are the same.
+`log_of_normal`, `log1p`, `expm1` and `circle` also take arrays when Python calls them.
 
 References
 ----------
@@ -99,7 +99,7 @@ def log1p(x):
     """
     u = 1.0 + x
     v = u - 1.0
-    c = ((1.0 - (u - v)) + (x - v)) / u  # what the sum has lost, exactly, over u
+    c = ((1.0 - (u - v)) + (x - v)) / u  # the rounding error of the sum, exactly, over u
     bits = np.float64(u).view(np.int64) + (_ONE - _ROOT_HALF)
     k = (bits >> 52) - 0x3FF
     f = np.int64((bits & _MANTISSA) + _ROOT_HALF).view(np.float64) - 1.0
@@ -177,7 +177,7 @@ _COSINE_HIGH = (-2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.1359
 
 @kernel(plain=True)
 def circle(turns):
-    """Return cosine and sine of so many turns, from 0 to 1.
+    """Return cosine and sine of an angle given in turns (one turn is 2 pi), from 0 to 1.
 
     Examples
     --------
@@ -201,7 +201,7 @@ def circle(turns):
     half = 0.5 * z
     w = 1.0 - half
     cosine = w + (((1.0 - w) - half) + (z * r - x * rest))
-    # by quarters: who is swapped, and whose sign; a sum with zero is exact
+    # by quarters of a turn: whether the two are swapped, and their signs; adding zero is exact
     n = np.int64(quarter)
     odd = np.float64(n & 1)
     even = 1.0 - odd

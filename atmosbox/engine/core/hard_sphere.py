@@ -1,6 +1,6 @@
-r"""The law of hard spheres: when two of them touch, and what becomes of their velocities.
+r"""The law of hard spheres: when two of them touch, and their velocities after the collision.
 
-Gravity accelerates both alike, so their relative motion is a straight line with or without it.
+Gravity accelerates both molecules alike, so their relative motion is a straight line with or without it.
 """
 
 import math
@@ -13,10 +13,10 @@ __all__ = ["earlier_root", "quadratic", "resolve_contact", "share_energy", "time
 
 @kernel(early=True)
 def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
-    r"""Return discriminant, b and c of :math:`v^2 t^2 + 2 b t + c = 0`, the contact of two molecules.
+    r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
     :math:`b = r \cdot v` is below zero while they approach, :math:`c = r^2 - \sigma^2`. The discriminant is formed with
-    min(b, 0): it is not above zero for nearly all pairs that miss, so that one test dismisses them. Arguments as for
+    min(b, 0): it is not above zero for nearly all pairs that miss, so that one test rejects them. Arguments as for
     `time_to_contact`.
     """
     b = rx * vx + ry * vy + rz * vz
@@ -28,7 +28,7 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
 
 @kernel(early=True)
 def earlier_root(discriminant, b, c):
-    """Return the earlier root of that `quadratic` [time], 0 if it is past: for a discriminant above zero, b below."""
+    """Return the earlier root of `quadratic` [time], 0 if it is past; needs a discriminant above and a b below zero."""
     return max(c / (math.sqrt(discriminant) - b), 0.0)
 
 
@@ -41,21 +41,21 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
     Parameters
     ----------
     rx, ry, rz
-        Position of one relative to the other [length].
+        Position of one molecule relative to the other [length].
     vx, vy, vz
-        Its relative velocity [length/time].
+        Velocity of the first relative to the other [length/time].
     diameter_squared
         Square of the distance of their centres in contact [length^2].
 
     Returns
     -------
     float
-        Time from now [time], ``inf`` if they miss each other or part.
+        Time from now [time], ``inf`` if they miss each other or move apart.
 
     Notes
     -----
-    The root is c / (-b + sqrt(d)), which keeps its digits when the two nearly touch. A pair that overlaps
-    by rounding and still approaches touches at once, one that parts never does [1]_.
+    The root is written as c / (-b + sqrt(d)), which keeps its digits when the two nearly touch. A pair that overlaps
+    by rounding and still approaches touches at once; a pair that moves apart never touches [1]_.
 
     References
     ----------
@@ -63,7 +63,7 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
 
     Examples
     --------
-    Three diameters apart, closing at unit speed, the gap of two is crossed in two:
+    Three diameters apart at a closing speed of one, they fly the gap of two in a time of two:
 
     >>> time_to_contact(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0)
     2.0
@@ -86,21 +86,21 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
     rx, ry, rz, vx, vy, vz
         Position [length] and velocity [length/time] of the molecule relative to its partner.
     mass, other_mass
-        Its mass and the partner's [mass].
+        Mass of the molecule and of its partner [mass].
 
     Returns
     -------
     (float, float, float)
-        Change of its velocity [length/time]; the partner's is that times -mass / other_mass.
+        Change of the molecule's velocity [length/time]; the partner's is this times -mass / other_mass.
 
     Notes
     -----
-    The division by the actual \|r\|^2, not by sigma^2, keeps energy to rounding although the distance at
-    contact is known to rounding only.
+    Dividing by the actual \|r\|^2, not by sigma^2, conserves energy to rounding, although the distance at
+    contact equals sigma to rounding only.
 
     Examples
     --------
-    A head-on contact of equals swaps their velocities:
+    A head-on contact of molecules of equal mass swaps their velocities:
 
     >>> resolve_contact(1.0, 0.0, 0.0, -2.0, 0.0, 0.0, 1.0, 1.0)[0]
     2.0
@@ -114,20 +114,20 @@ def resolve_contact(rx, ry, rz, vx, vy, vz, mass, other_mass):
 def share_energy(energy, dimensions, rotation, other_rotation, state):
     r"""Share the energy of a contact between relative motion and the two rotations (Larsen and Borgnakke [1]_).
 
-    The shares are as gamma variates :math:`\Gamma((d + 1)/2) : \Gamma(\zeta_i/2) : \Gamma(\zeta_j/2)`. In space
-    it is 2, not 3/2, for the relative motion because hard spheres collide in proportion to their relative speed;
-    that keeps detailed balance.
+    The shares are in the ratio of gamma variates of shape :math:`(d + 1)/2`, :math:`\zeta_i/2` and
+    :math:`\zeta_j/2`, with :math:`\zeta` rotational degrees of freedom. In space the shape for the relative motion is
+    2, not 3/2, because hard spheres collide at a rate proportional to their relative speed; so detailed balance holds.
 
     Parameters
     ----------
     energy
         Relative kinetic energy plus both rotational energies [energy].
     dimensions
-        In how many dimensions d the molecules move, 2 or 3.
+        Number d of dimensions in which the molecules move, 2 or 3.
     rotation, other_rotation
         Rotational degrees of freedom, 0, 2 or 3.
     state
-        State of the random numbers, moved on.
+        State of the random numbers; it is advanced.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What a box may be given: every number checked once, with a sentence for every refusal."""
+"""Checks of the parameters of a box: every number is checked once, and every refusal is a sentence."""
 
 import math
 from typing import Any
@@ -14,13 +14,13 @@ __all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "
 
 Array = NDArray[np.float64]
 
-_PIECE = 1 << 20  # molecules whose squares are added up together
+_PIECE = 1 << 20  # number of molecules whose squares are summed at once
 
 
 def matrix(values: ArrayLike, name: str, *, copy: bool = True) -> Array:
-    """Return three finite numbers per molecule, or refuse.
+    """Return three finite numbers per molecule as (molecule, axis), or refuse.
 
-    A copy has each of its three columns in one piece; without one, whoever reads the numbers may not change them.
+    A copy is stored column by column. Without a copy the result may be the caller's own array: do not change it.
 
     Examples
     --------
@@ -50,9 +50,9 @@ def column(
     least: float | None = None,
     shared: bool = False,
 ) -> Array:
-    """Return one finite number per molecule within its limits, or refuse.
+    """Return one finite number per molecule within its limits as (molecule,), or refuse.
 
-    Where it is ``shared`` one number for all takes the memory of one, and cannot be changed.
+    If ``shared``, one number given for all molecules is stored once, and the result cannot be changed.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def number(value: Any, name: str, *, least: float = -math.inf, most: float = mat
 
 
 def whole(value: Any, name: str, *, least: int) -> int:
-    """Return a whole number that is large enough, or refuse.
+    """Return a whole number that is not below ``least``, or refuse.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def sides_of(length: Any) -> Array:
 
 
 def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, bool]) -> Array:
-    """Return the centres, those that rounding has put into a wall moved out of it in place; refuse what stands outside.
+    """Return the centres, moved in place where rounding has put them into a wall; refuse any that lie outside.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
     array([[1., 1., 1.]])
     """
     alike = diameter.size > 0 and diameter.strides == (0,)
-    radius = 0.5 * (diameter[0] if alike else diameter)  # of ten million, copies take a lot of room
+    radius = 0.5 * (diameter[0] if alike else diameter)  # one number where possible: an array of ten million is large
     for axis in range(3):
         if periodic[axis]:
             continue
@@ -159,7 +159,7 @@ def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, 
 
 
 def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravity: float) -> float:
-    """Return the time in which a molecule passes its neighbour's place [time]."""
+    """Return the time in which a molecule moves by the mean distance between neighbours [time]."""
     spacing = float(cbrt(math.prod(float(side) for side in sides) / max(n, 1)))
     total = sum(sum_of_squares(column) for column in v.T)
     speeds = [math.sqrt(total / n)] if n else []
@@ -178,7 +178,7 @@ def natural_time(v: Array, sides: Array, n: int, walls: Any, mass: Array, gravit
 
 
 def sum_of_squares(column: Array) -> float:
-    """Return the sum of the squares of a column, without a second column of its size in memory.
+    """Return the sum of the squares of a column, without making a second array of its size.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""How kernels are compiled: when they are first called, and not before.
+"""Kernels, functions of the engine that numba compiles when they are first called, and not before.
 
-What asks for a scene's facts, or for one of its schedules, does not wait for numba: `compiler`, the file that
-loads it, is imported when the first kernel is called. Where the machine code is kept, `kernel_cache` says.
+A program that needs only the facts of a scene, or a schedule, does not wait for numba: `compiler`, the file that
+imports it, is imported when the first kernel is called. `kernel_cache` tells where the machine code is kept.
 """
 
 import functools
@@ -14,27 +14,27 @@ import numpy as np
 __all__ = ["COMPILED", "POSITIVE", "Kernel", "by_reference", "kernel", "lowest_bit", "prefetch", "use_threads"]
 
 POSITIVE = (1 << 40) - 1
-"""``index & POSITIVE`` tells the compiler that an index is not negative: that saves Python's counting from the end."""
+"""``index & POSITIVE`` tells the compiler that an index is not negative: no code for counting from the end is made."""
 
 COMPILED = not int(os.environ.get("NUMBA_DISABLE_JIT") or 0)
 """Whether kernels are compiled (they are not under ``NUMBA_DISABLE_JIT=1``, which the coverage run uses)."""
 
 
 class Kernel:
-    """A function of the engine that is compiled when it is first called, by Python or by the code of another one.
+    """A function of the engine that is compiled when Python or another kernel first calls it.
 
-    Whatever else is asked of it (``stats``, ``signatures``) is answered by what numba made of it.
+    All other attributes (``stats``, ``signatures``) are those of the function that numba compiled.
 
     Parameters
     ----------
     function
-        The function as it is written.
+        The Python function.
     compile
-        Makes what other kernels call.
+        Returns the compiled function that other kernels call.
     for_python
-        Makes what Python calls, where that is something else.
+        Returns the compiled function that Python calls, where it differs from that.
     plain
-        Whether Python runs it as it is written, so that only code that is compiled asks for it to be compiled.
+        Whether Python runs the function uncompiled, so that it is compiled only for other kernels.
     """
 
     def __init__(
@@ -53,19 +53,19 @@ class Kernel:
 
     @functools.cached_property
     def compiled(self) -> Any:
-        """What other kernels call."""
+        """The function that other kernels call."""
         return self._compile()
 
     @functools.cached_property
     def _run(self) -> Any:
-        """What Python calls."""
+        """The function that Python calls."""
         if self._plain:
             return np.errstate(all="ignore")(self.py_func)
         return self._for_python() if self._for_python else self.compiled
 
     @property
     def _numba_type_(self) -> Any:
-        """What numba sees where the code of another kernel names this one."""
+        """The type that numba sees where the code of another kernel names this one."""
         from atmosbox.engine.core import compiler
 
         return compiler.type_of(self.compiled)
@@ -94,21 +94,21 @@ def kernel(
     Parameters
     ----------
     function
-        Numbers, arrays and NamedTuples of them come in; no strings, no exceptions, no allocation in loops.
+        A function of numbers, arrays and NamedTuples of them; no strings, no exceptions, no allocation in loops.
     entry
-        True for what Python calls: it keeps its machine code on disk. False for a law that other kernels call: it is
-        always inlined into them, so that flags passed as constants cost nothing.
+        Whether Python calls it: then its machine code is kept on disk. A kernel that only other kernels call is always
+        inlined into them, so that flags passed as constants cost nothing.
     early
-        Whether it is written into its callers before they are compiled, as if it stood there: for the few lines of the
-        innermost loop. It must have a single return (measured: with two, the loop takes 1.7 times as long).
+        Whether its code is inserted into its callers before they are compiled: for the few lines of the innermost
+        loop. It must have a single return (measured: with two, the loop takes 1.7 times as long).
     allocates
         Whether the function makes arrays. One that does not is compiled without numba's counting of references,
         which would cost a quarter of the time of an event.
     parallel
         Whether its `prange` loops share the work among threads. The cache tells two versions of one function apart by
-        what they close over, not by this: give the serial and the parallel version different closure values.
+        the values that they close over, not by this flag: give the serial and the parallel version different ones.
     plain
-        Whether Python runs the function as it is written: for short ones that Python needs before anything is compiled.
+        Whether Python runs the function uncompiled: for short functions that Python needs before anything is compiled.
 
     Returns
     -------
@@ -118,7 +118,7 @@ def kernel(
     if function is None:
         return lambda f: kernel(f, entry=entry, early=early, allocates=allocates, parallel=parallel, plain=plain)
     if not COMPILED:
-        return np.errstate(all="ignore")(function)  # as compiled code is silent
+        return np.errstate(all="ignore")(function)  # compiled code gives no warnings either
 
     def compiled(**kind: bool) -> Any:
         from atmosbox.engine.core import compiler
@@ -131,7 +131,7 @@ def kernel(
 
 
 def use_threads(number: int) -> None:
-    """Let parallel kernels run on so many threads, or on as many as this machine has."""
+    """Set the number of threads of parallel kernels, at most as many as this machine has."""
     if COMPILED:
         from atmosbox.engine.core import compiler
 
@@ -139,14 +139,14 @@ def use_threads(number: int) -> None:
 
 
 def prefetch(array, index):
-    """Ask the processor to bring ``array[index]`` (first axis) into its cache; uncompiled code does nothing."""
+    """Ask the processor to bring ``array[index]`` (first axis) into its cache; without numba, do nothing."""
 
 
 def by_reference(bundle):
-    """Return a NamedTuple so that kernels hand it on by its place in memory, not value by value.
+    """Return a NamedTuple that kernels pass on by its address, not value by value.
 
-    Said once by each kernel that Python calls. All kernels in it are inlined, so it changes nothing in what runs; but
-    a box is two hundred values, and to take them apart and put them together at each call was most of the compilation.
+    Each kernel that Python calls does this once. All kernels called from it are inlined, so the compiled code does not
+    change; but a box is two hundred values, and passing each of them at each call took most of the compilation time.
     """
     return bundle
 

@@ -1,9 +1,9 @@
-"""Where the machine code of kernels is kept, and who is told when some is made.
+"""Where the machine code of kernels is kept, and reports of the compilations that really happen.
 
 numba's own disk cache watches only the file that holds a function: edit a function that a cached kernel
-calls *in another file*, or a constant imported from one, and the old machine code is served. Here the
-cache is kept under a digest of all the engine's code, so that any edit of it, or a newly installed version,
-starts a fresh one, and an edited comment does not. That is right only because the engine imports nothing of
+calls *in another file*, or a constant imported from one, and numba still uses the old machine code. Here the
+cache is kept under a digest of all the engine's code, so that any edit of code, or a newly installed version,
+starts a new cache, and an edited comment does not. That is right only because the engine imports nothing of
 atmosbox from outside its folder, which a test enforces.
 """
 
@@ -25,7 +25,7 @@ _DIGEST = re.compile(rb"[0-9a-f]{16}")
 
 
 def code_of(source: str) -> str:
-    """Return what a source says to the compiler: its syntax tree without docstrings, comments and line numbers."""
+    """Return the code of a source: its syntax tree without docstrings, comments and line numbers."""
     tree = ast.parse(source)
     for node in ast.walk(tree):
         body = getattr(node, "body", None)
@@ -48,7 +48,7 @@ def source_digest(folder: Path | None = None, memory: Path | None = None) -> str
     ----------
     folder
         The folder of the sources, by default the engine's.
-    memory
+        A folder where the digests of earlier sources are kept: parsing all sources anew takes a tenth of a second.
         A folder that remembers the digests of sources seen before: to parse them all takes a tenth of a second.
     """
     from importlib.metadata import version as version_of
@@ -75,7 +75,7 @@ def _digest(lines: list[str]) -> str:
 
 
 def _homes_of_caches() -> list[Path]:
-    """Return the folders to try, best first."""
+    """Return the folders in which a cache may be kept, best first."""
     asked = os.environ.get("NUMBA_CACHE_DIR")
     if asked:
         return [Path(asked)]
@@ -93,7 +93,7 @@ def _homes_of_caches() -> list[Path]:
 
 
 def _is_ours(folder: Path) -> bool:
-    """Tell whether no other user can put a file into a folder: what is kept there is loaded and run."""
+    """Return whether no other user can write into a folder: its files are loaded and run."""
     if not hasattr(os, "getuid"):
         return True
     about = folder.lstat()
@@ -101,10 +101,10 @@ def _is_ours(folder: Path) -> bool:
 
 
 def cache_folder() -> Path | None:
-    """Return the folder of this engine's machine code, made if need be, or None where nothing can be kept.
+    """Return the folder of this engine's machine code, made if needed, or None where no folder can be used.
 
-    ``NUMBA_CACHE_DIR`` is respected; a read-only home falls back to a folder of the user's own among the temporary
-    files. A folder that belongs to somebody else, or that others may write to, is not used: what is kept is run.
+    ``NUMBA_CACHE_DIR`` is respected; with a read-only home, a folder of the user's own among the temporary files is
+    used. A folder that belongs to another user, or that others may write to, is not used: its files are run.
     """
     for home in _homes_of_caches():
         try:
@@ -126,7 +126,7 @@ _WATCHES: list[Callable[[str, bool], None]] = []
 
 @contextlib.contextmanager
 def compilations(watch: Callable[[str, bool], None]) -> Iterator[None]:
-    """Be told of every kernel that is really compiled while a block runs, and not found among what is kept.
+    """Report every kernel that is compiled while a block runs; kernels found in the cache are not reported.
 
     Parameters
     ----------
@@ -141,6 +141,6 @@ def compilations(watch: Callable[[str, bool], None]) -> Iterator[None]:
 
 
 def announce(name: str, begins: bool) -> None:
-    """Tell all who wait for it that the compilation of a kernel begins, or has ended."""
+    """Tell all watchers that the compilation of a kernel begins, or has ended."""
     for watch in tuple(_WATCHES):
         watch(name, begins)

@@ -1,4 +1,4 @@
-"""Kinds of molecules: those that are alike in mass, size and rotation."""
+"""Kinds of molecules: molecules of one kind have the same mass, size and rotation."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +18,12 @@ def classify(
     rotational_energy: Array | None,
     species: NDArray[np.int64] | None = None,
 ) -> tuple[Kinds, NDArray[np.int64], Array]:
-    """Gather equal molecules into kinds; those of different species are never of one kind.
+    """Group equal molecules into kinds; molecules of different species are never of the same kind.
 
     Returns
     -------
     (Kinds, ndarray, ndarray)
-        The kinds, the kind of each molecule, and the radius of each class of sizes [length].
+        The kinds; the kind of each molecule, (molecule,); the radius of each class of sizes, (size,) [length].
 
     Examples
     --------

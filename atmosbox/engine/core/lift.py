@@ -1,20 +1,20 @@
 r"""A piston that follows a given pressure, as a parcel follows that of its environment.
 
-Every interval the ceiling gets the velocity
+At the start of each interval the ceiling is given the velocity
 
 .. math:: u = \frac{h - \sigma}{\Gamma} \left[ S + \frac{\ln(p / p_{env})}{20 \tau} \right],
           \quad S = -d \ln p_{env} / dt,
 
-the first term being what an adiabat asks for, the second what closes the gap that is left. Between, it
-moves evenly. Centres of molecules reach only the height h - sigma, and the open volume V is the one that
-counts. At constant entropy spheres cool by :math:`d \ln T = -(2/f) Z\, d \ln V`, so that their pressure
+The first term is the expansion of an adiabat, the second closes the gap of pressure that is left. During the interval
+the velocity is constant. Centres of molecules reach only the height h - sigma, so V is the volume open to centres.
+At constant entropy hard spheres cool by :math:`d \ln T = -(2/f) Z\, d \ln V`, so that their pressure
 p = n kT Z, with Z = 1 + b n, falls by
 
 .. math:: \Gamma = -\frac{d \ln p}{d \ln V} = 1 + \frac{2}{f} Z + \frac{Z - 1}{Z},
 
-which is the adiabatic index gamma = 1 + 2/f of molecules without size. With that in its place, ln p would come
-to rest :math:`20 \tau S (1 - \gamma / \Gamma)` too low, where the second term makes up for the rest. What is left
-is a parcel that lags: ln p is too high by what its finite speed adds to it within 20 mean free times.
+which for molecules without size is the adiabatic index gamma = 1 + 2/f. If gamma were used instead of Gamma, ln p would
+settle :math:`20 \tau S (1 - \gamma / \Gamma)` too low, where the second term makes up for the error. With Gamma a
+finite-rate error remains: ln p is too high by what the finite speed of the parcel adds to it within 20 mean free times.
 """
 
 import math
@@ -35,12 +35,13 @@ _EXCESS, _VIRIAL = range(2)
 
 
 class Lift(NamedTuple):
-    """A pressure to follow, as the kernels know it.
+    """A pressure to follow, in the form that the kernels take.
 
-    ``time``, ``log_pressure : (corner,)`` the schedule [time; logarithm of energy/length^3]; ``course_time``,
-    ``course_moment : (turn,)`` which moment of it the parcel is at when [time]; ``measured : (2,)`` the average of
-    (Z - 1) / n [length^3] and the virial at the last turn [energy]; ``interval`` for how long the piston keeps a
-    velocity, ``relaxation`` in what time a gap of pressure is closed, ``memory`` of that average [time].
+    ``time``, ``log_pressure : (corner,)``: the schedule [time; logarithm of energy/length^3]; ``course_time``,
+    ``course_moment : (turn,)``: the moment of the schedule [time] that the parcel reaches at each time [time];
+    ``measured : (2,)``: the running average of (Z - 1) / n [length^3] and the virial at the last change of velocity
+    [energy]; ``interval``: how long the piston keeps a velocity, ``relaxation``: the relaxation time of a gap of
+    pressure, ``memory``: the averaging time of (Z - 1) / n [time].
     """
 
     time: Any
@@ -54,10 +55,10 @@ class Lift(NamedTuple):
 
 
 class Gauges(NamedTuple):
-    """What the law of a lift asks of the gas at one time.
+    """The state of the gas at one time, as the law of a lift needs it.
 
-    The time [time]; how many molecules there are, of how many degrees of freedom each and in how many dimensions; their
-    energy [energy], the virial of their contacts since the start [energy]; the density in the volume that centres can
+    The time [time]; the number of molecules, the degrees of freedom of each and the number of dimensions; their energy
+    [energy] and the virial of their contacts since the start [energy]; the density in the volume that centres can
     reach [1/length^3] and the height of that volume [length].
     """
 
@@ -72,13 +73,13 @@ class Gauges(NamedTuple):
 
 
 class FollowPressure:
-    """Let the ceiling give way so that the pressure follows a schedule.
+    """A driver that moves the ceiling so that the pressure follows a schedule.
 
-    The pressure is that of the virial theorem, p = n kT + w / 3 V = n kT Z. Here kT comes from all the
-    energy, translation and rotation, that the ledger holds, and so has no noise at fixed volume; n counts
-    the volume open to centres; and w, the virial of contacts per unit time, is measured: (Z - 1) / n is
-    averaged over a hundred mean free times. With it the adiabat is T ~ p^(2/7) to second order in the
-    packing fraction; without, not even to first.
+    The pressure is that of the virial theorem, p = n kT + w / 3 V = n kT Z. Here kT comes from the energy of
+    translation and rotation in the ledger, and so has no noise at fixed volume; n is the density in the volume open
+    to centres; and w, the virial of contacts per unit time, is measured: (Z - 1) / n is averaged over a hundred mean
+    free times. With w the adiabat is T ~ p^(2/7) to second order in the packing fraction; without it, not even to
+    first order.
 
     Parameters
     ----------
@@ -87,23 +88,23 @@ class FollowPressure:
     pressure : (corner,)
         The pressure to follow at these times, > 0 [energy/length^3]; its logarithm is linear between them.
     mean_free_time
-        tau of the gas at the start [time].
+        Mean free time tau of the gas at the start [time].
     interval
-        How long the piston keeps one velocity, in tau.
+        How long the piston keeps one velocity, in units of tau.
     relaxation
-        In how many tau a gap of pressure is closed.
+        Relaxation time of a gap of pressure, in units of tau.
     excess
-        First guess of (Z - 1) / n [length^3], until it is measured.
+        First guess of (Z - 1) / n [length^3]; measurements replace it.
 
     Attributes
     ----------
     course
-        How far along the schedule the parcel is: as far as time, unless it is led by hand.
+        The `Course` along the schedule: its moment is the time, unless it is led by hand.
 
     Raises
     ------
     RefusedError
-        If times do not increase, or a pressure is not above 0.
+        If times do not increase, or a pressure or the mean free time is not finite and above 0.
 
     Examples
     --------
@@ -164,7 +165,7 @@ class FollowPressure:
         return float(_follow(gauges, self.law()))
 
     def law(self) -> Lift:
-        """Return what kernels need that move the piston themselves."""
+        """Return the law in the form that kernels take which move the piston themselves."""
         times, moments = self.course.corners()
         return Lift(
             self._time, self._log, times, moments, self._measured, self.interval, self._relaxation, self._memory
@@ -180,14 +181,14 @@ def _log_pressure(time, lift):
 
 @kernel
 def ceiling_velocity(at, lift):
-    """Return the velocity [length/time] of the ceiling for the next interval; see the head of this file.
+    """Return the velocity [length/time] of the ceiling for the next interval; the module's docstring has the formula.
 
     Parameters
     ----------
     at
-        The gas now: `Gauges`.
+        State of the gas now: `Gauges`.
     lift
-        What to follow: `Lift`. The average of (Z - 1) / n, which hardly changes while n falls, is brought up to date.
+        The pressure to follow: `Lift`. Its average of (Z - 1) / n, which hardly changes while n falls, is updated.
     """
     kT = 2.0 * at.energy / (at.freedom * max(at.number, 1))
     ideal = at.density * kT
@@ -205,13 +206,13 @@ def ceiling_velocity(at, lift):
 
 @kernel(entry=True)
 def _follow(at, lift):
-    """Return the velocity of the ceiling to whom Python asks."""
+    """Return the velocity of the ceiling, for calls from Python."""
     return ceiling_velocity(at, lift)
 
 
 @kernel
 def stiffness(compressibility_factor: float, freedom: float) -> float:
-    """Return by how much ln p falls as the logarithm of the open volume rises, without heat [1].
+    """Return -d ln p / d ln V without exchange of heat, V the open volume: Gamma in the module's docstring [1].
 
     Parameters
     ----------
@@ -222,7 +223,7 @@ def stiffness(compressibility_factor: float, freedom: float) -> float:
 
     Examples
     --------
-    Of points it is the adiabatic index; spheres that add a tenth are stiffer:
+    For points it is the adiabatic index; spheres with Z = 1.1 are stiffer:
 
     >>> round(stiffness(1.0, 5), 6), round(stiffness(1.1, 5), 6)
     (1.4, 1.530909)

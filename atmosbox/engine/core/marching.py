@@ -1,4 +1,4 @@
-"""A parcel whose time goes in equal steps: what the approximate engines have in common."""
+"""A parcel that is advanced in equal time steps: the common part of the approximate engines."""
 
 import math
 from abc import abstractmethod
@@ -20,10 +20,10 @@ _HOTTER = 16.0
 
 
 class MarchingParcel(Parcel):
-    """Molecules in a box, advanced step by step.
+    """Molecules in a box, advanced in equal time steps.
 
-    Steps stand on a fixed grid of times, k * `time_step`; what is read off the molecules is their state
-    after the last step that is complete. So a run is the same however it is cut into pieces.
+    Steps end at the fixed times k * `time_step`, and a measurement sees the state after the last complete step.
+    So the result does not depend on the pieces into which a run is cut.
     """
 
     _time_step = math.nan
@@ -41,7 +41,7 @@ class MarchingParcel(Parcel):
         return self._step
 
     def divide(self, interval: float) -> None:
-        """Shorten the step so that a whole number of them makes an interval [time].
+        """Shorten the time step so that a whole number of steps makes an interval [time].
 
         Raises
         ------
@@ -56,13 +56,13 @@ class MarchingParcel(Parcel):
             self._renew()
 
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
-        """Let time pass, step by step, as far as whole steps go: see `Parcel.advance`."""
+        """Advance to ``until`` [time since the start], as far as whole steps go: see `Parcel.advance`."""
         until = number(until, "until")
         if until < self.time * (1.0 - _SLACK):
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
         last = math.floor(until / self._time_step * (1.0 + 1e-13) + _SLACK)
         if not self._step and not last:
-            self._march(0)  # compiles, so that a run's first step is like the others
+            self._march(0)  # compiles the kernels, so that a run's first step takes no longer than the others
         while self._step < last:
             steps = min(last - self._step, max(1, _WORK // max(self._effort(), 1)))
             turn = self._next_turn()
@@ -77,26 +77,26 @@ class MarchingParcel(Parcel):
                 watch(self.time)
 
     def _next_turn(self) -> Any:
-        """Return the number of the step before which the driver is asked again."""
+        """Return the number of the step before which the driver is called next."""
         if self._driver is None:
             return math.inf
         due = (int(self._turns[0]) + 1) * self._driver.interval
         return max(self._step + 1, math.ceil(due / self._time_step - _SLACK))
 
     def _effort(self) -> int:
-        """Return how much work a step is, in molecules moved; it sets how often ``watch`` is called."""
+        """Return the work of a step, as a number of molecules moved; it sets how often ``watch`` is called."""
         return self._number
 
     @abstractmethod
     def _march(self, steps: int) -> None:
-        """Advance by so many steps, with the piston at one velocity."""
+        """Advance by a number of steps, with the piston at constant velocity."""
 
     @abstractmethod
     def _renew(self) -> None:
-        """Take note that the length of a step has changed, before the first, or that gravity has."""
+        """Update what depends on the time step or gravity: the step changed before the first one, or gravity did."""
 
     def _piston_turned(self) -> None:
-        """Need nothing: every step reads the piston anew."""
+        """Do nothing: every step reads the velocity of the piston."""
 
     def _field_changes(self, gravity: float) -> None:
         mass = float(self._mass.sum()) if self._number else 0.0
@@ -117,10 +117,10 @@ class MarchingParcel(Parcel):
             )
 
     def _thermal_speeds(self, velocity: Array) -> Array:
-        """Return each molecule's sqrt(kT / m) at the warmest that the box is at its start [length/time].
+        """Return each molecule's sqrt(kT / m) for the highest temperature that is expected [length/time].
 
-        The warmest is that of the molecules as they stand, of the hottest wall ever, or of what falling
-        all the way down would give.
+        It is the highest of the temperature of the molecules at the start and the temperatures that the walls ever
+        have.
         """
         if not self._number:
             return np.zeros(0)
@@ -129,7 +129,7 @@ class MarchingParcel(Parcel):
         return np.sqrt(self._warmest(kT) / self._mass)
 
     def _warmest(self, kT: float) -> float:
-        """Return the highest of a temperature [energy] and those that the walls ever have."""
+        """Return the highest of a temperature [energy] and the temperatures that the walls ever have."""
         for wall, law in enumerate(self._walls.law):
             if law == HEAT_BATH:
                 first, last = self._walls.schedule[wall], self._walls.schedule[wall + 1]

@@ -1,4 +1,4 @@
-"""What is read off the molecules: layers, speeds, collisions. Nothing in the box changes by being measured."""
+"""Quantities measured from the molecules: layers, speeds, momentum, mean free path. Measuring changes nothing."""
 
 import math
 from typing import NamedTuple
@@ -14,10 +14,10 @@ Array = NDArray[np.float64]
 
 
 class Layers(NamedTuple):
-    """Sums over the molecules of each layer at one time; add up samples, then divide.
+    """Sums over the molecules of each layer at one time; add the sums of several samples, then divide.
 
     ``number : (layer,)`` molecules; ``energy : (layer,)`` kinetic energy relative to the layer's mean
-    motion [energy]; ``freedom : (layer,)`` degrees of freedom that share it: those of the mean motion are
+    motion [energy]; ``freedom : (layer,)`` degrees of freedom that share this energy: those of the mean motion are
     not counted.
     """
 
@@ -27,7 +27,7 @@ class Layers(NamedTuple):
 
 
 def layer_sample(parcel: Parcel, snapshot: Snapshot, layers: int) -> Layers:
-    r"""Count molecules, and the energy of their disordered motion, by layers of equal thickness.
+    r"""Return the number of molecules, and the energy of their disordered motion, in layers of equal thickness.
 
     The temperature of a layer is ``2 * energy / freedom``, because
     :math:`\langle \sum m (v - \bar v)^2 \rangle = d (n - 1) k T` for n molecules in d dimensions.
@@ -35,14 +35,14 @@ def layer_sample(parcel: Parcel, snapshot: Snapshot, layers: int) -> Layers:
     Parameters
     ----------
     parcel, snapshot
-        The box, and its molecules at one time.
+        The box, and a snapshot of its molecules.
     layers
         Number of layers between floor and ceiling.
 
     Returns
     -------
     Layers
-        The sums.
+        The sums of this sample.
 
     Examples
     --------
@@ -68,9 +68,9 @@ def layer_sample(parcel: Parcel, snapshot: Snapshot, layers: int) -> Layers:
 
 
 def temperature(parcel: Parcel, snapshot: Snapshot) -> float:
-    """Return kT of the motion of all molecules [energy], NaN for none.
+    """Return kT of the translational motion of all molecules [energy], NaN if there are none.
 
-    The box is at rest, so every component of every velocity counts, that of the mean motion too.
+    The box is at rest, so the mean motion is not subtracted: every component of every velocity counts.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def temperature(parcel: Parcel, snapshot: Snapshot) -> float:
 
 
 def speed_counts(snapshot: Snapshot, edges: Array) -> Array:
-    """Count molecules by speed; those faster than the last edge are counted in no bin.
+    """Return the number of molecules in bins of speed with these edges [length/time]; faster ones are not counted.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def momentum(parcel: Parcel, snapshot: Snapshot) -> Array:
 
 
 def mean_free_path(contacts: int, path: float) -> float:
-    """Return the mean free path [length]: the path that all molecules flew together, by the ends of free flights.
+    """Return the mean free path [length]: the path that all molecules flew together, divided by the number of flights.
 
     Every contact ends two free flights.
 

@@ -1,8 +1,8 @@
 r"""Free flight: straight lines, and the exact parabola of gravity.
 
 Between encounters a molecule moves as :math:`x + v t` along the floor and :math:`z + v_z t - g t^2 / 2`
-along the vertical. When it will reach a plane is a linear or a quadratic equation, and both are solved
-without cancellation.
+along the vertical. The time at which it reaches a plane is the root of a linear or a quadratic equation, written so
+that no digits are lost by cancellation.
 """
 
 import math
@@ -64,7 +64,7 @@ def time_to_leave_in_gravity(z, v, low, high, gravity):
 
     Notes
     -----
-    Both roots are written so that nothing cancels: a sum of numbers of one sign stands in each.
+    Both roots are written as sums of numbers of the same sign, so that no digits are lost by cancellation.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def time_to_ceiling(gap, closing_speed, gravity):
     gap
         Height of the ceiling above the top of the molecule [length].
     closing_speed
-        Upward velocity of the molecule less that of the ceiling [length/time].
+        Upward velocity of the molecule minus that of the ceiling [length/time].
     gravity
         Acceleration, downward, >= 0 [length/time^2].
 

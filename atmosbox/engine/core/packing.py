@@ -1,4 +1,4 @@
-"""How much of the space molecules fill, and when that is more than any packing can.
+"""Packing fraction: the part of the space that molecules fill, and the largest that is possible.
 
 The densest packing of equal spheres is the face-centred cubic one, of equal discs the hexagonal one.
 """
@@ -19,7 +19,7 @@ _DENSEST_PLANE = math.pi / math.sqrt(12.0)
 
 
 def packing_fraction(length: Sequence[float], diameter: ArrayLike, *, planar: bool = False) -> float:
-    """Return the part of the box, or of the plane box's area, that the molecules fill.
+    """Return the part of the box's volume, or of a plane box's area, that the molecules fill.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def packing_fraction(length: Sequence[float], diameter: ArrayLike, *, planar: bo
 
 
 def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bool], planar: bool) -> None:
-    """Refuse what geometry alone forbids, wherever the molecules are put.
+    """Refuse molecules that cannot fit into the box, wherever they are placed.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bo
     RefusedError
         If a side is not above 0, or a diameter below 0.
     PackingError
-        If a molecule is wider than the box, or if they fill more than any packing can.
+        If a molecule is wider than the box, or if they fill more than the densest packing.
 
     Examples
     --------

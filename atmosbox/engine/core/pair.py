@@ -1,9 +1,10 @@
-"""Pairs of molecules: how far they feel each other, when they meet, and what becomes of them.
+"""Pairs of molecules: their range, the time at which they meet, and the change of velocity when they do.
 
-Everything that asks about a pair asks here: the exact engine and the time-stepped one, drops, and the checks for
-overlap. The law itself stands in a file of its own, `hard_sphere`. Another law of one distance is a second such file
-and a branch on a mode in `reach`, `approach`, `predict` and `resolve`; nothing else of the engine changes. The law of
-the square well, `square_well`, has two distances and a memory of who is between them: its loop is that of `wells`.
+Everything that needs the law of a pair calls this file: the exact engine and the time-stepped one, drops, and the
+checks for overlap. The law itself is in a file of its own, `hard_sphere`. To add another law that acts at one distance,
+write a second such file and a branch on a mode in `reach`, `approach`, `predict` and `resolve`; nothing else of the
+engine changes. The law of the square well, `square_well`, acts at two distances and remembers which pairs are between
+them: it has a loop of its own, in `wells`.
 """
 
 import math
@@ -18,13 +19,13 @@ __all__ = ["approach", "extent", "nearest_along", "nearest_image", "predict", "r
 
 @kernel
 def extent(radius):
-    """Return how far from its centre a molecule is felt [length]: what it contributes to `reach`."""
+    """Return how far from its centre a molecule acts on others [length]: its contribution to `reach`."""
     return radius
 
 
 @kernel
 def reach(radius, other_radius):
-    """Return how far apart two centres are when the pair begins to feel each other [length]: the sum of both extents.
+    """Return the distance of two centres at which the pair begins to interact [length]: the sum of both extents.
 
     Examples
     --------
@@ -50,7 +51,7 @@ def nearest_along(r, length, inverse):
 
 @kernel
 def nearest_image(rx, ry, rz, box, modes):
-    """Return the position of a molecule relative to another [length], taken to its nearest periodic image."""
+    """Return the position of a molecule relative to the nearest periodic image of another [length]."""
     if modes.periodic:
         rx = nearest_along(rx, box.length_x, box.inverse_x)
         ry = nearest_along(ry, box.length_y, box.inverse_y)
@@ -64,14 +65,14 @@ def nearest_image(rx, ry, rz, box, modes):
 def soonest_image(rx, ry, rz, ux, uy, uz, distance, box):
     """Return how long it takes a molecule to meet another or one of its periodic images [time], ``inf`` for never.
 
-    Along each periodic axis there are two of them within a box length, the nearest and the one on the other side.
+    Along each periodic axis two images are within a box length: the nearest one and the one on the other side.
 
     Parameters
     ----------
     rx, ry, rz, ux, uy, uz
         Position relative to the nearest image [length] and relative velocity [length/time].
     distance
-        At which they meet, `reach` [length].
+        Distance of the centres at which they meet, `reach` [length].
     box
         The box.
 
@@ -101,9 +102,9 @@ def soonest_image(rx, ry, rz, ux, uy, uz, distance, box):
 
 @kernel(early=True)
 def approach(rx, ry, rz, ux, uy, uz, distance):
-    """Return how a pair approaches: a discriminant, not above zero if it misses, and two numbers for `predict`.
+    """Return how a pair approaches: a discriminant, not above zero if the pair misses, and two numbers for `predict`.
 
-    Most pairs miss, so the question when a pair meets is asked in two steps, of which the second is rare. The first of
+    Most pairs miss, so the time of meeting is computed in two steps, of which the second is rarely needed. The first of
     the two numbers is below zero while the pair approaches.
 
     Parameters
@@ -125,11 +126,11 @@ def approach(rx, ry, rz, ux, uy, uz, distance):
 
 @kernel(early=True)
 def predict(discriminant, b, c):
-    """Return how long it takes a pair to meet [time from now] that approaches so and does not miss."""
+    """Return the time until a pair meets [time from now] from what `approach` returned; for a pair that meets."""
     return earlier_root(discriminant, b, c)
 
 
 @kernel
 def resolve(rx, ry, rz, ux, uy, uz, mass, other_mass):
-    """Return the change of velocity that a meeting gives the first molecule [length/time]: see `resolve_contact`."""
+    """Return the change of velocity of the first molecule when the pair meets [length/time]: see `resolve_contact`."""
     return resolve_contact(rx, ry, rz, ux, uy, uz, mass, other_mass)

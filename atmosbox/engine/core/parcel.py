@@ -1,4 +1,4 @@
-"""What every engine's box is given, knows and tells, however it lets time pass."""
+"""The box of molecules: its parameters, its state, and what every engine must provide to advance it."""
 
 import math
 from abc import abstractmethod
@@ -21,7 +21,7 @@ __all__ = ["Arrangement", "Array", "Driver", "Parcel", "Snapshot"]
 
 
 class Driver(Protocol):
-    """What moves the piston: asked for its velocity at every multiple of ``interval``."""
+    """What sets the velocity of the piston: its ``velocity`` is called at every multiple of ``interval`` [time]."""
 
     interval: float
 
@@ -30,7 +30,7 @@ class Driver(Protocol):
 
 
 class Arrangement(TypedDict, total=False):
-    """What a `Parcel` may be given by name: see there."""
+    """The keyword arguments of `Parcel`; their meaning is described there."""
 
     length: Sequence[float]
     walls: Sequence[Wall]
@@ -48,47 +48,46 @@ class Arrangement(TypedDict, total=False):
 
 
 class Parcel(Adjustable):
-    """Molecules in a box: what is common to all engines.
+    """Molecules in a box: the part that all engines share.
 
     Parameters
     ----------
     position, velocity : (molecule, axis)
         Centres [length] and velocities [length/time].
     length
-        The three sides of the box [length]; along z up to where the ceiling starts.
+        The three sides of the box [length]; along z, the height of the ceiling at the start.
     walls
         Six laws: x low, x high, y low, y high, z low, z high; specular by default.
     mass, diameter, rotation : (molecule,) or one number
         Mass [mass], diameter [length; 0 makes an ideal gas], rotational degrees of freedom (0, 2 or 3).
     rotational_energy : (molecule,)
-        At the start [energy]; zero by default.
+        Rotational energy at the start [energy]; zero by default.
     gravity
         Downward acceleration [length/time^2].
     planar
-        Whether this is a plane gas: all y and all y velocities are then those given, and never change.
+        Whether this is a plane gas: all y must be equal, all y velocities zero, and neither ever changes.
     collision_number
-        How many contacts pass, on average, between two exchanges of energy with rotation, >= 1, ``inf``
-        for never.
+        Average number of contacts per exchange of energy with rotation, >= 1, ``inf`` for no exchange.
     layers
-        Number of layers of equal thickness by which the virial of contacts is counted.
+        Number of horizontal layers of equal thickness in which the virial of contacts is summed.
     seed
         Seed of the random numbers.
     driver
-        What moves the piston.
+        What sets the velocity of the piston, a `Driver`; it needs a piston as ceiling.
     collisions
-        Whether molecules meet each other; without that they meet walls alone, and take no room from each other.
+        Whether molecules collide with each other; if not, they hit walls alone and have no excluded volume.
 
     Raises
     ------
     RefusedError
-        If a number is impossible, or molecules stand outside the box, or overlap where the engine minds.
+        If a number is impossible, or molecules lie outside the box, or overlap in an engine that forbids it.
     """
 
     engine: ClassVar[str]
-    """The name of the engine, as the command line and the file give it."""
+    """Name of the engine, as the command line and the output file give it."""
 
     _frugal: ClassVar[bool] = False
-    """Whether to save memory: a number given for all molecules is kept once, velocities are read where they stand."""
+    """Whether to save memory: a number given for all molecules is kept once, and velocities are not copied."""
 
     def __init__(
         self,
@@ -164,23 +163,23 @@ class Parcel(Adjustable):
         )
         self._now = 0.0
         self._asked: float | None = None
-        self._turns = np.zeros(1, np.int64)  # how often the driver has been asked since the start
+        self._turns = np.zeros(1, np.int64)  # number of the driver's calls since the start
         start = [v, x]
-        del v, x  # so that an engine may let them go once it has its own
+        del v, x  # so that an engine may free them once it has its own arrays
         self._begin(start.pop(), start.pop(), spin)
         self._start_energy = sum(self.energy()) + self.condensed_energy
         self._drive()
 
     def __repr__(self) -> str:
-        """Return a line that says what is in the box."""
+        """Return a line with the type, number of molecules, sides, time and number of contacts."""
         sides = " x ".join(f"{side:.6g}" for side in self.length)
         name = type(self).__name__
         return f"<{name}: {self.number} molecules in {sides}, t = {self.time:.6g}, {self.contacts} contacts>"
 
-    # ------------------------------------------------------------------ copies, and states on disk
+    # ------------------------------------------------------------------ copies, and states in files
 
     def __getstate__(self) -> Any:
-        """Return what a copy needs: `copy.deepcopy` and pickle give a box that goes on as this one would."""
+        """Return the state for `copy.deepcopy` and pickle; the copy goes on exactly as this box would."""
         return pack(vars(self))
 
     def __setstate__(self, state: Any) -> None:
@@ -190,13 +189,13 @@ class Parcel(Adjustable):
     def state(self) -> SavedState:
         """Return the state of the box as named arrays and plain numbers, for a file: see `saved_state`.
 
-        It holds all that changes while time passes, that of the driver included. What the box was made from is not
-        told apart from that: a box is made again in the same way before it is put into the state.
+        The state holds everything that changes with time, the driver's numbers included. It does not tell how the box
+        was made: to restore it, first make a box in the same way.
 
         Raises
         ------
         RefusedError
-            If the driver holds something that is neither a number nor an array, nor made of such.
+            If the driver holds anything else than numbers, arrays, and lists, tuples or plain objects of these.
 
         Examples
         --------
@@ -212,52 +211,52 @@ class Parcel(Adjustable):
         return save(self)
 
     def restore(self, state: SavedState) -> None:
-        """Put this box, which is made as the other one was, into a state of that one.
+        """Put this box into the saved state of a box that was made in the same way.
 
-        From then on it does what the other one did, bit for bit, on any processor.
+        From then on it does what that box did, bit for bit, on any processor.
 
         Raises
         ------
         RefusedError
-            If the state is that of a box with other parts.
+            If the state is that of a box that was made in another way.
         """
         restore(self, state)
         self._find_kernels()
 
-    # ------------------------------------------------------------------ what each engine does its own way
+    # ------------------------------------------------------------------ what each engine does in its own way
 
     def _find_kernels(self) -> None:
         """Find the kernels that are compiled for a box like this one."""
 
     @abstractmethod
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
-        """Lay out the molecules as the engine wants them."""
+        """Set up the molecules in the engine's own arrays."""
 
     @abstractmethod
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
-        """Let time pass until ``until`` [time since the start].
+        """Advance the box to the time ``until`` [time since the start].
 
         Parameters
         ----------
         until
-            When to stop; however a run is cut into pieces, its molecules do the same.
+            When to stop. The result does not depend on the pieces into which a run is cut.
         watch
-            Called with the time every tenth of a second or so; what it raises (Ctrl-C) leaves a state
-            that can go on.
+            Called with the time about every tenth of a second. If it raises (Ctrl-C), the box is left in a state from
+            which the run can go on.
 
         Raises
         ------
         RefusedError
             If ``until`` lies in the past or is not finite.
         StalledError
-            If events pile up without end in a vanishing time.
+            If very many events happen in a vanishing time, so that time no longer advances.
         """
 
     @abstractmethod
     def memory(self) -> int:
-        """Return the bytes that molecules and all that finds their collisions take."""
+        """Return the memory of the molecules and of the search for their collisions [bytes]."""
 
-    # ------------------------------------------------------------------ what it holds
+    # ------------------------------------------------------------------ the state
 
     @property
     def number(self) -> int:
@@ -266,9 +265,9 @@ class Parcel(Adjustable):
 
     @property
     def present(self) -> NDArray[np.bool_]:
-        """Which of the molecules that the box has ever held are in the gas now: all, unless some can condense.
+        """Which molecules are in the gas now, (molecule,): all of them, unless some can condense.
 
-        A molecule keeps its place in this list, whether it is in the gas or in the liquid.
+        A molecule keeps its index, whether it is in the gas or in the liquid.
         """
         return np.ones(self.number, np.bool_)
 
@@ -298,10 +297,10 @@ class Parcel(Adjustable):
 
     @property
     def open_density(self) -> float:
-        """Sum over molecules of one over the volume that its centre can reach now [1/length^3; planar: 1/length^2].
+        """Sum over molecules of 1 / (volume that its centre can reach) now [1/length^3; planar: 1/length^2].
 
-        Times kT it is the pressure on the walls of molecules that never meet, exactly; the volume of the
-        box would be too large by the layer, half a diameter thin, that no centre enters.
+        Times kT it is exactly the pressure on the walls of molecules that never collide. The volume of the box would
+        be too large for that: no centre enters the layer, half a diameter thick, at a wall.
         """
         if not self.number:
             return 0.0
@@ -316,12 +315,12 @@ class Parcel(Adjustable):
 
     @property
     def piston_velocity(self) -> float:
-        """Velocity of the ceiling [length/time]."""
+        """Upward velocity of the ceiling [length/time]."""
         return float(self._walls.piston[1])
 
     @property
     def periodic(self) -> tuple[bool, bool, bool]:
-        """Which axes are periodic."""
+        """Whether each axis (x, y, z) is periodic."""
         return self._periodic
 
     @property
@@ -346,7 +345,7 @@ class Parcel(Adjustable):
 
     @property
     def degrees_of_freedom(self) -> float:
-        """Translational and rotational degrees of freedom per molecule, on average."""
+        """Mean number of translational and rotational degrees of freedom of a molecule."""
         return self._freedom
 
     @property
@@ -354,7 +353,7 @@ class Parcel(Adjustable):
         """Whether molecules have no excluded volume, so that the pressure is n kT."""
         return not (self._collisions and self._diameter.any())
 
-    # ------------------------------------------------------------------ what moves it
+    # ------------------------------------------------------------------ the driver
 
     def _drive(self) -> None:
         if self._driver is not None:

@@ -1,7 +1,7 @@
 """Random numbers that depend on the seed and on nothing else: splitmix64, one 64-bit word of state.
 
-Word n of the sequence is a function of the state and n alone. So `RandomNumbers`, which makes many at once for the
-start of a run, returns the numbers that kernels draw one by one from the same state.
+Word n of the sequence is a function of the initial state and n alone. So `RandomNumbers`, which makes many at once for
+the start of a run, returns the numbers that kernels would draw one by one from the same state.
 
 References
 ----------
@@ -24,12 +24,12 @@ _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
 _WORD = (1 << 64) - 1
 RUN, START = range(2)
-"""What a seed is used for: what happens in the box; where and how the molecules start."""
+"""The uses of a seed: for what happens in the box, and for positions and velocities at the start."""
 
 
 @kernel(plain=True)
 def _mixed(z):
-    """Return a number from 0 to 1, both excluded, from a word of the sequence; of many at once from an array."""
+    """Return a number between 0 and 1, both excluded, from a word of the sequence; an array of them from an array."""
     z = (z ^ (z >> np.uint64(30))) * _MIX_1
     z = (z ^ (z >> np.uint64(27))) * _MIX_2
     z = z ^ (z >> np.uint64(31))
@@ -37,7 +37,7 @@ def _mixed(z):
 
 
 def new_state(seed: int, use: int = RUN) -> NDArray[np.uint64]:
-    """Return the first state for a seed of any length, another one for each use of it.
+    """Return the first state, (1,), for a seed of any length; each use of the seed has another one.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def new_state(seed: int, use: int = RUN) -> NDArray[np.uint64]:
 
 
 class RandomNumbers:
-    """The random numbers of a start, of which there are as many as molecules.
+    """Random numbers for the start of a run, where a few are needed for each molecule.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class RandomNumbers:
         self.state = new_state(seed, START)
 
     def random(self, size: int | tuple[int, ...]) -> NDArray[np.float64]:
-        """Return the next numbers between 0 and 1, both excluded, in an array of this shape."""
+        """Return the next numbers between 0 and 1, both excluded, in an array of the shape ``size``."""
         number = math.prod(size) if isinstance(size, tuple) else size
         words = self.state + _STEP * np.arange(1, number + 1, dtype=np.uint64)
         self.state[:] = words[-1:] if number else self.state
@@ -82,11 +82,11 @@ class RandomNumbers:
 
 
 Source = RandomNumbers | np.random.Generator
-"""Where the random numbers of a start come from: numpy's own will do."""
+"""A source of random numbers for the start: a generator of numpy may be given instead."""
 
 
 def normal(source: Source, size: int | tuple[int, ...]) -> NDArray[np.float64]:
-    """Return independent normal numbers of mean 0 and variance 1 in an array of this shape (Box and Muller).
+    """Return independent normal numbers of mean 0 and variance 1 in an array of the shape ``size`` (Box and Muller).
 
     Examples
     --------
@@ -108,7 +108,7 @@ def uniform(state):
     Parameters
     ----------
     state : (1,)
-        The state, moved on.
+        The state; it is advanced.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def uniform(state):
 
 @kernel
 def gaussian_pair(state):
-    """Return two independent normal numbers of mean 0 and variance 1 (Box and Muller).
+    """Return two independent normal numbers of mean 0 and variance 1, and advance the state (Box and Muller).
 
     Examples
     --------
@@ -135,14 +135,14 @@ def gaussian_pair(state):
 
 @kernel
 def gamma(degrees, state):
-    """Return a gamma variate of shape ``degrees`` / 2: the energy, in kT, of that many quadratic degrees of freedom.
+    """Return a gamma variate of shape ``degrees`` / 2: the energy, in kT, of ``degrees`` quadratic degrees of freedom.
 
     Parameters
     ----------
     degrees
         A whole number, 0 to 4.
     state : (1,)
-        The state, moved on.
+        The state; it is advanced.
 
     Examples
     --------
@@ -162,14 +162,14 @@ def gamma(degrees, state):
 
 @kernel
 def gamma_of_shape(shape, state):
-    """Return a gamma variate of any shape: the energy, in kT, of twice as many quadratic degrees of freedom.
+    """Return a gamma variate of any shape: the energy, in kT, of 2 * shape quadratic degrees of freedom.
 
     Parameters
     ----------
     shape
-        Not negative; of shape 0 it is 0.
+        Not negative; for shape 0 the result is 0.
     state : (1,)
-        The state, moved on.
+        The state; it is advanced.
 
     Examples
     --------

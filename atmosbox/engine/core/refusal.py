@@ -3,7 +3,7 @@
 ::
 
     ValueError
-     +-- RefusedError     a number that no box can have: its name, its value, what is allowed
+     +-- RefusedError     an impossible number: its name, its value, what is allowed
           +-- PackingError   molecules that do not fit
     RuntimeError
      +-- StalledError     time no longer advances
@@ -23,11 +23,11 @@ class RefusedError(ValueError):
 
 
 class PackingError(RefusedError):
-    """So many or so large molecules that they do not fit into the box."""
+    """Molecules so many or so large that they do not fit into the box."""
 
 
 class StalledError(RuntimeError):
-    """Events pile up without end in a vanishing time."""
+    """So many events in a vanishing time that time no longer advances."""
 
 
 class CoarseStepWarning(UserWarning):
@@ -35,7 +35,7 @@ class CoarseStepWarning(UserWarning):
 
 
 def shown(value: Any) -> str:
-    """Return how a refused value is written in a sentence: a number of numpy like any other number.
+    """Return the text of a refused value: numbers of numpy are written like any other number.
 
     Examples
     --------

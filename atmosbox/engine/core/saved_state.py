@@ -1,16 +1,16 @@
-"""The state of a box as named arrays and plain numbers, and a box put back into such a state.
+"""Saving the state of a box as named arrays and plain numbers, and restoring it.
 
-An engine's arrays are often views of one another: the slots of a molecule are six bytes within its event, the columns
-of many molecules are stretches of one piece of memory. Copied one by one they come apart, and what a kernel writes
-into one copy is missing in the other. So memory is kept piece by piece, and of every array where it lies in which
-piece::
+An engine's arrays are often views of one another: the slots of a molecule are six bytes within its event, and the
+columns of many molecules are parts of one piece of memory. If each array were copied by itself, the copies would no
+longer share memory, and what a kernel writes into one would be missing in the other. So memory is saved piece by piece,
+and for every array it is noted in which piece it lies, and where::
 
     memory    | events ........................ |   | molecules ................ |
     arrays      _events: all of it                    _molecules, _fields: all of it
                 _cells.slot: six bytes of each
 
-A piece begins again at the same place within a line of the processor's cache, on which the pace of a kernel depends,
-and an array has its type, strides and right to be written again, by which its compiled kernel is found.
+A restored piece begins at the same offset within a cache line, on which the speed of a kernel depends. A restored array
+has the same type, strides and writability, by which its compiled kernel is found.
 """
 
 import copyreg
@@ -32,9 +32,9 @@ Pieces = dict[str, NDArray[np.uint8]]
 
 
 class SavedState(NamedTuple):
-    """The state of an object, as a file can hold it.
+    """The state of an object in a form that a file can hold.
 
-    ``text`` is JSON: every number, and of every array where it lies in which piece of memory. ``memory`` holds the
+    ``text`` is JSON: all numbers, and for every array its piece of memory and its place there. ``memory`` holds the
     pieces, each ``(byte,)`` of uint8, by the name of the first array that lies in it. Neither can run code.
     """
 
@@ -43,7 +43,7 @@ class SavedState(NamedTuple):
 
 
 class _View(NamedTuple):
-    """Where an array lies: its piece of memory, the byte there, and what numpy knows of it besides."""
+    """The place of an array: its piece of memory, the offset there, and its other properties in numpy."""
 
     piece: str
     line: int
@@ -61,10 +61,10 @@ class _Memory:
     def __init__(self) -> None:
         self.pieces: Pieces = {}
         self._names: dict[tuple[int, int], str] = {}
-        self._owners: list[NDArray[Any]] = []  # as long as they are there, no other array has their place
+        self._owners: list[NDArray[Any]] = []  # kept alive, so that no other array gets the same memory
 
     def view(self, array: NDArray[Any], path: str) -> _View:
-        """Return where an array lies, and copy its piece of memory if that is new."""
+        """Return the place of an array, and copy its piece of memory if that is not yet copied."""
         if array.dtype.hasobject:
             raise RefusedError(f"{path} is an array of Python objects: keep an array of numbers")
         owner = _owner(array)
@@ -86,14 +86,14 @@ class _Memory:
 
 
 class _Room:
-    """The same pieces, laid out in memory of their own."""
+    """New memory for saved pieces, and the arrays in it."""
 
     def __init__(self, pieces: Pieces) -> None:
         self._pieces = pieces
         self._laid_out: Pieces = {}
 
     def array(self, view: _View) -> NDArray[Any]:
-        """Return the array that lies there."""
+        """Return the array at a place, copying its piece of memory when it is first needed."""
         piece = self._laid_out.get(view.piece)
         if piece is None:
             kept = self._pieces[view.piece]
@@ -109,7 +109,7 @@ class _Room:
 
 
 def _owner(array: NDArray[Any]) -> NDArray[Any]:
-    """Return the array whose memory it is, if there is one in one piece; else the array itself."""
+    """Return the contiguous array that owns the memory of an array; the array itself if there is none."""
     owner: Any = array
     base: Any = array.base
     while base is not None:
@@ -130,9 +130,9 @@ def _bytes(owner: NDArray[Any]) -> NDArray[np.uint8]:
 
 
 def pack(attributes: dict[str, Any]) -> tuple[dict[str, Any], Pieces]:
-    """Return attributes with a note of where it lies in place of every array, and the pieces of memory.
+    """Return the attributes with every array replaced by a note of its place, and the pieces of memory.
 
-    Functions are left out: compiled ones cannot be copied, and are found again by what they are made for.
+    Functions are left out: compiled ones cannot be copied; the box finds them again from its modes.
 
     Examples
     --------
@@ -154,7 +154,7 @@ def pack(attributes: dict[str, Any]) -> tuple[dict[str, Any], Pieces]:
 
 
 def unpack(noted: dict[str, Any], memory: Pieces) -> dict[str, Any]:
-    """Return the attributes that `pack` has taken apart; arrays that shared memory share it again."""
+    """Return the attributes from the output of `pack`; arrays that shared memory share it again."""
     room = _Room(memory)
 
     def value(note: Any) -> Any:
@@ -174,7 +174,7 @@ def _parts(value: Any) -> list[tuple[str, Any]]:
 
 
 def _alike(value: Any, parts: list[Any]) -> Any:
-    """Return a list or tuple of the same type, of other parts."""
+    """Return a list or tuple of the same type as ``value``, made of other parts."""
     return value._make(parts) if hasattr(value, "_fields") else type(value)(parts)
 
 
@@ -182,23 +182,23 @@ def _alike(value: Any, parts: list[Any]) -> Any:
 
 
 def save(thing: Any) -> SavedState:
-    """Return the state of an object, and of the objects that it holds, as a file can hold it.
+    """Return the state of an object, and of the objects that it holds, in a form that a file can hold.
 
     Parameters
     ----------
     thing
-        Numbers, texts, arrays, lists, tuples, dictionaries by name, generators of random numbers and objects of such
-        in its attributes. Functions are left out, since no time changes them.
+        An object whose attributes are numbers, texts, arrays, lists, tuples, dictionaries with text keys, generators
+        of random numbers, or plain objects of these. Functions are left out, since they do not change with time.
 
     Returns
     -------
     SavedState
-        What `restore` needs.
+        The argument for `restore`.
 
     Raises
     ------
     RefusedError
-        If the object holds something else; the sentence names it.
+        If the object holds something else; the message names it.
 
     Examples
     --------
@@ -245,12 +245,12 @@ def save(thing: Any) -> SavedState:
 
 
 def restore(thing: Any, saved: SavedState) -> None:
-    """Put an object back into a state that it, or one that was made in the same way, had when it was saved.
+    """Put an object back into a saved state: its own, or that of an object that was made in the same way.
 
     Raises
     ------
     RefusedError
-        If the object is not made in the same way.
+        If the object was not made in the same way.
     """
     room = _Room(saved.memory)
 
@@ -290,7 +290,7 @@ def restore(thing: Any, saved: SavedState) -> None:
 
 
 def _is_plain(value: Any) -> bool:
-    """Tell whether an object is no more than its attributes: an open file, say, is more."""
+    """Return whether an object is fully described by its attributes; an open file, say, is not."""
     try:
         return hasattr(value, "__dict__") and value.__reduce_ex__(4)[0] is copyreg.__newobj__  # type: ignore[attr-defined]
     except TypeError:
@@ -298,9 +298,9 @@ def _is_plain(value: Any) -> bool:
 
 
 def _view(inside: list[Any]) -> _View:
-    """Return a view that JSON has made a list of."""
+    """Return a `_View` from the list that JSON has made of it."""
     view = _View(*inside)
     fields = view.dtype
-    if isinstance(fields, list):  # of a record, whose fields are tuples
+    if isinstance(fields, list):  # the fields of a record, which must be tuples
         fields = [(name, kind, *map(tuple, shape)) for name, kind, *shape in fields]
     return view._replace(dtype=fields)

@@ -1,4 +1,4 @@
-"""Numbers that may change with time: wherever the engine takes a float, one of these is taken too."""
+"""Schedules: numbers that may change with time, such as the temperature of a heat bath."""
 
 import itertools
 import math
@@ -15,12 +15,12 @@ class Schedule(Protocol):
     """A number as a function of time."""
 
     def points(self) -> list[tuple[float, float]]:
-        """Return the corners (time, value) of the polygon; constant before the first and after the last."""
+        """Return the corners (time, value) of the polygon; it is constant before the first and after the last."""
 
 
 @dataclass(frozen=True)
 class Constant:
-    """The same at all times.
+    """A number that does not change with time.
 
     Examples
     --------
@@ -37,7 +37,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Ramp:
-    """From one value to another at an even pace, constant before and after.
+    """A linear change from ``first`` to ``last`` between the times ``start`` and ``end``; constant before and after.
 
     Examples
     --------
@@ -59,7 +59,7 @@ class Ramp:
 
 @dataclass(frozen=True)
 class Steps:
-    """One value after another, each from its time on.
+    """A step function: each value holds from its time until the next time.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) 
     Raises
     ------
     RefusedError
-        If a corner is not finite or, where asked, not positive.
+        If a corner is not finite, its value is not positive although it must be, or times decrease.
 
     Examples
     --------

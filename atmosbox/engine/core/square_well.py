@@ -1,9 +1,10 @@
-r"""The law of the square well: hard spheres that attract each other while they are near.
+r"""The law of the square well: hard spheres that attract each other at short distances.
 
 Two molecules are inside each other's well while their centres are closer than :math:`\lambda \sigma`; there their
-potential energy is :math:`-\varepsilon`, farther away it is zero, and nearer than :math:`\sigma` they cannot come. So a
-pair changes its motion at two distances only, and flies straight in between (gravity accelerates both alike). With the
-relative velocity :math:`u_n` along the line of centres and the reduced mass :math:`\mu`:
+potential energy is :math:`-\varepsilon`; farther away it is zero, and they cannot come nearer than :math:`\sigma`. So
+the velocities of a pair change at two distances only, and its relative motion is straight in between (gravity
+accelerates both alike). With the relative velocity :math:`u_n` along the line of centres and the reduced mass
+:math:`\mu`:
 
 ========  =====================================================  ==========================================
 core      at sigma, approaching                                  :math:`u_n' = -u_n`
@@ -12,7 +13,7 @@ release   at lambda sigma, inside, parting, fast enough          :math:`u_n' = \
 bounce    at lambda sigma, inside, parting, too slow for that    :math:`u_n' = -u_n`
 ========  =====================================================  ==========================================
 
-Whether a pair is inside is remembered and never deduced from its distance. At the edge a distance cannot tell: a pair
+Whether a pair is inside is stored and never computed from its distance. At the edge the distance cannot tell: a pair
 that approaches there is about to be captured, or has just been.
 
 References
@@ -28,7 +29,7 @@ from atmosbox.engine.core.jit import kernel
 __all__ = ["BOUNCE", "CAPTURE", "CORE", "RELEASE", "Well", "resolve_crossing", "time_to_crossing"]
 
 CORE, CAPTURE, RELEASE, BOUNCE = range(4)
-"""What happens to a pair; a release that is too slow becomes a bounce when it is resolved."""
+"""The four events of a pair; a release that is too slow becomes a bounce when it is resolved."""
 
 
 class Well(NamedTuple):
@@ -41,33 +42,34 @@ class Well(NamedTuple):
 
 @kernel
 def time_to_crossing(rx, ry, rz, ux, uy, uz, well, inside, within):
-    r"""Return how long it takes a pair to reach its core, or the edge of its well, if that comes soon.
+    r"""Return how long it takes a pair to reach its core or the edge of its well, if that happens soon.
 
     Parameters
     ----------
     rx, ry, rz, ux, uy, uz
-        Position [length] and velocity [length/time] of one relative to the other.
+        Position [length] and velocity [length/time] of one molecule relative to the other.
     well
         The law of the pair, a `Well`.
     inside
-        Whether it is inside the well now.
+        Whether the pair is inside the well now.
     within
-        Until when it is asked for [time from now]; what comes later may count as never.
+        How far ahead to look [time from now]; a later event may be returned as never.
 
     Returns
     -------
     (float, int)
-        Time from now [time], ``inf`` for never; and which: `CORE`, `CAPTURE` or `RELEASE`.
+        Time from now [time], ``inf`` for never; and the event: `CORE`, `CAPTURE` or `RELEASE`.
 
     Notes
     -----
-    Most pairs do nothing so soon, and one test without a root or a division tells so: where would the pair be then?
-    Both roots are written so that nothing cancels. A pair that rounding has put on the wrong side of the core or edge
-    acts at once, and one whose path would lie outside the edge altogether turns back where it is nearest: none is lost.
+    Most pairs reach neither so soon. One test without a root or a division rejects them: it computes the distance that
+    the pair would have then. Both roots are written without cancellation. A pair that rounding has put on the wrong
+    side of the core or edge has its event at once. A pair inside whose path would lie outside the edge altogether, by
+    rounding, has its event where the two are nearest. So no event is lost.
 
     Examples
     --------
-    From a distance of 3 at unit speed to the edge at 1.5, from there to the core; from the core outwards to the edge:
+    From a distance of 3 at unit speed to the edge at 1.5; from there to the core; from the core outwards to the edge:
 
     >>> well = Well(core=1.0, edge=2.25, depth=1.0)
     >>> time_to_crossing(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, well, False, 9.0)
@@ -83,7 +85,7 @@ def time_to_crossing(rx, ry, rz, ux, uy, uz, well, inside, within):
     past_edge = distance_squared - well.edge
     gap = distance_squared - well.core if inside else past_edge
     discriminant = b * b - speed_squared * gap
-    # what the square of the distance will have grown by, and whether the pair will part by then
+    # by how much the square of the distance will have grown, and whether the pair will move apart by then
     turn = speed_squared * within + b
     grown = within * (turn + b)
     meets = (discriminant > 0.0) & (b < 0.0) & ((turn > 0.0) | (grown + gap < 0.0))
@@ -103,30 +105,31 @@ def time_to_crossing(rx, ry, rz, ux, uy, uz, well, inside, within):
 
 @kernel
 def resolve_crossing(r, u, which, mass, other_mass, depth):
-    r"""Return the change of velocity of the first molecule of a pair at its core or edge, and what has happened.
+    r"""Return the change of velocity of the first molecule of a pair at the core or edge, and the event.
 
     Parameters
     ----------
     r, u : (axis,)
-        Its position [length] and velocity [length/time] relative to its partner, tuples.
+        Position [length] and velocity [length/time] of the molecule relative to its partner, tuples.
     which
         `CORE`, `CAPTURE` or `RELEASE`.
     mass, other_mass, depth
-        Its mass and the partner's [mass]; depth of the well [energy].
+        Mass of the molecule and of its partner [mass]; depth of the well [energy].
 
     Returns
     -------
     (tuple, int)
-        Change of its velocity [length/time], of which the partner gets -mass / other_mass; and which of the four.
+        Change of its velocity [length/time], the partner's being -mass / other_mass times this; and which of the four
+        events it was.
 
     Notes
     -----
-    u_n is taken with the actual distance, which is sigma or lambda sigma to rounding only: that keeps the energy.
+    u_n is computed with the actual distance, equal to sigma or lambda sigma to rounding only: this conserves energy.
 
     Examples
     --------
-    Two of unit mass that meet with a relative velocity of 2 are captured and go on with sqrt(8); one that leaves with
-    1.9 bounces back:
+    Two molecules of unit mass that meet with a relative velocity of 2 are captured and go on with sqrt(8); a pair that
+    moves apart with 1.9 bounces back:
 
     >>> resolve_crossing((1.5, 0.0, 0.0), (-2.0, 0.0, 0.0), CAPTURE, 1.0, 1.0, 1.0)[0][0] * 2.0 - 2.0 == -math.sqrt(8.0)
     True

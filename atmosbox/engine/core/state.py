@@ -1,4 +1,4 @@
-"""What the engine knows of its molecules: NamedTuples of arrays, and nothing else.
+"""The data of the engine: molecules, events, cells, walls and tallies, as NamedTuples of arrays.
 
 Everything is in reduced units: the caller chooses a length, a mass and an energy, and time follows as
 length * sqrt(mass / energy). ``kT`` is an energy; the engine knows no kelvin.
@@ -42,8 +42,8 @@ MOLECULE = np.dtype(
 )
 """One molecule, one 64-byte line of memory.
 
-Its centre [length] and velocity [length/time] *at the time of its clock* [time], how many encounters it
-has had, and its kind (a row of `Kinds`). Only an encounter writes it.
+Its centre [length] and velocity [length/time] *at the time of its clock* [time], the number of encounters it has had,
+and its kind (a row of `Kinds`). These fields change only at an encounter.
 """
 
 EVENT = np.dtype(
@@ -53,35 +53,35 @@ EVENT = np.dtype(
         "itemsize": 32,
     }
 )
-"""What lies ahead of one molecule.
+"""The next event of one molecule.
 
-Its next contact [time], with whom, how many encounters the partner had had when that was predicted (if it
-has had more since, the prediction is stale), where it stands among the cells (`cells`), and which of
-contact, crossing or wall comes first. A contact with itself means that it plans anew at that time. The last eight
-bytes, which have no name here, tell its places in the rows of its cells (`rows`).
+The time of its next contact [time], the partner, and how many encounters the partner had had when that contact was
+predicted (if it has had more since, the prediction is stale); its slots along the three axes (`cells`); and which of
+contact, crossing or wall hit comes first. A contact with itself means that its events are predicted anew at that time.
+The last eight bytes, which have no name here, are its places in the rows of its cells (`rows`).
 """
 
 SLOT_OFFSET = 16
-"""Where in the bytes of an `EVENT` the three slots begin."""
+"""Byte of an `EVENT` at which the three slots begin."""
 
 PLACE_OFFSET = 24
-"""Where in the bytes of an `EVENT` the eight places begin."""
+"""Byte of an `EVENT` at which the eight places begin."""
 
 KIND = np.dtype([("mass", "f8"), ("radius", "f8"), ("rotation", "f8"), ("size_class", "i8")])
 """A kind of molecule.
 
-Mass [mass], radius [length], rotational degrees of freedom, row of the table of cell boundaries.
+Mass [mass], radius [length], rotational degrees of freedom, and its row in the tables of cell boundaries.
 """
 
 
 class Modes(NamedTuple):
-    """What a scene requires.
+    """The features that a scene requires, as flags.
 
-    Contacts at all (points never meet), gravity, rotation, several kinds of molecule, spheres larger than
-    cells, periodic axes, a piston; molecules that come and go between vapour and liquid, and a floor of liquid; the
-    first kind that is a drop, 0 if none is; a periodic axis so short that a molecule meets several images of another;
-    a piston that follows a pressure, whose turns compiled code makes; whether the rows of cells hold copies of
-    trajectories (`rows`).
+    In this order: whether molecules collide at all (points never do); gravity; rotation; several kinds of molecule;
+    spheres larger than cells; periodic axes; a piston; molecules that change between vapour and liquid; a floor of
+    liquid (`pool`); the number of the first kind that is a drop, 0 if there is none; a periodic axis so short that a
+    molecule meets several images of another; a piston that follows a pressure, whose velocity compiled code sets;
+    whether the rows of cells hold copies of trajectories (`rows`).
     """
 
     contacts: bool
@@ -99,17 +99,17 @@ class Modes(NamedTuple):
     rows: bool = False
 
     def without(self, *flags: str) -> "Modes":
-        """Return the modes of a kernel that does without some flags: the compiler refuses one that reads them."""
+        """Return the modes of a kernel that must not read some flags: the compiler refuses one that does."""
         left_out: dict[str, Any] = dict.fromkeys(flags)
         return self._replace(**left_out)
 
 
 class Box(NamedTuple):
-    """The box, and what holds everywhere in it.
+    """The box: its sides, and the constants that hold everywhere in it.
 
-    Sides [length], ``inverse_*`` 1/side on a periodic axis and 0 on a walled one, gravity along -z
-    [length/time^2], whether the gas is a plane, the share of contacts that exchange energy with rotation,
-    and the time [time] in which many events without progress are a pile-up.
+    Sides [length], ``inverse_*`` 1/side on a periodic axis and 0 on a walled one [1/length], gravity along -z
+    [length/time^2], whether the gas is plane, the share of contacts that exchange energy with rotation, and the
+    time [time] that many events must take at least: within less, the run counts as stalled.
     """
 
     length_x: float
@@ -125,7 +125,7 @@ class Box(NamedTuple):
 
 
 class Kinds(NamedTuple):
-    """The kinds of molecule.
+    """The kinds of molecules.
 
     ``table : (kind,)`` of `KIND`, and ``rotational_energy : (molecule,)`` [energy] where molecules rotate.
     """
@@ -135,13 +135,14 @@ class Kinds(NamedTuple):
 
 
 class Copies(NamedTuple):
-    """What the rows of cells hold beside names, where they hold copies of trajectories: see `rows`.
+    """What the rows of cells hold beside indices of molecules, where they hold copies of trajectories: see `rows`.
 
     ``value`` and ``occupied`` are the memory of ``Cells.row``, read as float32 and as words of 64 bits; ``place`` is
-    that of the events, read as bytes. ``centre : (axis, cell)`` [length]; ``horizon : (layer,)`` how far ahead contacts
-    are looked for [time]; ``slack : (layer, 3)`` how far the copies may be wrong, ``epoch : (4,)`` from when until when
-    [time], and up to which speed [length/time], they hold: see `glance`. ``room : (layer,)`` [length^3; planar:
-    length^2] and ``radius`` [length] of a usual molecule tell how dense a layer is.
+    the memory of the events, read as bytes. ``centre : (axis, cell)`` [length] are the centres of the cells;
+    ``horizon : (layer,)`` is how far ahead contacts are searched [time]. ``slack : (layer, 3)`` bounds the errors of
+    the copies; ``epoch : (4,)`` holds the times from which and until which [time], and the speed [length/time] up to
+    which, these bounds hold: see `glance`. ``room : (layer,)`` [length^3; planar: length^2] and ``radius`` [length] of
+    a usual molecule tell how dense a layer is.
     """
 
     value: Any
@@ -156,13 +157,13 @@ class Copies(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """Which molecules stand where.
+    """Which molecules lie in which cell.
 
     ``row : (cell * stride,)``: each cell's molecules (`cells`, or `rows`). ``boundary : (size,
     axis, slot)`` [length], ``first`` and ``span : (size, axis, slot)``: the first cell, and the number of
     cells, that a sphere of that size overlaps when its centre lies between ``boundary[slot]`` and
-    ``boundary[slot + 1]``. ``slot : (molecule, 3)`` is a view into the events. ``last_slot_*`` is the
-    number of slots less one.
+    ``boundary[slot + 1]``. ``slot : (molecule, 3)`` is a view of the events. ``last_slot_*`` is the
+    number of slots minus one.
     """
 
     row: Any
@@ -181,7 +182,7 @@ class Cells(NamedTuple):
 
 
 class Calendar(NamedTuple):
-    """A tournament of next events: see `calendar`."""
+    """A tournament tree of the molecules' next events: see `calendar`."""
 
     time: Any
     winner: Any
@@ -193,10 +194,10 @@ class Calendar(NamedTuple):
 class Walls(NamedTuple):
     """The six walls, in the order x low, x high, y low, y high, z low, z high.
 
-    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, their temperatures as polygons in time:
+    ``law : (wall,)`` (see `walls`), ``accommodation : (wall,)``, and the temperatures as polygons in time:
     wall w has the points ``schedule[w] <= k < schedule[w + 1]`` of ``schedule_time`` [time] and
-    ``schedule_kT`` [energy]. ``piston`` holds the ceiling's position [length] and velocity at a time
-    [time]: (position, velocity, time). ``epoch`` is the time at which all clocks read zero.
+    ``schedule_kT`` [energy]. ``piston`` is the motion of the ceiling: (position [length], velocity [length/time],
+    time at which it had that position [time]). ``epoch`` is the time at which all clocks read zero.
     """
 
     law: Any
@@ -209,14 +210,14 @@ class Walls(NamedTuple):
 
 
 class Tallies(NamedTuple):
-    """What has been counted since the start.
+    """Counts and sums since the start.
 
     ``count : (5,)`` contacts, cells entered, cells left, stale predictions, wall hits; ``impulse``,
-    ``heat``, ``hits``, ``work : (wall,)`` [momentum, energy, 1, energy]: what each wall took up as normal
-    impulse (outward), gave as heat, how often it was hit, what it did as work; ``virial : (layer,)``
-    [energy]: sum of r . dp over contacts by height; ``layer_scale`` [1/length]; ``random : (1,)`` state
-    of the random numbers; ``progress : (2,)`` a time [time], and the events since: many in no time are a
-    pile-up.
+    ``heat``, ``hits``, ``work : (wall,)`` [momentum, energy, 1, energy]: the normal impulse that each wall has taken
+    up (outward), the heat that it has given, the number of hits, the work that it has done; ``virial : (layer,)``
+    [energy]: sum of r . dp over contacts by height; ``layer_scale`` [1/length]: layers per height; ``random : (1,)``
+    state of the random numbers; ``progress : (2,)`` a time [time] and the number of events since: many events in no
+    time are a stalled run.
     """
 
     count: Any
@@ -231,7 +232,7 @@ class Tallies(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Where one molecule is and how it moves, at one time: ``x, y, z`` [length], ``vx, vy, vz`` [length/time]."""
+    """Position and velocity of one molecule at one time: ``x, y, z`` [length], ``vx, vy, vz`` [length/time]."""
 
     x: float
     y: float
@@ -242,10 +243,10 @@ class Motion(NamedTuple):
 
 
 class Gas(NamedTuple):
-    """All that the exact engine works on, as its kernels receive it.
+    """All data of the exact engine, as its kernels receive them.
 
     ``molecules : (molecule,)`` of `MOLECULE` and ``events : (molecule,)`` of `EVENT`; the others are described at their
-    types. A kernel that takes a ``gas`` reads what it needs of it: the compiler passes the parts at no cost.
+    types. A kernel that takes a ``gas`` reads only the parts it needs; passing the others costs nothing.
     """
 
     molecules: Any

@@ -1,10 +1,10 @@
-r"""What walls do: one law each.
+r"""The laws of the walls: specular, periodic, heat bath and piston.
 
-A **specular** wall turns the normal velocity round. A **periodic** pair of walls is none: who leaves on
-one side enters on the other. A **heat bath** forgets the molecule and emits one at its own temperature:
-the normal velocity is Rayleigh, because fast molecules arrive more often, :math:`p(v) \propto v \exp(-m
-v^2 / 2 k T)`; the tangential ones are Gaussian. A **piston** is a specular wall that moves at velocity u:
-:math:`v' = -v + 2 u`, which does the work that it should.
+A **specular** wall reverses the normal velocity. A **periodic** pair of walls is no wall: a molecule that leaves on
+one side enters on the other. A **heat bath** emits the molecule with a new velocity, drawn at the bath's temperature:
+the normal velocity follows a Rayleigh distribution, because fast molecules arrive more often, :math:`p(v) \propto v
+\exp(-m v^2 / 2 k T)`; the tangential ones are Gaussian. A **piston** is a specular wall that moves at velocity u:
+:math:`v' = -v + 2 u`, which does work on the molecules.
 """
 
 import math
@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 SPECULAR, PERIODIC, HEAT_BATH, PISTON, POOL = 0, 1, 2, 3, 4
-"""The laws by number; the floor of a box with a `liquid.Pool` is one, whoever it was given as."""
+"""The laws by number. The floor of a box with a `liquid.Pool` is a `POOL`, whatever law was given for it."""
 WALL_NAMES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
 
@@ -45,7 +45,7 @@ class Specular:
 
 @dataclass(frozen=True)
 class Periodic:
-    """No wall: the box continues with itself. Both walls of an axis must be so."""
+    """No wall: the box continues periodically. Both walls of an axis must be periodic, or neither."""
 
 
 @dataclass(frozen=True)
@@ -55,9 +55,9 @@ class HeatBath:
     Parameters
     ----------
     kT
-        Its temperature [energy], a number or a schedule.
+        Temperature of the wall [energy], a number or a schedule.
     accommodation
-        The part of the molecules, 0 to 1, that it takes in; the others are reflected.
+        Fraction of the molecules, 0 to 1, that the wall re-emits at its temperature; it reflects the others.
     """
 
     kT: float | Schedule
@@ -66,7 +66,7 @@ class HeatBath:
 
 @dataclass(frozen=True)
 class Piston:
-    """A ceiling that moves at a velocity [length/time], which a driver may change.
+    """A ceiling that moves upward at a velocity [length/time], which a driver may change.
 
     See `ParcelSet.set_piston_velocity`.
     """
@@ -85,19 +85,19 @@ class _Laws:
 
 
 def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
-    """Return the six walls as arrays, checked.
+    """Return the six walls as arrays, after checking them.
 
     Parameters
     ----------
     walls
         Six laws in the order of `WALL_NAMES`.
     height
-        Where the ceiling is [length].
+        Height of the ceiling [length].
 
     Raises
     ------
     RefusedError
-        If a law is misplaced or one of its numbers is impossible.
+        If a law is not possible for its wall, or one of its numbers is impossible.
 
     Examples
     --------
@@ -191,7 +191,7 @@ def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rot
     Parameters
     ----------
     walls, wall
-        The walls, and which one is hit.
+        The walls, and the number of the wall that is hit.
     time
         Time since the start [time].
     normal, first, second
@@ -201,18 +201,18 @@ def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rot
     mass
         Mass of the molecule [mass].
     planar
-        Whether the gas is a plane, whose y velocity stays zero.
+        Whether the gas is plane, so that the y velocity stays zero.
     state
-        State of the random numbers, moved on.
+        State of the random numbers; it is advanced.
 
     Returns
     -------
     (float, float, float, float)
-        The same velocities and the rotational energy after the hit.
+        The three velocities, in the same order, and the rotational energy after the hit.
 
     Examples
     --------
-    A piston that recedes at 1 slows a molecule that came with 3 to 1:
+    A piston that recedes at 1 slows a molecule from a speed of 3 to 1:
 
     >>> walls = new_walls((Specular(),) * 5 + (Piston(1.0),), 2.0)
     >>> resolve_wall_hit(walls, 5, 0.0, 3.0, 0.5, 0.5, 0.0, 1.0, 0.0, False, np.array([1], np.uint64))
@@ -240,24 +240,24 @@ def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rot
 
 @kernel
 def bounce_off(wall, time, velocity, spin, kind, walls, planar, state):
-    """Return velocity and rotational energy after a hit, and the velocity that it gave along the wall's axis.
+    """Return velocity and rotational energy after a wall hit, and the change of the velocity along the wall's axis.
 
     Parameters
     ----------
     wall, time
-        Which wall is hit, and when [time since the start].
+        The wall that is hit, and the time of the hit [time since the start].
     velocity : (axis,)
-        A tuple [length/time].
+        Velocity before the hit, a tuple [length/time].
     spin
         Rotational energy [energy].
     kind
         Mass [mass] and rotational degrees of freedom of the molecule, a tuple.
     walls, planar, state
-        The walls, whether the gas is a plane, the state of the random numbers, moved on.
+        The walls, whether the gas is plane, and the state of the random numbers, which is advanced.
 
     Examples
     --------
-    A smooth floor turns the vertical velocity round:
+    A smooth floor reverses the vertical velocity:
 
     >>> walls = new_walls((Specular(),) * 6, 2.0)
     >>> bounce_off(4, 0.0, (1.0, 0.0, -2.0), 0.0, (1.0, 0.0), walls, False, np.array([1], np.uint64))
