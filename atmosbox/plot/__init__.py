@@ -1,12 +1,12 @@
 """The figure of a run: from the file to a page or a slide.
 
-Everything comes from the dataset itself: the panels that its scene asked for (attribute ``atmosbox_panels``),
-the variables they name, the headline numbers and the provenance. A figure can therefore be drawn wherever the
-file is, without the scene and without the engine, and drawing it twice gives the same bytes.
+The dataset holds everything that is drawn: the panels that its scene chose (attribute ``atmosbox_panels``), the
+variables that these panels show, the headline numbers and the provenance. A figure can therefore be drawn without the
+scene and without the engine, and drawing it twice gives the same bytes.
 
-Read in this order: `unit` (from SI to what a meteorologist reads), `curve` and `plane` (from a file to numbers),
-`stroke`, `draw`, `disc_marker`, `skewt` and `energy` (numbers to ink), `tick`, `caption` and `number_card` (what is
-written), `theme` (how large), `tilt` and `pen` (one panel), `place` and `layout` (all of them), `comparison`
+Read in this order: `unit` (from SI to the units of a graph), `curve` and `plane` (from a file to numbers),
+`stroke`, `draw`, `disc_marker`, `skewt` and `energy` (from numbers to curves), `tick`, `caption` and `number_card`
+(text), `theme` (sizes and colours), `tilt` and `pen` (one panel), `place` and `layout` (all panels), `comparison`
 (several runs in one figure), `varied`, `field`, `coexistence_figure` and `sweep_figure` (many runs),
 `tradeoff_choice`, `direct_label` and `tradeoff_figure` (speed against accuracy), `camera`, `box_picture`,
 `atmosphere_picture` and `box_figure` (the molecules in their box, the parcel in its atmosphere), `figure_file` (PNG,

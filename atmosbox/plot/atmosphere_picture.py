@@ -1,4 +1,4 @@
-"""The atmosphere around a lifted parcel: ground or mountains, the parcel on its way, its cloud and its rain."""
+"""The atmosphere around a lifted parcel: ground or mountains, the parcel on its path, its cloud and its rain."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ _, _, _, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO
 _SKY = LinearSegmentedColormap.from_list("sky", ("#e4f0f8", "#9cc4e2"))
 _GROUND, _ROCK, _CLOUD, _RIM, _CLEAR = "#8aa37b", "#9a8f80", "#ffffff", "#8c97a3", "#cfe3f1"
 _SMALLEST_CLOUD = 2e-4
-"""Liquid per dry air from which on a cloud is drawn: .2 g/kg is that of a thin cumulus, which can be seen."""
+"""Liquid per dry air above which a cloud is drawn [kg kg-1]: 0.2 g/kg, as in a thin cumulus that can be seen."""
 _FAINTEST_RAIN = 0.02
-"""Rain of a frame from which on it is drawn, in parts of all that falls."""
+"""Rain of a frame above which it is drawn, as a share of all rain of the run."""
 _DESCENT = 0.1
-"""A way that goes down again by so much of its height leads over mountains."""
+"""A path that goes down again by more than this share of its range of heights leads over mountains."""
 _RADIUS = 0.75
-"""Radius of the parcel at the start, in sizes of the type."""
+"""Radius of the parcel at the start, in units of the type size."""
 _MIDDLE = 0.36
-"""Where the way up stands, in widths of the picture."""
+"""Horizontal position of a vertical path, in widths of the picture."""
 _PUFFS = 9
-"""How many puffs a cloud is wide."""
+"""Number of puffs across the width of a cloud."""
 _GAP = 0.07
-"""How high above the mountains the parcel is drawn, in heights of the picture."""
+"""Height of the parcel above the mountains in the picture, in heights of the picture."""
 
 
 class Ascent(NamedTuple):
-    """The way of a parcel as the file tells it, one value a frame."""
+    """The path of a parcel from the file, one value for each frame."""
 
     time: NDArray[np.float64]
-    """Elapsed time, from 0 to 1."""
+    """Elapsed time as a share of the whole run, from 0 to 1."""
     height: NDArray[np.float64]
     """Height [km]."""
     temperature: NDArray[np.float64]
@@ -55,28 +55,28 @@ class Ascent(NamedTuple):
     pressure: NDArray[np.float64]
     """Pressure of the environment at that height [hPa]."""
     radius: NDArray[np.float64]
-    """Radius of the parcel in radii at the start, from its temperature and its pressure."""
+    """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
     liquid: NDArray[np.float64]
     """Measured liquid per dry air [kg kg-1]; 0 in a scene without water."""
     rain: NDArray[np.float64]
-    """Measured rain per dry air up to then [kg kg-1]; 0 where none falls."""
+    """Measured rain per dry air from the start up to the frame [kg kg-1]; 0 where none falls."""
     base: float
     """Height of the measured cloud base [km]; NaN where the run measures none."""
 
     @property
     def crosses(self) -> bool:
-        """Whether the way leads over mountains: it goes down again."""
+        """Whether the path leads over mountains: whether it goes down again."""
         highest = int(self.height.argmax())
         return bool(self.height[highest] - self.height[highest:].min() > _DESCENT * np.ptp(self.height))
 
     @property
     def cloudy(self) -> NDArray[np.bool_]:
-        """In which frames there is a cloud; below the measured base there is none, but single clusters of molecules."""
+        """Whether there is a cloud in each frame; liquid below the measured base is not a cloud but single clusters."""
         return np.asarray((self.liquid > _SMALLEST_CLOUD) & ~(self.height < self.base))
 
 
 def ascent_of(dataset: xr.Dataset) -> Ascent:
-    """Return the way of the parcel of a run.
+    """Return the path of the parcel of a run.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def ascent_of(dataset: xr.Dataset) -> Ascent:
 
 
 def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry]:
-    """Draw the whole way of a parcel through the atmosphere, with what it measured on it.
+    """Draw the whole path of a parcel through the atmosphere, with its measured temperature at several points.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry
     dataset : xarray.Dataset
         The run, as `ascent_of` takes it.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry
     Raises
     ------
     FileError
-        If the file lacks the way.
+        If the file lacks height, temperature or pressure of the path.
 
     Examples
     --------
@@ -169,16 +169,16 @@ def draw_atmosphere(axes: Axes, dataset: xr.Dataset, theme: Theme) -> list[Entry
 
 
 def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
-    """Draw what stands still: the sky, the ground or the mountains, and the way; set the limits of the axes.
+    """Draw what is the same in all frames: sky, ground or mountains, and path; set the limits of the axes.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
         Where to draw.
     way : Ascent
-        The whole way.
+        The whole path.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -210,20 +210,20 @@ def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
 
 
 def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], theme: Theme) -> list[Entry]:
-    """Draw the parcel at some frames, and the cloud and the rain that it made up to a frame.
+    """Draw the parcel in some frames, and the cloud and the rain that it has made up to a frame.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Axes with the ground.
+        Axes on which `draw_ground` has drawn.
     way : Ascent
-        The whole way.
+        The whole path.
     until : int
-        The frame.
+        Index of the last frame whose cloud and rain are drawn.
     stations : ndarray of int
-        The frames in which the parcel is drawn, with its temperature and its pressure.
+        Indices of the frames in which the parcel is drawn with its temperature and, on a vertical path, its pressure.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -280,7 +280,7 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
 
 
 def _across(way: Ascent) -> NDArray[np.float64]:
-    """Return where along the picture the parcel is: straight up in the middle, or from end to end."""
+    """Return the horizontal position of the parcel: constant on a vertical path, from end to end over mountains."""
     return 0.055 + 0.89 * way.time if way.crosses else np.full_like(way.time, _MIDDLE)
 
 
@@ -292,7 +292,7 @@ def _base(dataset: xr.Dataset, height: NDArray[np.float64], pressure: NDArray[np
 
 
 def _turns(height: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return where a way begins, turns and ends."""
+    """Return the indices of the frames in which a path begins, turns up or down, and ends."""
     rising = np.sign(np.diff(height))
     rising[rising == 0.0] = 1.0
     return np.concatenate([[0], np.flatnonzero(np.diff(rising)) + 1, [height.size - 1]])
@@ -301,14 +301,14 @@ def _turns(height: NDArray[np.float64]) -> NDArray[np.int64]:
 def _puffs(
     axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], size: NDArray[np.float64] | float, theme: Theme
 ) -> list[PathCollection]:
-    """Draw a cloud out of round puffs of a radius in sizes of the type: first their common rim, then what fills it."""
+    """Draw a cloud as discs whose radius is in units of the type size: first their common rim, then the white area."""
     area = np.broadcast_to(np.pi * (np.asarray(size) * theme.text) ** 2, np.shape(x))
     rim = axes.scatter(x, y, area, _RIM, linewidths=1.6 * theme.line, edgecolors=_RIM, zorder=1.8)
     return [rim, axes.scatter(x, y, area, _CLOUD, linewidths=0.0, zorder=1.9)]
 
 
 def _tower(axes: Axes, base: float, top: float, theme: Theme) -> None:
-    """Draw a cloud over a flat base, which grows narrower upward."""
+    """Draw a cloud with a flat base that becomes narrower upward."""
     bottom, ceiling = axes.get_ylim()
     rows = max(2, round(16.0 * (top - base) / (ceiling - bottom)))
     share, place = np.repeat(np.linspace(0.0, 1.0, rows), _PUFFS), np.tile(np.linspace(-1.0, 1.0, _PUFFS), rows)
@@ -317,7 +317,7 @@ def _tower(axes: Axes, base: float, top: float, theme: Theme) -> None:
     radius = 1.2 + 0.5 * rng.random(share.size)
     up = base + np.clip(share, 0.0, 1.0) * (top - base)
     puffs = _puffs(axes, _MIDDLE + half * (place + 0.05 * rng.normal(size=share.size)), up, radius, theme)
-    inside = float(half.min())  # where puffs may leave a gap
+    inside = float(half.min())  # half width of a rectangle that fills gaps between the puffs
     axes.add_patch(
         Rectangle((_MIDDLE - inside, base), 2.0 * inside, top - base, color=_CLOUD, linewidth=0.0, zorder=1.95)
     )
@@ -333,7 +333,7 @@ def _streaks(
     below: NDArray[np.float64] | float,
     theme: Theme,
 ) -> tuple[Artist, ...]:
-    """Draw rain from one height to another."""
+    """Draw streaks of rain from one height down to another."""
     above, below = np.broadcast_to(above, across.shape), np.broadcast_to(below, across.shape)
     lines = [[(x, high), (x - 0.012, low)] for x, high, low in zip(across, above, below, strict=True)]
     axes.add_collection(LineCollection(lines, colors=_BLUE, linewidths=theme.line, zorder=2.5), autolim=False)
@@ -350,7 +350,10 @@ def _say(
     bold: bool = False,
     lower: float = 0.0,
 ) -> None:
-    """Write beside a parcel: to the right (1, 0), above (0, 1), and so on; lower by so many sizes of the type."""
+    """Write a text beside a parcel: to the right for side (1, 0), above for (0, 1), and so on.
+
+    The text is moved down by ``lower`` times the type size.
+    """
     right, up = side
     away = 1.6 * _RADIUS * theme.text * (1.0 if up else 1.25)
     axes.annotate(

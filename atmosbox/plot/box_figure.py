@@ -1,4 +1,4 @@
-"""The figure of a run under its box: the molecules at the start, half-way and at the end, then the scene's panels."""
+"""The figure of a run with its box: the molecules at the start, half-way and at the end, and below them the panels."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 
 __all__ = ["figure_with_box"]
 
-_INSTANTS = (0.0, 0.5, 1.0)  # in parts of the run
+_INSTANTS = (0.0, 0.5, 1.0)  # as shares of the duration of the run
 _BAR = 0.105  # width of the colour bar with its numbers, in widths of the page
-_HIGH = 0.36  # of the boxes, in widths of the page
-_HIGH_ON_SCREEN = 0.4  # of the boxes, in heights of a page that cannot grow
+_HIGH = 0.36  # height of the boxes, in widths of the page
+_HIGH_ON_SCREEN = 0.4  # height of the boxes, in heights of a page that cannot grow
 
 
 def figure_with_box(dataset: xr.Dataset, theme: str = "notes") -> Figure:
-    """Draw the box of a run at its start, half-way and at its end, and below it the panels of its scene.
+    """Draw the box of a run at the start, half-way and at the end, and below it the panels of its scene.
 
-    A slide has room for the first panel alone, or for two profiles.
+    A slide has room for the first panel only, or for two profiles.
 
     Parameters
     ----------
@@ -93,9 +93,9 @@ def _put_boxes(
     room: tuple[float, float],
     look: Theme,
 ) -> None:
-    """Draw the box at its instants, each under its time, and beside them what the colours mean.
+    """Draw the box at each instant with its time above it, and the colour bar to the right of all boxes.
 
-    The room begins and ends so far below the upper end of the page [pt].
+    ``room`` gives the distances of the upper and of the lower end of this row from the upper end of the page [pt].
     """
     high = 72.0 * float(pen.figure.get_figheight())
     each, top = (1.0 - _BAR) / len(pictures), 1.0 - (room[0] + 0.5 * look.text) / high
@@ -114,7 +114,7 @@ def _put_boxes(
 
 
 def _said(dataset: xr.Dataset, held: Molecules, moment: int) -> str:
-    """Return the time of a frame and, where a profile is measured on the way, its values there."""
+    """Return the time of a frame and, if a panel shows a profile measured frame by frame, its values in the frame."""
     time = instant(dataset, held, moment)
     for panel in panels_of(dataset):
         for line in panel.lines:

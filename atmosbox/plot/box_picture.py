@@ -1,4 +1,4 @@
-"""The box of a saved run as a camera in front of it sees it: walls, piston, molecules and drops, or planar discs."""
+"""The box of a saved run in perspective: walls, piston, molecules and drops; or the discs of a planar scene."""
 
 from __future__ import annotations
 
@@ -35,8 +35,10 @@ __all__ = ["BoxPicture", "PlanarPicture", "box_picture", "instant", "speed_bar"]
 
 _MOST = 4000  # molecules that are drawn
 _UNITS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
-_NEIGHBOURS = 12.0  # at which the colours end where they tell neighbours
-_SMALLEST = 0.18  # diameter of a molecule in the picture, in distances from one to the next if they stood in rows
+_NEIGHBOURS = 12.0  # upper end of the colour scale where colours show the number of neighbours
+_SMALLEST = 0.18  # least diameter of a molecule in the picture, in spacings of a lattice of as many molecules
+# Ratio of the drawn diameter to that of a molecule of air: below the first, the footer says "drawn to size"; from the
+# second on, it gives the drawn diameter and not the ratio.
 _TO_SIZE, _MANY_TIMES = 1.05, 1000.0
 
 _, _ORANGE, _SKY, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO
@@ -47,33 +49,33 @@ _NAMES = ("left wall", "right wall", "front wall", "back wall", "floor", "ceilin
 
 
 def box_picture(axes: Axes, dataset: xr.Dataset, held: Molecules, look: Theme) -> BoxPicture | PlanarPicture:
-    """Prepare axes for the box of a run, which `artists` of the result then draws at any frame.
+    """Prepare axes for the box of a run; the method `artists` of the result then draws any frame.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw; they stay where they are.
+        The axes, whose position does not change.
     dataset : xarray.Dataset
         The run.
     held : Molecules
         Its molecules.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     """
     return PlanarPicture(axes, dataset, look) if held.discs else BoxPicture(axes, held, look)
 
 
 class BoxPicture:
-    r"""The box and its molecules, seen by a camera.
+    r"""The box and its molecules, in perspective.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw; they stay where they are.
+        The axes, whose position does not change.
     held : Molecules
-        What to draw; of more than 4000 molecules, as many, evenly chosen.
+        The molecules of the run. Of more than 4000 only 4000 are drawn, at even steps of their index.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -111,7 +113,7 @@ class BoxPicture:
             self.norm = Normalize(0.0, _NEIGHBOURS)
         self.colours = matplotlib.colormaps[FIELD_COLOURS]
         self.fit()
-        if "piston" in held.walls:  # the space that the piston may yet give
+        if "piston" in held.walls:  # upright edges of the largest box, up to which the piston may rise
             ends = self.camera.project(corners(self.largest))[0]
             upright = [ends[[low, low + 1]] for low in (0, 2, 4, 6)]
             axes.add_collection(LineCollection(upright, colors=PALE, linewidths=look.line / 2), autolim=False)
@@ -131,7 +133,7 @@ class BoxPicture:
             axes.add_artist(artist)
 
     def artists(self, frame: int) -> list[Artist]:
-        """Return what is to be drawn of a frame, from the back to the front."""
+        """Return the artists of a frame, from the back to the front."""
         seen = self.camera.project(corners(self.held.side[frame] / self.metre))[0]
         self._put_walls(frame, seen)
         self._put_molecules(frame)
@@ -140,7 +142,7 @@ class BoxPicture:
         return [*self.all]
 
     def legend(self) -> list[str]:
-        """Return what small type says of walls, molecules and drops."""
+        """Return the phrases of the footer about molecules, walls and drops."""
         held, shown, count = self.held, self.shown.size, self.held.position.shape[1]
         words = [("" if shown == count else f"{shown} of {count} ") + self._exaggeration(), *self._baths()]
         words += ["blue floor: water"] if "pool" in held.walls else []
@@ -150,17 +152,17 @@ class BoxPicture:
         return words + (["blue balls: drops"] if held.drops is not None and held.drops.shape[1] else [])
 
     def fit(self) -> None:
-        """Let the largest box fill the axes, alike in both directions."""
+        """Set the limits so that the largest box fills the axes, with one scale for both directions."""
         low, high = self.camera.limits(self.largest)
         frame = self.axes.get_window_extent()
         pixel = 1.02 * max((high[0] - low[0]) / frame.width, (high[1] - low[1]) / frame.height)  # [unit]
         (x, y), width, height = (low + high) / 2, pixel * frame.width, pixel * frame.height
         self.axes.set(xlim=(x - width / 2, x + width / 2), ylim=(y - height / 2, y + height / 2))
         self.axes.set_axis_off()
-        self.points = 72.0 / self.axes.figure.dpi / pixel  # of a unit of length in the middle of the box [pt]
+        self.points = 72.0 / self.axes.figure.dpi / pixel  # size of a unit of length in the middle of the box [pt]
 
     def _write_sides(self) -> None:
-        """Write how wide the box is, and how high unless that changes."""
+        """Write the width of the box, and its height if that differs from the width and no piston changes it."""
         (x, _, z), size = self.largest, self.look.small
         below, beside = self.camera.project(np.array([[x / 2, 0.0, 0.0], [0.0, 0.0, z / 2]]))[0]
         look: dict[str, Any] = {"textcoords": "offset points", "fontsize": size, "color": FAINT}
@@ -172,7 +174,7 @@ class BoxPicture:
             self.axes.annotate(text, beside, (-0.3 * size, 0.0), ha="right", va="center", rotation=90.0, **look)
 
     def _put_walls(self, frame: int, seen: NDArray[np.float64]) -> None:
-        """Place the walls behind the molecules, and the edges behind and before them."""
+        """Place the walls behind the molecules, and the edges behind them and in front of them."""
         walls = [wall for wall in range(6) if self.camera.behind(wall)]
         self.back.set_verts([seen[list(FACES[wall])] for wall in walls])
         self.back.set_facecolor([self._tint(frame, wall) for wall in walls])
@@ -187,7 +189,7 @@ class BoxPicture:
             collection.set_linestyle([dashes for _, dashes in edges])
 
     def _put_molecules(self, frame: int) -> None:
-        """Place molecules and drops, what is behind first."""
+        """Place molecules and drops, the most distant first."""
         held, look = self.held, self.look
         position, speed = held.position[frame, self.shown] / self.metre, self.tinted[frame, self.shown]
         here = np.isfinite(position[:, 0])
@@ -214,7 +216,7 @@ class BoxPicture:
         return _COLD if baths[wall] < 0.5 * (np.nanmin(baths) + np.nanmax(baths)) else _WARM
 
     def _exaggeration(self) -> str:
-        """Return how large the molecules are drawn."""
+        """Return a phrase that says how large the molecules are drawn."""
         wide = float(np.median(self.diameter)) * self.metre
         times = wide / DRY_AIR.diameter
         if times < _TO_SIZE:
@@ -224,7 +226,7 @@ class BoxPicture:
         return f"molecules drawn {float(f'{wide:.2g}'):g} m wide"
 
     def _baths(self) -> list[str]:
-        """Return at which temperature the heat baths are kept, or start."""
+        """Return phrases that give the constant temperature of each heat bath, or the one at the start."""
         warm = self.held.wall_temperature
         baths = [wall for wall in range(6) if self.held.walls[wall] == "heat_bath"]
         groups: dict[str, list[str]] = {}
@@ -238,7 +240,7 @@ class BoxPicture:
 
 
 class PlanarPicture:
-    """The discs of a planar scene in their box, seen from above.
+    """The discs of a planar scene in their box, seen at right angles to their plane.
 
     Parameters
     ----------
@@ -247,7 +249,7 @@ class PlanarPicture:
     dataset : xarray.Dataset
         The run.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     """
 
     unit = "m"
@@ -261,10 +263,10 @@ class PlanarPicture:
         self.trail: Artist | None = None
 
     def fit(self) -> None:
-        """Do nothing: matplotlib keeps the discs round."""
+        """Do nothing: the axes have equal scales already."""
 
     def artists(self, frame: int) -> list[Artist]:
-        """Return what is to be drawn of a frame, from the back to the front."""
+        """Return the artists of a frame, from the back to the front."""
         if self.trail is not None:
             self.trail.remove()
         self.trail = trails(self.found.place[: frame + 1], self.found.box, self.look)
@@ -276,19 +278,19 @@ class PlanarPicture:
         return [self.trail, self.discs]
 
     def legend(self) -> list[str]:
-        """Return what small type says of the discs."""
+        """Return the phrases of the footer about the discs."""
         return ["thick rims: the heavy half"] if self.found.heavy.any() else []
 
 
 def instant(dataset: xr.Dataset, held: Molecules | None, frame: int) -> str:
-    """Return the time of a frame, and in a second line how much water is liquid, where there may be any.
+    """Return the time of a frame and, in a scene with liquid, a second line with the number of liquid molecules.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
-    held : Molecules
-        Its molecules, where it has them.
+    held : Molecules or None
+        Its molecules, if the file holds them.
     frame : int
         The frame.
     """
@@ -304,7 +306,7 @@ def instant(dataset: xr.Dataset, held: Molecules | None, frame: int) -> str:
 def speed_bar(
     figure: Figure, picture: BoxPicture | PlanarPicture, spot: tuple[float, float, float, float], look: Theme
 ) -> None:
-    """Draw what the colours of molecules mean.
+    """Draw the colour bar of the molecules: speed, or number of neighbours.
 
     Parameters
     ----------
@@ -313,10 +315,10 @@ def speed_bar(
     picture : BoxPicture or PlanarPicture
         The molecules.
     spot : tuple of float
-        Left, bottom, width and height of the colour bar, in parts of the figure; it is upright if it is higher than
-        wide.
+        Left, bottom, width and height of the colour bar, as shares of the figure; the bar is vertical if it is higher
+        than wide.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     """
     axes = figure.add_axes(spot)
     wide, high = spot[2] * figure.get_figwidth(), spot[3] * figure.get_figheight()

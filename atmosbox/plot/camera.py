@@ -1,4 +1,4 @@
-"""From a position in the box to one in the picture: how a camera in front of the box sees it."""
+"""From a position in the box to a position in the picture: the perspective of a camera in front of the box."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from numpy.typing import NDArray
 
 __all__ = ["EDGES", "FACES", "Camera", "corners"]
 
-_TURN, _TILT = math.radians(24.0), math.radians(16.0)  # of the camera to the side and above
-_DISTANCE = 4.5  # of the camera from the middle of the box, in its longest sides
+_TURN, _TILT = math.radians(24.0), math.radians(16.0)  # angles of the camera to the side and upward
+_DISTANCE = 4.5  # of the camera from the middle of the box, in units of the longest side of the box
 
 Floats = NDArray[np.float64]
 
 FACES = (
     (0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5),
 )  # fmt: skip
-"""The corners of each wall: x low, x high, y low, y high, z low, z high."""
+"""Indices of the four corners of each wall: x low, x high, y low, y high, z low, z high."""
 EDGES = tuple((a, b) for a in range(8) for b in range(a + 1, 8) if bin(a ^ b).count("1") == 1)
-"""The corners at the ends of each edge."""
+"""Indices of the two corners at the ends of each edge."""
 
 
 def corners(side: Floats) -> Floats:
-    """Return the eight corners of a box, (8, 3), the last axis running fastest.
+    """Return the eight corners of a box, (8, 3); z varies fastest from one corner to the next.
 
     Examples
     --------
@@ -41,11 +41,11 @@ class Camera:
     Parameters
     ----------
     side : ndarray, (3,)
-        Lengths of the largest box that it must see.
+        Side lengths of the largest box that the camera must see, in any unit of length.
 
     Examples
     --------
-    What is nearer is seen larger, and the wall y = 0 is in front:
+    A nearer length is seen larger, and the wall y = 0 is in front:
 
     >>> camera = Camera(np.ones(3))
     >>> _, scale = camera.project(np.array([[0.5, 0.0, 0.5], [0.5, 1.0, 0.5]]))
@@ -56,7 +56,7 @@ class Camera:
     side: Floats
 
     def project(self, position: Floats) -> tuple[Floats, Floats]:
-        """Return where positions are in the picture (n, 2), and how large a unit of length is there (n,)."""
+        """Return positions in the picture (n, 2), and how large a unit of length is seen at each of them (n,)."""
         place = np.asarray(position, dtype=np.float64) - self.side / 2
         turn, tilt = (math.cos(_TURN), math.sin(_TURN)), (math.cos(_TILT), math.sin(_TILT))
         right = place[:, 0] * turn[0] + place[:, 1] * turn[1]
@@ -72,6 +72,6 @@ class Camera:
         return wall in (0, 3, 4)
 
     def limits(self, side: Floats) -> tuple[Floats, Floats]:
-        """Return the lower left and the upper right corner of a box in the picture."""
+        """Return the lower left and the upper right corner of the picture of a box."""
         seen, _ = self.project(corners(side))
         return seen.min(axis=0), seen.max(axis=0)

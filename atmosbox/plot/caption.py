@@ -1,4 +1,4 @@
-"""What a figure says in numbers and in small type: what was measured, quantities on the axes, where it comes from."""
+"""The text of a figure: headline numbers, labels of the axes, and the footer with the provenance of the run."""
 
 from __future__ import annotations
 
@@ -16,45 +16,51 @@ if TYPE_CHECKING:
     import xarray as xr
 
 HIDDEN = 0.5
-"""Known errors of the model up to so many standard errors are left out of figures."""
+"""A known error of the model is left out of figures if it is at most this many standard errors."""
 _COUNTS = ("molecules", "molecule_count", "number_of_molecules", "n_molecules")
 
 
 class Reading(NamedTuple):
-    """A headline number in words, each with its unit; a part that there is not is empty."""
+    """A headline number as text, in parts; a part that does not exist is empty."""
 
     label: str
-    """What was measured."""
+    """Name of the measured quantity."""
     number: str
-    """The measured number, in as many digits as its error allows."""
+    """The measured number, with as many digits as its standard error allows."""
     error: str
-    """Its standard error, and the unit."""
+    """Its standard error, power of ten and unit."""
     theory: str
-    """What the textbook says."""
+    """The value of the textbook, with its unit."""
     difference: str
-    """Measured minus textbook."""
+    """Measured minus textbook, with its unit."""
 
     @property
     def sentence(self) -> str:
-        """All on one line, for a page."""
+        """Label, theory, number and error in one line, for a page."""
         beside = f" ({self.theory})" if self.theory else ""
         return f"{self.label}{beside} = {self.number} {self.error}".rstrip()
 
 
 def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[Reading]]:
-    """Return the numbers that each panel carries.
+    """Return the headline numbers of each panel.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run, with the attribute ``atmosbox_headlines``, a JSON list of names in order.
     panels : tuple of Panel
-        The panels. If none of them names a headline, the first that shows curves carries them all.
+        The panels. If none of them names a headline, all belong to the first panel that shows curves.
 
     Returns
     -------
     list of list of Reading
-        For each panel its numbers. What an interrupted run could not measure is left out.
+        The numbers of each panel. Headlines that the run has not measured, because it was interrupted for instance,
+        are left out.
+
+    Raises
+    ------
+    FileError
+        If the attribute cannot be read, or a number cannot be shown in its display units.
 
     Examples
     --------
@@ -72,15 +78,15 @@ def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[Readi
 
 
 def headline(dataset: xr.Dataset, name: str) -> Reading | None:
-    """Return a headline number in words: its value first, then what the textbook says.
+    """Return a headline number as text: its value and error, then the value of the textbook and the difference.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        The run. The number may have NAME_se, its standard error, and NAME_theory beside it. It is called by
-        its attribute ``display_name``, else by ``long_name``, and shown in ``display_units``.
+        The run. Beside the variable NAME it may hold its standard error, NAME_se, and its theory, NAME_theory. The
+        label is the attribute ``display_name``, else ``long_name``; the unit is ``display_units``.
     name : str
-        Name of the number.
+        Name of the variable.
 
     Returns
     -------
@@ -102,7 +108,7 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
     >>> [words.split() for words in headline(dataset, "t")[3:]]
     [['adiabat', '204.41', 'K'], ['difference', '+0.12', 'K']]
 
-    What the model itself is known to be off by follows, unless chance hides it:
+    The known error of the model follows, unless it is small beside the standard error:
 
     >>> dataset.t.attrs["misfit_allowed_as_known"] = 0.1
     >>> headline(dataset, "t").difference.split()
@@ -141,25 +147,25 @@ def headline(dataset: xr.Dataset, name: str) -> Reading | None:
 
 
 def _known(value: float, error: float, unit: str, *, signed: bool = False) -> str:
-    """Return a number in as many digits as an error allows, and its unit, which no line tears off."""
+    """Return a number with as many digits as its error allows, and its unit, joined by spaces that do not break."""
     digits, _, power = _digits(value, error, signed=signed)
     return "\u00a0".join(part for part in (digits, power, unit.replace(" ", "\u00a0")) if part)
 
 
 def _symbol(unit: str) -> str:
-    """Return how a unit is written, nothing for a plain number."""
+    """Return a unit as it is printed; empty for a pure number."""
     return "" if unit == "1" else spelled(unit)
 
 
 def number(value: float, error: float = math.nan, *, signed: bool = False) -> str:
-    """Return a number with its standard error, in as many digits as the error allows.
+    """Return a number with its standard error, with as many digits as the error allows.
 
     Parameters
     ----------
     value, error : float
         The number and its standard error, NaN for none.
     signed : bool
-        Whether a plus is written.
+        Whether a positive number is written with a plus sign.
 
     Returns
     -------
@@ -179,7 +185,7 @@ def number(value: float, error: float = math.nan, *, signed: bool = False) -> st
 
 
 def _digits(value: float, error: float, *, signed: bool = False) -> tuple[str, str, str]:
-    """Return the digits of a number and of its error, which may be empty, and the power of ten that both share."""
+    """Return the digits of a number, those of its error (empty if it is not known), and their common power of ten."""
     known = math.isfinite(error) and error > 0
     largest = max(abs(value), error) if known else abs(value)
     power = 0 if largest == 0 or 1e-3 <= largest < 1e6 else math.floor(math.log10(largest))
@@ -209,7 +215,7 @@ def footer(dataset: xr.Dataset) -> str:
     Returns
     -------
     str
-        What is known of these, and whether the run is incomplete.
+        Those of them that the dataset holds, and the status of the run if it is not complete.
 
     Examples
     --------
@@ -235,14 +241,14 @@ def footer(dataset: xr.Dataset) -> str:
 
 
 def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Return what the two axes of a panel show, and in which units.
+    """Return the label and the unit of each of the two axes of a panel.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
     panel : Panel
-        The panel; what it does not say is said by the variables of its first line.
+        The panel. A label or unit that it does not give is that of the variables of its first line.
 
     Examples
     --------
@@ -266,12 +272,12 @@ def axis_labels(dataset: xr.Dataset, panel: Panel) -> tuple[tuple[str, str], tup
 
 
 def _scalar(dataset: xr.Dataset, name: str) -> float:
-    """Return a single number of the file, NaN if it is not there."""
+    """Return a single number of the file; NaN if the file lacks it."""
     return float(read(dataset, name)) if name in dataset.variables else math.nan
 
 
 def _stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
-    """Return what an attribute of the file says as JSON, nothing if the file lacks it."""
+    """Return the value of an attribute that holds JSON; an empty one of this kind if the file lacks the attribute."""
     text = dataset.attrs.get(name)
     try:
         found = kind() if text is None else json.loads(text)
@@ -283,10 +289,10 @@ def _stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
 
 
 def _particle(dataset: xr.Dataset) -> str:
-    """Return what a flat scene calls its molecules, and what the others do."""
+    """Return the word for a molecule in the footer: "disc" for a planar scene, "molecule" for every other."""
     return "disc" if "disc_position" in dataset.variables else "molecule"
 
 
 def _grouped(count: float) -> str:
-    """Return a whole number, from five digits on with thin spaces between the thousands."""
+    """Return a whole number as text; numbers of five digits or more have thin spaces between the thousands."""
     return f"{int(count):,}".replace(",", "\u2009") if count >= 10000 else f"{int(count)}"

@@ -1,7 +1,7 @@
-"""The figure of liquid and vapour at several temperatures: the line of Clausius and Clapeyron, and both densities.
+"""The figure of liquid and vapour at several temperatures: ln p against 1/T (Clausius and Clapeyron), both densities.
 
-It is that of a sweep over the temperature whose runs have measured, each for itself, a vapour pressure p and the slope
-L/ΔZ that ln p must have against 1/T there. The lines are those slopes: nothing is fitted.
+It shows a sweep over the temperature. Each run has measured by itself a vapour pressure p and the slope L/ΔZ that ln p
+must have against 1/T at its temperature. The lines have these slopes: nothing is fitted.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ Floats = NDArray[np.float64]
 
 _BAR = 1e5
 _NEAR = 0.8
-"""The law of the critical point is drawn through temperatures above this share of it."""
+"""The critical temperature is estimated from temperatures above this share of the expected value."""
 _REACH = 0.45
-"""How far a line of a run reaches to both sides, in steps between the points."""
+"""Length of the line of a run to each side of its point, in mean distances between points."""
 
 
 def is_coexistence(swept: Varied) -> bool:
-    """Tell whether a sweep has measured a vapour pressure and its slope at two temperatures at least.
+    """Tell whether a sweep has measured a vapour pressure and its slope at two or more temperatures.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def is_coexistence(swept: Varied) -> bool:
 
 
 def _known(swept: Varied) -> NDArray[np.bool_]:
-    """Return at which temperatures there is a vapour pressure with a slope."""
+    """Tell at which temperatures both the vapour pressure and its slope are known."""
     data = swept.dataset
     return np.asarray(np.isfinite(data.vapor_pressure.values) & np.isfinite(data.clapeyron_slope.values))
 
@@ -65,13 +65,13 @@ def draw_coexistence(swept: Varied, look: Theme) -> Figure:
     swept : Varied
         The sweep, for which `is_coexistence` is true.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure. Over it stand the slope of ln p through all points, beside the mean of those that the runs have
-        measured within themselves, and, where enough temperatures are near it, the critical temperature.
+        The figure. Above the panels it gives the slope of ln p through all points beside the mean of the slopes L/ΔZ
+        that the runs have measured, and, if enough temperatures are near it, the critical temperature.
     """
     data = swept.dataset.isel(temperature=np.flatnonzero(_known(swept)))
     parameters = json.loads(data.attrs["atmosbox_parameters"])
@@ -101,13 +101,16 @@ def draw_coexistence(swept: Varied, look: Theme) -> Figure:
 
 
 def _error(data: xr.Dataset, name: str) -> Floats:
-    """Return the standard errors of a headline, 0 where there is none."""
+    """Return the standard errors of a headline, 0 where they are not known."""
     values = data[f"{name}_se"].values if f"{name}_se" in data else np.zeros(data.sizes["temperature"])
     return np.nan_to_num(np.asarray(values, np.float64))
 
 
 def _slopes(data: xr.Dataset) -> Reading | None:
-    """Return the slope through all points, beside the mean of the slopes that the runs have measured."""
+    """Return the slope of ln p through all points beside the weighted mean of the slopes that the runs have measured.
+
+    None if a standard error is not known.
+    """
     kelvin, pressure, slope = (data[name].values for name in ("temperature", "vapor_pressure", "clapeyron_slope"))
     error, spread = _error(data, "vapor_pressure"), _error(data, "clapeyron_slope")
     if not (error > 0.0).all() or not (spread > 0.0).all():
@@ -127,7 +130,10 @@ def _slopes(data: xr.Dataset) -> Reading | None:
 
 
 def _critical(data: xr.Dataset, fluid: theory.SimpleFluid, strength: float) -> Reading | None:
-    """Return where liquid and vapour become one by the law of rectilinear diameters, from the warmest points."""
+    """Return the critical temperature, at which the densities of liquid and vapour meet, from the warmest points.
+
+    None for fewer than three such points, or if a standard error is not known.
+    """
     expected = fluid.critical_temperature * strength
     warm = data.isel(temperature=np.flatnonzero(data.temperature.values > _NEAR * expected))
     if warm.sizes["temperature"] < 3:
@@ -150,7 +156,7 @@ def _critical(data: xr.Dataset, fluid: theory.SimpleFluid, strength: float) -> R
 def _draw_pressure(
     axes: Axes, data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float, look: Theme
 ) -> None:
-    """Draw the pressures with the slope of each run, published simulations, and the real substance."""
+    """Draw the vapour pressures with the slope of each run, published simulations, and the real substance."""
     kelvin, pressure = data.temperature.values, data.vapor_pressure.values / _BAR
     axes.errorbar(
         1e3 / kelvin, pressure, _error(data, "vapor_pressure") / _BAR, fmt="o", color=DATA_COLOURS[0],
@@ -188,7 +194,7 @@ def _draw_pressure(
 def _draw_densities(
     axes: Axes, data: xr.Dataset, fluid: theory.SimpleFluid | None, strength: float, look: Theme
 ) -> None:
-    """Draw the densities of liquid and vapour, which approach each other."""
+    """Draw the densities of liquid and vapour, which approach each other towards the critical temperature."""
     kelvin = data.temperature.values
     for place, (name, label) in enumerate((("vapor_density", "vapour"), ("liquid_density", "liquid"))):
         axes.errorbar(

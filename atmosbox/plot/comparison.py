@@ -1,4 +1,4 @@
-"""Several runs in one figure: each panel with the curves of all, told apart by colour and by a second cue."""
+"""Several runs in one figure: each panel has the curves of all runs, which differ by colour and by a second cue."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 __all__ = ["MOST", "figure", "shared_panels"]
 
 MOST = len(DATA_COLOURS)
-"""So many runs can be told apart in one figure."""
+"""Greatest number of runs in one figure."""
 
-_SAME = 2e-3  # of the range of a calculated curve: two that differ by less are drawn once
-_DARKER = 0.6  # of the colour of a run, for what is calculated for it
+_SAME = 2e-3  # calculated curves that differ by no more than this share of their range are drawn once
+_DARKER = 0.6  # factor on the colour of a run, for the curves that are calculated for it
 
 
 def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, theme: str = "notes") -> Figure:
@@ -46,9 +46,9 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
     datasets : sequence of xarray.Dataset
         The runs; the panels are those of the first.
     labels : sequence of str
-        What the legend calls each of them.
+        The label of each run in the legend.
     title : str
-        What stands over the panels.
+        The heading above the panels.
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen.
 
@@ -86,7 +86,7 @@ def figure(datasets: Sequence[xr.Dataset], labels: Sequence[str], title: str, th
 
 
 def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
-    """Return the panels of the first run that show something that all the others have measured, too.
+    """Return the panels of the first run that show a measured curve that all other runs have, too.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
     Returns
     -------
     tuple of Panel
-        The panels, with their units said.
+        The panels, with their units filled in.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def _held(dataset: xr.Dataset, line: Line) -> bool:
 
 
 def _with_units(dataset: xr.Dataset, panel: Panel) -> Panel:
-    """Return a panel that says its units, lest each run be drawn in its own."""
+    """Return a panel with its units filled in, so that all runs are drawn in the same units."""
     if panel.kind == "skewt":
         return panel
     return replace(
@@ -138,7 +138,7 @@ def _with_units(dataset: xr.Dataset, panel: Panel) -> Panel:
 
 
 def _small(datasets: Sequence[xr.Dataset]) -> str:
-    """Return the small type of all runs, what differs side by side."""
+    """Return one footer for all runs, in which parts that differ are written side by side."""
     parts = [footer(dataset).split(" · ") for dataset in datasets]
     if len({len(part) for part in parts}) > 1:
         return "; ".join(dict.fromkeys(" · ".join(part) for part in parts))
@@ -152,7 +152,7 @@ class _Painter:
         self.datasets, self.names, self.look = tuple(datasets), tuple(labels), look
 
     def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        """Draw a panel at its place, along the abscissa of the one above if that is given."""
+        """Draw a panel at its place; it shares the abscissa of the axes above, if any."""
         if panel.kind == "skewt":
             skewed, axes = skewed_axes(drawing, spot)
             entries, _ = self._draw_lines(axes, panel, slender(self.look))
@@ -172,7 +172,7 @@ class _Painter:
         return axes, entries
 
     def _draw_lines(self, axes: Axes, panel: Panel, look: Theme) -> tuple[list[Entry], int]:
-        """Draw the curves of all runs, and return the entries of the legend and how long the longest curve is."""
+        """Draw the curves of all runs; return the legend entries and the number of values of the longest curve."""
         entries: list[Entry] = []
         most = 0
         for role in ("data", "theory", "environment", "reference"):
@@ -189,7 +189,7 @@ class _Painter:
     def _draw_measured(
         self, axes: Axes, panel: Panel, which: tuple[Line, int, int], curves: dict[int, Curve], look: Theme
     ) -> list[Entry]:
-        """Draw a measured curve of each run: a colour and a marker for the run, dashes for the curve."""
+        """Draw a measured curve of each run: colour and marker show the run, dashes show the curve."""
         line, index, lines = which
         several = replace(panel, lines=(line, replace(line, label="of another run"))) if line.minus is None else panel
         entries: list[Entry] = []
@@ -210,7 +210,7 @@ class _Painter:
     def _draw_calculated(
         self, axes: Axes, panel: Panel, which: tuple[Line, int], curves: dict[int, Curve], look: Theme
     ) -> Entry:
-        """Draw a calculated curve once if it is the same for all runs, else for each, darker than what was measured."""
+        """Draw a calculated curve once if all runs have the same, else one for each run in a darker colour."""
         line, index = which
         first, *rest = curves.values()
         if all(_same(first, other, across=panel.measured_across) for other in rest):
@@ -222,7 +222,7 @@ class _Painter:
 
 
 def _same(one: Curve, other: Curve, *, across: bool) -> bool:
-    """Tell whether two curves are the same law, although perhaps at other places."""
+    """Tell whether two curves follow the same law, even if their points are at different places."""
     (x, y), (u, v) = ((each.y, each.x) if across else (each.x, each.y) for each in (one, other))
     known, seen = np.isfinite(x) & np.isfinite(y), np.isfinite(u) & np.isfinite(v)
     x, y, u, v = x[known], y[known], u[seen], v[seen]

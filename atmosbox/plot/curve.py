@@ -1,4 +1,4 @@
-"""From a line of a panel to the numbers that are drawn, in the units that are shown."""
+"""From a line of a panel to the numbers of its curve, in the units that are shown."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _AGAIN = "run the scene again with this version of atmosbox"
 
 
 class Curve(NamedTuple):
-    """A curve in the units of its panel: x, y and the standard error of the measured one, or None."""
+    """A curve in the units of its panel: x, y, and the error of the measured one of both; None without errors."""
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
@@ -27,14 +27,15 @@ class Curve(NamedTuple):
 
 
 def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
-    """Return a variable of the file, or say that the file lacks it.
+    """Return a variable of the file, or raise an error that says that the file lacks it.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
     name : str
-        Name of a variable or coordinate; "heat_from_wall[z_low]" is the part of it at the label ``z_low``.
+        Name of a variable or coordinate; "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at the label
+        ``z_low``.
 
     Returns
     -------
@@ -44,7 +45,7 @@ def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
     Raises
     ------
     FileError
-        If the file has no such variable, or none of its values.
+        If the file has no such variable or part, or if the variable has no values.
 
     Examples
     --------
@@ -73,16 +74,16 @@ def read(dataset: xr.Dataset, name: str) -> xr.DataArray:
 def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
     """Return a line of a panel as numbers.
 
-    A single number beside a list of values is repeated along it. What a logarithmic axis cannot show is left
-    out (NaN). Measured values are averaged over equal parts of the axis if the panel says so; their error is
-    then the scatter (standard deviation) of the single values in each part.
+    A single number beside a list of values is repeated along the list. Values that a logarithmic axis cannot show
+    become NaN. If the panel asks for averages, measured values without errors are averaged over equal parts of the x
+    axis; their error is then the scatter (standard deviation) of the single values in each part.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run, in SI units.
     panel : Panel
-        The panel, which says which units are shown.
+        The panel, which gives the units that are shown.
     line : Line
         One of its lines.
 
@@ -136,7 +137,7 @@ def edges(dataset: xr.Dataset, panel: Panel, line: Line) -> NDArray[np.float64]:
     Parameters
     ----------
     dataset : xarray.Dataset
-        The run; the bounds are the variable that the attribute ``bounds`` of the bins' coordinate names.
+        The run; the attribute ``bounds`` of the coordinate of the bins names the variable that holds the bounds.
     panel : Panel
         The histogram.
     line : Line
@@ -172,7 +173,7 @@ def edges(dataset: xr.Dataset, panel: Panel, line: Line) -> NDArray[np.float64]:
 
 
 def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
-    """Return the unit that an axis of a panel is read in.
+    """Return the unit of an axis of a panel.
 
     Parameters
     ----------
@@ -186,7 +187,7 @@ def unit_of(dataset: xr.Dataset, panel: Panel, axis: str) -> str:
     Returns
     -------
     str
-        The panel's unit or, where it names none, the unit of the file; for misfits the unit of a difference.
+        The unit of the panel or, if the panel gives none, that of the file; for misfits the unit of a difference.
 
     Raises
     ------
@@ -218,7 +219,7 @@ def _values(dataset: xr.Dataset, name: str, shown: str, *, difference: bool = Fa
 
 
 def _misfit(dataset: xr.Dataset, name: str, minus: str, shown: str) -> NDArray[np.float64]:
-    """Return the difference of two variables, taken in the units of the first."""
+    """Return the first variable minus the second, in the units that are shown."""
     first, second = read(dataset, name), read(dataset, minus)
     unit = _unit(first)
     difference = _values(dataset, name, unit) - convert(second.values, _unit(second), unit, name=minus)
@@ -232,7 +233,7 @@ def _unit(variable: xr.DataArray) -> str:
 def _averaged(
     x: NDArray[np.float64], y: NDArray[np.float64], panel: Panel
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None]:
-    """Return the means of x and y over equal parts of the x axis that hold values, and the scatter of y in each."""
+    """Return the means of x and y over equal parts of the x axis that contain values, and the scatter of y in each."""
     seen = np.isfinite(x) & np.isfinite(y) & ((x > 0.0) | (panel.x_scale == "linear"))
     x, y = x[seen], y[seen]
     if not x.size or np.ptp(x) == 0.0:

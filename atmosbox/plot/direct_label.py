@@ -1,4 +1,4 @@
-"""Words beside the curve that they name, where they cover nothing."""
+"""Labels beside the curves that they name, placed where they cover little else."""
 
 from __future__ import annotations
 
@@ -18,38 +18,39 @@ __all__ = ["Label", "put_labels"]
 Floats = NDArray[np.float64]
 
 _DISTANCES = (1.0, 2.0, 3.5, 5.5, 8.0)
-"""From the curve to the words, in sizes of the type; what is farther away is joined to the curve by a thin line."""
+"""Distances from the curve to its label that are tried, in units of the type size."""
 _TOUCHES = 1.2
+"""A label at a larger distance is joined to its curve by a thin line."""
 _WAYS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.8, 0.8), (0.8, -0.8), (-0.8, 0.8), (-0.8, -0.8))
 _DARKER = 0.72
 _STEPS = 12
-"""Points along each piece of a curve that words avoid."""
+"""Number of points along each segment of a curve that labels avoid."""
 
 
 class Label(NamedTuple):
-    """Words for a curve."""
+    """A label for a curve."""
 
     words: str
-    """What they say; lines are broken by hand."""
+    """The text, with its line breaks."""
     x: Floats
     y: Floats
     colour: str
     bold: bool = False
     clear: float = 0.0
-    """How far from the curve the words begin besides, where it has a large mark [pt]."""
+    """Additional distance between the curve and the label, for a curve with a large marker [pt]."""
 
 
 def put_labels(axes: Axes, labels: Sequence[Label], pen: Pen, size: float) -> None:
-    """Write every label at one of the points of its curve, where it covers least of the curves and of other labels.
+    """Write each label at that point of its curve where it covers least of the curves and of other labels.
 
-    The axes must stand where they will stand in the end: lay the figure out before.
+    The axes must already have their final position: lay the figure out first.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where the curves are drawn.
+        The axes in which the curves are drawn.
     labels : sequence of Label
-        The words with the points of their curves; those that come first choose first.
+        The labels with the points of their curves; they are placed in this order.
     pen : Pen
         The pen of the figure.
     size : float
@@ -110,7 +111,7 @@ def put_labels(axes: Axes, labels: Sequence[Label], pen: Pen, size: float) -> No
 
 
 def _ink(colour: str) -> tuple[float, float, float]:
-    """Return a colour dark enough for words that are read from the last row."""
+    """Return a darker shade of a colour, so that text can be read from the last row of a lecture hall."""
     red, green, blue = (_DARKER * part for part in to_rgb(colour))
     return red, green, blue
 
@@ -126,7 +127,10 @@ def _along(curve: Floats) -> Floats:
 def _cost(
     box: Floats, frame: Floats, busy: Floats, marks: Sequence[tuple[Floats, float]], taken: Sequence[Floats]
 ) -> float:
-    """Return how bad it is to write in a box [pixel]: over the frame, curves, marks of some radius, other labels."""
+    """Return the cost of a label in a box [pixel]: it grows where the box leaves the frame or covers other things.
+
+    These are points of curves, marks with a radius, and labels that are already placed.
+    """
     over = np.maximum(frame[:2] - box[:2], 0.0).sum() + np.maximum(box[2:] - frame[2:], 0.0).sum()
     covered = ((busy > box[:2]) & (busy < box[2:])).all(axis=1).sum()
     covered += 5 * sum(bool((at > box[:2] - far).all() and (at < box[2:] + far).all()) for at, far in marks)

@@ -1,4 +1,4 @@
-"""The molecules themselves: a flat box with its discs, true to size, coloured by their speed."""
+"""The molecules of a planar scene: the box with its discs, drawn to size and coloured by their speed."""
 
 from __future__ import annotations
 
@@ -22,16 +22,17 @@ from atmosbox.scene.panels import Panel
 if TYPE_CHECKING:
     import xarray as xr
 
-# The rim of a heavy disc is at most so wide, in diameters; the box is about so high, in heights of the figure.
+# Greatest width of the rim of a heavy disc, in diameters; approximate height of the box, in heights of the figure.
 _BROADEST_RIM, _BOX_HEIGHT = 0.12, 0.6
-# A trail goes so many frames back. It is left out where a molecule crosses much of the box between two frames.
+# Greatest number of frames of a trail, and of segments of all trails. A molecule has no trail if its median step from
+# frame to frame is longer than this share of the box.
 _TRAIL_FRAMES = 12
 _MOST_SEGMENTS = 6000
 _LONGEST_STEP = 0.1
 
 
 def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
-    """Draw the last frame of a flat scene: box, discs, and where they come from.
+    """Draw the last frame of a planar scene: the box, the discs, and their trails.
 
     Parameters
     ----------
@@ -42,9 +43,9 @@ def draw_discs(axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme) -> l
     dataset : xarray.Dataset
         The run, with ``disc_position`` and ``disc_velocity`` (elapsed_time, molecule, axis),
         ``disc_diameter`` and ``disc_mass`` (molecule). The box reaches from 0 to ``box_length``, one number
-        or one for each axis; without that variable it is as large as the room that the discs have taken.
+        or one for each axis; without that variable it is the smallest box around the discs of all frames.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -100,7 +101,7 @@ def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
     found : Discs
         The discs.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -141,21 +142,22 @@ def put_discs(axes: Axes, found: Discs, theme: Theme) -> EllipseCollection:
 
 
 def trails(places: NDArray[np.float64], box: NDArray[np.float64], theme: Theme) -> LineCollection | None:
-    """Return the ways that discs have come in the last frames.
+    """Return the trails of discs: their paths in the last frames.
 
     Parameters
     ----------
     places : ndarray, (frame, molecule, 2)
-        Their places up to now.
+        Positions of the discs in all frames up to the one that is drawn [length].
     box : ndarray, (2, 2)
-        The lower and the upper corner of the box.
+        The lower and the upper corner of the box [length].
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
     matplotlib.collections.LineCollection or None
-        The ways, which fade into the past; None where there are none, or where they jump.
+        The trails, fainter for older frames; None if there is only one frame, or if the steps of all discs are too
+        long.
 
     Examples
     --------
@@ -178,19 +180,19 @@ def trails(places: NDArray[np.float64], box: NDArray[np.float64], theme: Theme) 
 
 
 def _rims(axes: Axes, sizes: NDArray[np.float64], box: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how broad rims may be [pt], lest they hide the colours of small discs."""
+    """Return the greatest width of each disc's rim [pt], so that rims do not hide the colours of small discs."""
     drawing = axes.get_figure(root=True)
     height = 72.0 * drawing.get_figheight() if drawing else 0.0
     return _BROADEST_RIM * _BOX_HEIGHT * height * sizes / float(np.max(box[1] - box[0]))
 
 
 def _ratio(value: float) -> str:
-    """Return a ratio in two digits and without exponent."""
+    """Return a ratio as text with two significant digits and without an exponent."""
     return f"{float(f'{value:.2g}'):,.15g}".replace(",", "\u2009" if value >= 1e4 else "")
 
 
 def _entries(heavy: NDArray[np.bool_], mass: NDArray[np.float64], theme: Theme) -> list[tuple[tuple[Artist, ...], str]]:
-    """Return what the legend says of two kinds of discs, nothing if they are all alike."""
+    """Return the legend entries of the light and the heavy discs; none if all masses are equal."""
     if not heavy.any():
         return []
     ratio = float(np.median(mass[heavy]) / np.median(mass[~heavy]))

@@ -1,4 +1,4 @@
-"""The curves of a panel: what was measured, what was calculated, and what they are compared with."""
+"""The curves of a panel: measurements, theory, and the curves with which they are compared."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 Entry = tuple[tuple[Artist, ...], str]
 
-# Where the ground is missing by so little, the axis of pressure still begins at 1000 hPa.
+# If the highest pressure is between this and 1000 hPa, the axis still begins at 1000 hPa.
 _NEAR_THE_GROUND = 930.0
-# One level or time alone stands in the middle of a logarithmic axis that reaches to so many times it.
+# A single value is drawn in the middle of a logarithmic axis, from the value divided by this to the value times this.
 _ONE_LEVEL = 1.3
 
 
 def draw(
     axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme, only: tuple[Line, ...] | None = None
 ) -> list[Entry]:
-    """Draw a panel, and set scales and limits of its axes.
+    """Draw a panel, and set the scales and the limits of its axes.
 
     Parameters
     ----------
@@ -41,9 +41,9 @@ def draw(
     dataset : xarray.Dataset
         The run.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
-        The lines to draw; all if nothing is said.
+        The lines to draw; by default all.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def draw(
 def draw_lines(
     axes: Axes, panel: Panel, dataset: xr.Dataset, theme: Theme, only: tuple[Line, ...] | None = None
 ) -> tuple[list[Entry], int]:
-    """Draw the curves of a panel into axes that have their scales.
+    """Draw the curves of a panel into axes whose scales are set.
 
     Parameters
     ----------
@@ -91,16 +91,16 @@ def draw_lines(
     dataset : xarray.Dataset
         The run.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
-        The lines to draw; all if nothing is said.
+        The lines to draw; by default all.
 
     Returns
     -------
     list of tuple
-        The entries of the legend.
+        The entries of the legend: the artists of a curve, and its label.
     int
-        How many values the longest curve has.
+        Number of values of the longest curve.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def draw_lines(
 
 
 def set_limits(axes: Axes, panel: Panel, values: int) -> None:
-    """Leave no idle room where a curve of many values runs from end to end, and let heights begin at zero.
+    """Set the limits of axes: no empty margin beside a graph of many values, and heights that begin at zero.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def set_limits(axes: Axes, panel: Panel, values: int) -> None:
     panel : Panel
         The panel.
     values : int
-        How many values the longest curve has.
+        Number of values of the longest curve.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from atmosbox.scene.panels import Panel
 if TYPE_CHECKING:
     import xarray as xr
 
-_ROUNDING = 1.0 + 1e-12  # of a pressure that has been through its logarithm
+_ROUNDING = 1.0 + 1e-12  # allows for the rounding error of a pressure computed as exp(log(p))
 
 Floats = NDArray[np.float64]
 
@@ -25,20 +25,21 @@ Floats = NDArray[np.float64]
 def shade_energy(
     skewed: Any, panel: Panel, dataset: xr.Dataset, marks: Mapping[str, float], order: float
 ) -> list[Entry]:
-    """Shade CAPE and CIN, and return their entries of the legend; none without a level of free convection.
+    """Shade CAPE and CIN, and return their legend entries; without a level of free convection there are none.
 
     Parameters
     ----------
     skewed : metpy.plots.SkewT
         The diagram.
     panel : Panel
-        What it shows; its data are the parcel, its environment the other curve.
+        The panel: its first line of role ``data`` is the parcel, its first line of role ``environment`` is the
+        environment.
     dataset : xarray.Dataset
         The run.
-    marks : mapping
+    marks : mapping of str to float
         Pressures of the levels LFC and EL [hPa].
     order : float
-        Where the areas lie among lines and curves.
+        The drawing order of the areas (matplotlib's ``zorder``).
 
     Examples
     --------
@@ -73,7 +74,7 @@ def shade_energy(
 
 
 def _together(curves: list[Curve], ends: list[float]) -> tuple[Floats, Floats, Floats]:
-    """Return pressures from the ground up, the ends of areas among them, and the temperatures of two curves there."""
+    """Return pressures from the ground up, which include the ends of the areas, and both curves' temperatures there."""
     columns = []
     for temperature, pressure, _ in curves:
         known = np.isfinite(temperature) & np.isfinite(pressure)

@@ -1,4 +1,4 @@
-"""A sweep of two settings as fields, with contours of the theory."""
+"""A sweep of two settings: each headline as a coloured field, with contours of the theory."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from atmosbox.plot.varied import Varied
 __all__ = ["draw_fields"]
 
 _SHORT = 32
-"""Characters that fit along a field."""
+"""Greatest length of an axis label beside a field [characters]."""
 
 
 def draw_fields(swept: Varied, names: tuple[str, ...], look: Theme) -> Figure:
-    """Draw headlines over two settings, each as a field with dashed contours of the theory.
+    """Draw headlines against two settings, each as a field with dashed contours of the theory.
 
     Parameters
     ----------
     swept : Varied
         The sweep.
     names : tuple of str
-        The headlines.
+        Names of the headlines.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def _draw(drawing: Figure, axes: Any, swept: Varied, name: str, look: Theme) -> 
 
 
 def _contour(axes: Any, x: Any, y: Any, answer: Any, look: Theme) -> None:
-    """Draw dashed lines of theory, white with a dark edge, which is seen on any colour."""
+    """Draw dashed contours of the theory, white with a dark edge, so that they are seen on any colour."""
     if not np.ptp(answer[np.isfinite(answer)]) > 0.0:
         return
     lines = axes.contour(x, y, answer, levels=5, colors="white", linestyles="dashed", linewidths=0.8 * look.line)

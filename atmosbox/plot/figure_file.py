@@ -1,4 +1,4 @@
-"""A figure as a file: the same run gives the same bytes, and a file appears only when it is whole."""
+"""A figure as a file: the same run gives the same bytes, and a file appears only when it is complete."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ def save(
     dataset : xarray.Dataset
         The run, as `figure` takes it.
     path : str or path-like
-        The file. Its suffix says the format; where ``format`` says it, a suffix that is missing is added.
+        The file. Its suffix gives the format; if ``format`` is given, a missing suffix is added.
     format : {"png", "svg", "pdf"}, optional
-        The format.
+        The format, by default that of the suffix.
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen.
     force : bool
         Whether a file of that name may be replaced.
     with_box : bool
-        Whether the molecules are drawn over the panels, as `figure_with_box` does.
+        Whether the molecules are drawn above the panels, as `figure_with_box` does.
     all_panels : bool
-        Whether a measured trade is drawn with all its panels, as `tradeoff_figure.figure` does; every other figure
-        has all of its panels anyhow.
+        Whether a measured trade is drawn with all its panels, as `tradeoff_figure.figure` does; it has no effect on
+        other figures.
 
     Returns
     -------
@@ -65,8 +65,8 @@ def save(
 
     Notes
     -----
-    Neither the date nor chance enters the file: SVG's names are derived from a fixed salt, and PDF and SVG
-    carry no date. PNG has 300 dots per inch; PDF embeds its type, so that its text can be searched.
+    The file contains neither a date nor a random number: the identifiers in an SVG are made from a fixed salt, and PDF
+    and SVG have no date. A PNG has 300 dots per inch; a PDF embeds its fonts, so that its text can be searched.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def save(
 
 
 def drawn(dataset: xr.Dataset, theme: str, *, with_box: bool = False, all_panels: bool = False) -> Figure:
-    """Return the figure of a run, with its box if that is wanted, or of a measurement of many."""
+    """Return the figure of a run, with its box if ``with_box`` is true, or that of a measured trade or a sweep."""
     if with_box:
         return figure_with_box(dataset, theme)
     if "rung" in dataset.dims:
@@ -105,7 +105,7 @@ def render(drawing: Figure, kind: str, theme: str, *, title: str, parameters: st
     theme : {"notes", "slides"}
         The theme it was drawn in.
     title, parameters : str
-        What the file says of itself.
+        Title and parameters for the metadata of the file.
     dpi : int
         Dots per inch of a PNG.
 

@@ -30,14 +30,14 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     ----------
     dataset : xarray.Dataset
         The run as atmosbox returns or saves it, in SI units; it is not changed. Its attribute
-        ``atmosbox_panels`` says what to draw.
+        ``atmosbox_panels`` lists the panels to draw.
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen of 16:9 with large type.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure, which belongs to no window; a notebook shows it.
+        The figure. It opens no window; a notebook shows it.
 
     Raises
     ------
@@ -70,16 +70,16 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
 
 
 def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = None) -> Draw:
-    """Return what draws a panel of a run at its place.
+    """Return the function that draws a panel of a run at its place.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
-        The lines to draw; all if nothing is said.
+        The lines to draw; by default all.
 
     Examples
     --------
@@ -101,14 +101,14 @@ def painter(dataset: xr.Dataset, look: Theme, only: tuple[Line, ...] | None = No
 
 
 def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
-    """Return what small type must say of bars, hollow points and the background.
+    """Return the text of the footer that explains error bars, hollow points and the background of a skew-T.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
     panels : tuple of Panel
-        What is drawn of it.
+        The panels that are drawn.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
 
 
 def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
-    """Return the panels that a run asks for, without lines of headlines that it could not give.
+    """Return the panels that a run lists, without the theory curves of headlines that it did not measure.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     Raises
     ------
     FileError
-        If it does not say, or names none.
+        If the dataset lists no panels, or its list cannot be read.
 
     Examples
     --------
@@ -162,6 +162,6 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
 
 
 def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:
-    """Return the lines of a panel but those of a headline that the run could not give, as a cloud base too ragged."""
+    """Return the lines of a panel that do not use the theory of a missing headline, such as a cloud base not found."""
     missing = {f"{name}_theory" for name in panel.headlines if name not in dataset}
     return tuple(line for line in panel.lines if missing.isdisjoint(line.variables))

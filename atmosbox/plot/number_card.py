@@ -1,4 +1,4 @@
-"""The numbers of a run in large type, side by side at the top of its figure: measured, textbook, difference."""
+"""The headline numbers of a run in large type at the top of its figure: measured value, textbook, difference."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from atmosbox.plot.theme import DARK, FAINT, Theme
 
 __all__ = ["put_numbers"]
 
-_LARGE = 1.6  # of the number, in sizes of a title
-_NARROWEST = 14.0  # card, in sizes of the type
-_LEADING = 1.2  # from line to line, in sizes of the type
+_LARGE = 1.6  # size of the number, in units of the title's size
+_NARROWEST = 14.0  # least width of a card, in units of the type size
+_LEADING = 1.2  # distance from line to line, in units of the type size
 
 
 def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float) -> float:
-    """Write numbers in a row of cards, in several rows where the page is narrow; return how much room they take [pt].
+    """Write numbers as cards in one row, or in several rows on a narrow page; return the height of all cards [pt].
 
     Parameters
     ----------
     pen : Pen
         The pen of the page.
     readings : sequence of Reading
-        What was measured. Without any there are no cards, and they take nothing.
+        The headline numbers. Without any, nothing is drawn and the height is 0.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     below : float
-        How far below the upper end of the page they begin [pt].
+        Distance from the upper end of the page to the cards [pt].
 
     Examples
     --------
@@ -58,7 +58,7 @@ def put_numbers(pen: Pen, readings: Sequence[Reading], look: Theme, below: float
 
 
 def _put_card(pen: Pen, reading: Reading, look: Theme, left: float, top: float, width: float) -> float:
-    """Write one number, what it is, and what the textbook says; return the height of all [pt]."""
+    """Write one number, its name and the textbook's value; return the height of this card [pt]."""
     large, line = _LARGE * look.title, _LEADING * look.text
     base = top + 0.95 * large
     _write(pen, reading.number, left, base, large, DARK, bold=True)
@@ -74,7 +74,10 @@ def _put_card(pen: Pen, reading: Reading, look: Theme, left: float, top: float, 
 
 
 def _write(pen: Pen, words: str, left: float, base: float, size: float, colour: str, *, bold: bool = False) -> Text:
-    """Write a line so far from the left and from the upper end of the page [pt], however high that becomes."""
+    """Write a line of text at a distance from the left and from the upper end of the page [pt].
+
+    The line keeps this distance from the upper end if the page grows later.
+    """
     figure = pen.figure
     place = figure.transFigure + ScaledTranslation(left / 72.0, -base / 72.0, figure.dpi_scale_trans)
     text = figure.text(0.0, 1.0, words, transform=place, size=size, color=colour, va="baseline")

@@ -1,4 +1,4 @@
-"""Text that is measured as it will be drawn, and broken into lines."""
+"""The width of text as matplotlib draws it, and line breaks at a given width."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _FIXED = "\u00a0"  # a space that no line breaks at
 
 @dataclass
 class Pen:
-    r"""Measures text, and breaks it into lines: matplotlib itself wraps at the edge of the figure alone.
+    r"""Measures text and breaks it into lines of any width; matplotlib itself wraps at the edge of the figure only.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        The figure to write on, which has a canvas of Agg.
+        The figure to write on; its canvas must be one of Agg.
 
     Examples
     --------
@@ -42,7 +42,11 @@ class Pen:
         return float(width) * 72 / self.figure.dpi
 
     def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
-        """Return text in lines of at most a width [pt]; neither a unit nor what follows "=" is torn apart."""
+        """Return text broken into lines of at most a width [pt].
+
+        Lines do not break within short brackets, after a minus sign or within what follows "=". A single word that is
+        wider stays whole.
+        """
         text = re.sub(r"\([^()]{1,24}\)|− |= .*", lambda part: part[0].replace(" ", _FIXED), text)
         lines: list[str] = []
         for word in text.split(" "):
@@ -54,5 +58,5 @@ class Pen:
         return "\n".join(lines).replace(_FIXED, " ")
 
     def height(self, artist: Artist) -> float:
-        """Return the height of something drawn [pt]."""
+        """Return the height of an artist as it is drawn [pt]."""
         return float(artist.get_window_extent().height) * 72 / self.figure.dpi

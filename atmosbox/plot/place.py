@@ -1,8 +1,8 @@
-"""Where everything stands: numbers over panels in columns, each under its title, its note and its legend.
+"""The layout of a page: headline numbers above panels in columns, each panel below its title, its note and its legend.
 
-The room for all of it is found by matplotlib's constrained layout. What this file adds is what matplotlib leaves to
-the user: lines that are broken where a panel ends, as many columns of a legend as fit, titles that stand equally high,
-and a page that grows with its text.
+Matplotlib's constrained layout finds the room for all parts. This file adds what matplotlib leaves to the user: lines
+of text that break at the end of a panel, as many columns of a legend as fit, titles of a row at the same height, and a
+page that grows with its text.
 """
 
 from __future__ import annotations
@@ -35,14 +35,15 @@ __all__ = ["Draw", "Plate", "blank", "page", "put_footer", "put_heading", "put_p
 
 _TALL = ("profile", "discs", "skewt", "atmosphere")
 _WIDTHS = {"profile": 1.0, "line": 1.35, "histogram": 1.35, "discs": 1.6, "skewt": 2.0, "atmosphere": 1.1}
-_TEXT_LINES = 6  # over the axes, for which a page has room; it grows for more
-_ROUNDS = 3  # of layout and text: what is written takes room, and the room decides where lines break
-# The lines of a legend and their distance from the words, in sizes of the type; and the gaps between legend and axes,
-# title and numbers.
+_TEXT_LINES = 6  # lines above the axes for which a page has room; it grows for more
+_ROUNDS = 3  # of layout and text: the text needs room, and the room decides where lines break
+# Length of the line samples in a legend, their distance from the text, and the gaps between axes, legend and note, all
+# in units of the type size.
 _HANDLE, _HANDLE_GAP, _GAP = 2.3, 0.5, 0.45
 
 Draw = Callable[[Figure, SubplotSpec, Panel, Axes | None], tuple[Axes, list[Entry]]]
-"""Draws a panel at its place, along the abscissa of the axes above if these are given."""
+"""Draws a panel at its place and returns its axes and legend entries; it shares the abscissa of the axes above, if any.
+"""
 
 
 class Plate(NamedTuple):
@@ -51,40 +52,40 @@ class Plate(NamedTuple):
     axes: Axes
     """Its axes, with the curves drawn."""
     panel: Panel
-    """What it shows."""
+    """The panel that they show."""
     entries: list[Entry]
     """The entries of its legend."""
     note: Annotation
-    """Where its sentence is written, under its title."""
+    """The text below its title, in which `settle` writes the panel's note."""
     labels: tuple[tuple[str, str], tuple[str, str]]
-    """What the two axes show, and in which units; empty for an axis that is labelled in the panel below."""
+    """Label and unit of the two axes; the label of an abscissa that the panel below shows is empty."""
     row: int
     column: int
 
 
-_SMALLEST = 0.6  # of the type of a label that is too long for its axis
+_SMALLEST = 0.6  # least size of a label that is too long for its axis, in units of the type size
 
 
 def page(
     panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw, readings: Sequence[Reading],
     small: str, heading: str,
 ) -> Figure:  # fmt: skip
-    """Return a page of panels, with small type below them, numbers in large type and a heading over them.
+    """Return a page of panels, with a heading and numbers in large type above them and small type below them.
 
     Parameters
     ----------
     panels : tuple of Panel
         What to draw.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     dataset : xarray.Dataset
-        The run whose variables name the axes.
+        The run, whose variables give the labels of the axes.
     draw : callable
-        What draws a panel.
+        The function that draws a panel, see `Draw`.
     readings : sequence of Reading
-        The numbers over the panels.
+        The numbers above the panels.
     small, heading : str
-        What is written under and over all that; an empty heading takes no space.
+        The text of the footer and of the heading; an empty heading takes no space.
 
     Examples
     --------
@@ -112,16 +113,16 @@ def page(
 
 
 def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, float, float] = (0, 0, 1, 1)) -> Figure:
-    """Return an empty page whose panels make room for what is written around them.
+    """Return an empty page whose panels make room for the text around them.
 
     Parameters
     ----------
     size : tuple of float
         Width and height [inch].
     look : Theme
-        How large the type is.
+        The theme: the size of the type sets the margins.
     room : tuple of float
-        Left, bottom, width and height of the part that the panels have, in parts of the page.
+        Left, bottom, width and height of the area for the panels, as shares of the page.
 
     Examples
     --------
@@ -138,7 +139,7 @@ def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, floa
 
 
 def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset: xr.Dataset, draw: Draw) -> list[Plate]:
-    """Draw every panel at its place.
+    """Draw every panel at its place on the page.
 
     Parameters
     ----------
@@ -147,16 +148,16 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
     panels : tuple of Panel
         What to draw.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     dataset : xarray.Dataset
-        The run whose variables name the axes.
+        The run, whose variables give the labels of the axes.
     draw : callable
-        What draws a panel.
+        The function that draws a panel, see `Draw`.
 
     Returns
     -------
     list of Plate
-        The panels on the page, around which `settle` writes.
+        The panels on the page; `settle` writes the text around them.
 
     Examples
     --------
@@ -192,16 +193,16 @@ def put_panels(drawing: Figure, panels: tuple[Panel, ...], look: Theme, dataset:
 
 
 def put_footer(pen: Pen, small: str, look: Theme) -> None:
-    """Write the small type under all panels.
+    """Write the small type below all panels.
 
     Parameters
     ----------
     pen : Pen
         The pen of the page.
     small : str
-        What it says.
+        The text.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -212,22 +213,22 @@ def put_footer(pen: Pen, small: str, look: Theme) -> None:
     ['atmosbox']
     """
     width = 72 * pen.figure.get_figwidth()
-    # Type that is hinted for a screen may be narrower than in print.
+    # Type that is fitted to the pixels of a screen may be narrower than in print.
     small = pen.wrap(small, 0.98 * (width - look.text), look.small)
     pen.figure.supxlabel(small, x=look.text / 2 / width, ha="left", fontsize=look.small, color=FAINT)
 
 
 def put_heading(pen: Pen, heading: str, look: Theme) -> float:
-    """Write a heading over all panels; return how much room it takes [pt].
+    """Write a heading above all panels; return the height that it takes [pt].
 
     Parameters
     ----------
     pen : Pen
         The pen of the page.
     heading : str
-        What it says; an empty one takes no space.
+        The text; an empty one takes no space.
     look : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -247,7 +248,7 @@ def put_heading(pen: Pen, heading: str, look: Theme) -> float:
 
 
 def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None:
-    """Write titles, notes, legends and labels around the panels, in lines that end where these end.
+    """Write titles, notes, legends and labels around the panels, in lines that are as long as a panel is wide.
 
     Parameters
     ----------
@@ -256,9 +257,9 @@ def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None
     plates : list of Plate
         Its panels, from `put_panels`.
     look : Theme
-        How large; a page that grows becomes higher where there is much to say.
+        The theme: sizes of type and lines. If it allows the page to grow, the page becomes higher for much text.
     top : float
-        How much room is taken over all panels [pt].
+        Height above all panels that is already in use [pt].
 
     Examples
     --------
@@ -284,7 +285,7 @@ def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None
         for plate in plates:
             plate.axes.apply_aspect()
             _write_labels(pen, plate, look)
-        # The texts of a column begin together, and the titles of a row stand equally high.
+        # The texts of a column have the same left edge, and the titles of a row have the same height.
         ink = [plate.axes.yaxis.get_tightbbox().x0 for plate in plates]  # type: ignore[union-attr]
         edge = {p.column: min(x for x, o in zip(ink, plates, strict=True) if o.column == p.column) for p in plates}
         heights = [_write_legend(pen, plate, edge[plate.column], look, columns) for plate in plates]
@@ -297,7 +298,7 @@ def settle(pen: Pen, plates: list[Plate], look: Theme, top: float = 0.0) -> None
 
 
 def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
-    """Write ticks and labels for the room that the axes have."""
+    """Write ticks and labels for the present size of the axes."""
     axes, panel, size = plate.axes, plate.panel, look.text
     extent, point = axes.get_window_extent(), pen.figure.dpi / 72
     width, height = extent.width / point, extent.height / point
@@ -305,7 +306,7 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
     power = 0
     if panel.kind == "skewt":
         fit_skewt(axes, width, height, size)
-    elif panel.kind != "atmosphere":  # whose way across is no measure
+    elif panel.kind != "atmosphere":  # its horizontal axis has no scale
         log = panel.x_scale == "log"
         power = put_ticks(axes.xaxis, log=log, length=width, size=size, pressure=x_unit == "hPa")
     if x_label:
@@ -314,8 +315,8 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
         axes.tick_params(axis="x", labelbottom=False)
     log = panel.y_scale == "log"
     power = put_ticks(axes.yaxis, log=log, length=height, size=size, pressure=y_unit == "hPa")
-    # The label may reach over both ends of the axis into the gap that is there anyhow; a word that is longer still is
-    # written smaller, lest it runs into the legend.
+    # The label may extend beyond both ends of the axis into the gaps that are there anyhow. A line that is still too
+    # long is written smaller, so that it does not run into the legend.
     room = height + 0.8 * size
     label = pen.wrap(labelled(y_label, y_unit, power), room, size)
     longest = max(pen.width(line, size) for line in label.split("\n")) if label else room
@@ -323,9 +324,10 @@ def _write_labels(pen: Pen, plate: Plate, look: Theme) -> None:
 
 
 def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dict[tuple[int, int], int]) -> float:
-    """Put the legend on the axes and break the note into lines, and return how much room both need [pt].
+    """Put the legend above the axes and break the note into lines; return the height of both together [pt].
 
-    Legends of equally many entries in a row have equally many columns, which are kept by row and entries.
+    Legends in one row of panels that have equally many entries get equally many columns; ``columns`` keeps that number
+    for each row and number of entries.
     """
     axes, size = plate.axes, look.text
     extent, point = axes.get_window_extent(), pen.figure.dpi / 72
@@ -353,7 +355,7 @@ def _write_legend(pen: Pen, plate: Plate, edge: float, look: Theme, columns: dic
 
 
 def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme) -> None:
-    """Write the title at a height over the axes [pt], and under it the note."""
+    """Write the title at a height above the axes [pt], and below it the note."""
     extent, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
     title = pen.wrap(plate.panel.title, (extent.x1 - edge) / point, look.title, "bold")
     left = (edge - extent.x0) / extent.width
@@ -362,7 +364,7 @@ def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme
 
 
 def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
-    """Return which panels stand in which column: profiles and boxes alone, graphs against time in pairs."""
+    """Return the indices of the panels of each column: tall panels alone, other graphs in pairs."""
     columns: list[list[int]] = []
     for index, panel in enumerate(panels):
         paired = bool(columns) and len(columns[-1]) == 1 and panels[columns[-1][0]].kind not in _TALL
@@ -374,7 +376,7 @@ def _columns(panels: tuple[Panel, ...]) -> list[list[int]]:
 
 
 def _same_abscissa(upper: Panel, lower: Panel) -> bool:
-    """Tell whether two panels over each other can be read on one horizontal axis."""
+    """Tell whether two panels, one above the other, can share a horizontal axis."""
     if upper.kind != "line" or lower.kind != "line":
         return False
     names = {line.x for panel in (upper, lower) for line in panel.lines}

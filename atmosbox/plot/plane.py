@@ -1,4 +1,4 @@
-"""The molecules of a flat box as numbers: where they are, how fast, how large, and how the box lies in space."""
+"""The molecules of a planar scene as numbers: positions, speeds, diameters, and the two axes of their plane."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from atmosbox.plot.unit import convert
 if TYPE_CHECKING:
     import xarray as xr
 
-# The colours are logarithmic where the fastest discs are so many times as fast as the median.
+# The colour scale is logarithmic if the fastest discs are more than this many times as fast as the median disc.
 _WIDE_SPREAD = 10.0
 
 
 class Discs(NamedTuple):
-    """The discs of a flat scene: where they are in every frame, how fast, how large."""
+    """The discs of a planar scene: their position and speed in every frame, their diameter and mass."""
 
     place: NDArray[np.float64]
-    """Their places, (frame, molecule, 2), in the unit that is shown."""
+    """Positions, (frame, molecule, 2), in the unit of length that is shown."""
     speed: NDArray[np.float64]
-    """Their speeds, (frame, molecule)."""
+    """Speeds, (frame, molecule), in the unit ``speed_unit``."""
     diameter: NDArray[np.float64]
-    """Their diameters, (molecule,), in the unit that is shown."""
+    """Diameters, (molecule,), in the unit of length that is shown."""
     mass: NDArray[np.float64]
-    """Their masses, (molecule,)."""
+    """Masses, (molecule,), in the unit of the file."""
     box: NDArray[np.float64]
-    """The lower and the upper corner of the box, (2, 2)."""
+    """The lower and the upper corner of the box, (2, 2), in the unit of length that is shown."""
     speed_unit: str
-    """The unit of the speeds."""
+    """The unit of the speeds, that of the file."""
 
     @property
     def heavy(self) -> NDArray[np.bool_]:
-        """Which of them are of the heavier half; none if all are alike."""
+        """Which discs belong to the heavier half; none if all masses are equal."""
         return _heavy_half(self.mass)
 
 
 def discs(dataset: xr.Dataset, unit: str) -> Discs:
-    """Return the discs of a flat scene.
+    """Return the discs of a planar scene.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ with this version of atmosbox.
 
 
 def axis_names(dataset: xr.Dataset) -> tuple[str, str]:
-    """Return the names of the two axes of a flat scene.
+    """Return the names of the two axes of a planar scene.
 
     Parameters
     ----------
@@ -117,12 +117,12 @@ def axis_names(dataset: xr.Dataset) -> tuple[str, str]:
 
 
 def colour_scale(speed: NDArray[np.float64]) -> Normalize:
-    """Return the scale of the colours: from zero, or logarithmic where most are far slower than the fastest.
+    """Return the colour scale of speeds: from zero, or logarithmic if the fastest are far above the median.
 
     Parameters
     ----------
     speed : ndarray
-        All speeds that are to be shown.
+        All speeds that are to be shown, in any shape and unit.
 
     Returns
     -------
@@ -162,7 +162,7 @@ def _box(
 
 
 def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell which discs are of the heavier half; none if all are alike."""
+    """Tell which discs belong to the heavier half; none if all masses are equal."""
     heavy = np.zeros(mass.size, dtype=bool)
     if mass.size and mass.min() < mass.max():
         heavy[np.argsort(mass, kind="stable")[mass.size // 2 :]] = True

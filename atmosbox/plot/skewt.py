@@ -29,40 +29,40 @@ BACKGROUND = "grey: dry adiabats (solid), moist adiabats (dashed), mixing ratios
 
 _ABBREVIATIONS = {"lcl": "LCL", "cloud_base": "LCL", "lfc": "LFC", "el": "EL"}
 SHADE_ORDER = 0.8
-"""Where the shaded areas lie: over the lines to read the diagram by, under all curves."""
+"""Drawing order (``zorder``) of the shaded areas: above the background lines, below all curves."""
 
-_SLENDER = 0.75  # width of the curves in that of others
-# The curves keep so far from the ground and the top, in parts of their height; so large a ratio of pressures is shown.
+_SLENDER = 0.75  # width of the curves in units of the theme's width
+# Distance of the curves from the lower and the upper end, as a share of their height; least ratio of the pressures.
 _END, _LEAST_RATIO = 0.02, 2.0
-# The lines in the background begin at these temperatures of 1000 hPa [degC], and mixing ratios [g kg-1].
+# Background lines: temperatures of the adiabats at 1000 hPa [degC], and mixing ratios [g kg-1].
 _DRY = np.arange(-80.0, 321.0, 20.0)
 _MOIST = np.arange(-30.0, 41.0, 10.0)
 _MIXING = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
-_MIXING_TOP = 400.0  # hPa
-_HIGHEST_MOIST = 50.0  # hPa
+_MIXING_TOP = 400.0  # upper end of the lines of mixing ratio [hPa]
+_HIGHEST_MOIST = 50.0  # upper end of the moist adiabats [hPa]
 
 Floats = NDArray[np.float64]
 
 
 def levels(dataset: xr.Dataset, panel: Panel) -> dict[str, float]:
-    """Return the pressures that a panel marks.
+    """Return the pressures of the levels that a panel marks.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
     panel : Panel
-        The panel; its ``marks`` name single numbers of the file.
+        The panel; its ``marks`` are names of single numbers in the file.
 
     Returns
     -------
     dict of str to float
-        Pressures by what they are called [hPa]: those that the run has found.
+        Pressure of each level by its name [hPa]; levels that the run has not found are left out.
 
     Raises
     ------
     FileError
-        If a mark is a list of numbers, or no pressure.
+        If a mark is not a single number, or not a pressure.
 
     Examples
     --------
@@ -109,14 +109,14 @@ def draw_skewt(
     dataset : xarray.Dataset
         The run.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     only : tuple of Line, optional
-        The lines to draw; all if nothing is said.
+        The lines to draw; by default all.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes. Their range of temperatures is that of `tilt.fit_skewt`.
+        The axes. `tilt.fit_skewt` sets their range of temperatures later.
     list of tuple
         The entries of the legend.
 
@@ -127,9 +127,9 @@ def draw_skewt(
 
     Notes
     -----
-    The shaded areas are those between the curves that are drawn, of temperature. On MetPy's diagram an area is
-    nearly, not quite, proportional to an energy, and CAPE and CIN are of virtual temperatures: the areas show
-    where these energies come from, the numbers say how large they are.
+    The shaded areas lie between the curves of temperature that are drawn. On MetPy's diagram an area is nearly, but
+    not exactly, proportional to an energy, and CAPE and CIN are computed from virtual temperatures. The areas show
+    where these energies come from; the headline numbers give their values.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
     >>> skewed_axes(figure, figure.add_gridspec(1, 1)[0, 0])[1].get_yscale()
     'log'
     """
-    with warnings.catch_warnings(action="ignore"):  # what a new Python thinks of MetPy is nothing a user can mend
+    with warnings.catch_warnings(action="ignore"):  # a user can do nothing about warnings of MetPy in a new Python
         from metpy.plots import SkewT
 
         skewed = SkewT(figure, rotation=ROTATION, subplot=spot, aspect="auto")
@@ -191,7 +191,7 @@ def skewed_axes(figure: Figure, spot: SubplotSpec) -> tuple[Any, Axes]:
 
 
 def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
-    """Set the pressures that a skew-T shows by its curves, and draw the lines by which it is read.
+    """Set the range of pressures of a skew-T from its curves, and draw the background lines.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
     axes : matplotlib.axes.Axes
         Its axes.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def put_background(skewed: Any, axes: Axes, theme: Theme) -> None:
 
 
 def slender(theme: Theme) -> Theme:
-    """Return a theme with curves as thin as a skew-T needs them: at the ground they run close together.
+    """Return a theme with thinner curves for a skew-T, where the curves run close together near the ground.
 
     Examples
     --------
@@ -230,9 +230,9 @@ def slender(theme: Theme) -> Theme:
 
 
 def _mend_ticks(axes: Any) -> None:
-    """Let the ticks of skewed axes know where the axes end without a function that matplotlib is giving up.
+    """Replace the ticks of MetPy, which find the ends of the axes by a function that matplotlib has deprecated.
 
-    MetPy 1.7 calls it whenever a tick is drawn, which would warn anew wherever the figure is shown.
+    MetPy 1.7 calls that function whenever it draws a tick, and each call would cause a warning.
     """
     from metpy.plots.skewt import SkewXTick
 
@@ -246,12 +246,12 @@ def _mend_ticks(axes: Any) -> None:
 
 
 def _holds(interval: tuple[float, float], value: float) -> bool:
-    """Tell whether a value lies in an interval, whichever end is given first."""
+    """Tell whether a value lies in an interval whose ends may be in either order."""
     return bool(min(interval) <= value <= max(interval))
 
 
 def _pressures(axes: Axes) -> tuple[float, float]:
-    """Return the lower and the upper end of the pressures to show [hPa]."""
+    """Return the pressures at the bottom and at the top of the diagram [hPa]."""
     seen = np.concatenate([np.zeros(0), *(line.get_xydata()[:, 1] for line in axes.lines)])  # type: ignore[index]
     seen = seen[np.isfinite(seen)]
     ground, highest = (float(seen.max()), float(seen.min())) if seen.size else (1000.0, 500.0)
@@ -262,7 +262,7 @@ def _pressures(axes: Axes) -> tuple[float, float]:
 
 
 def _draw_background(skewed: Any, bottom: float, top: float, theme: Theme) -> None:
-    """Draw what a forecaster reads the diagram by, paler than any curve."""
+    """Draw dry adiabats, moist adiabats and lines of mixing ratio, paler than any curve."""
     with warnings.catch_warnings(action="ignore"):
         from metpy.units import units
 

@@ -1,4 +1,4 @@
-"""One curve in ink: as a line with a band, as points with bars, or as steps."""
+"""One curve of a panel, drawn as a line with a band, as points with error bars, or as the steps of a histogram."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from atmosbox.scene.panels import Line, Panel
 if TYPE_CHECKING:
     import xarray as xr
 
-# Up to so many values, a measured curve is drawn as points with bars; beyond, as a line with a band.
+# A measured curve of at most this many values is drawn as points with error bars, a longer one as a line with a band.
 MOST_POINTS = 40
-# A curve that crosses its own range more often than this becomes thinner, lest its scatter be a blot; down to
-# this share of its width.
+# A curve that crosses its whole range more often than this is drawn thinner, so that its scatter does not become a
+# solid area; at the thinnest, this share of the usual width.
 _MOST_CROSSINGS, _THINNEST = 25.0, 0.5
 _ORDER = {"band": 1.0, "reference": 1.5, "environment": 2.0, "data": 3.0, "theory": 4.0}
 
@@ -48,18 +48,18 @@ def draw_line(
     line : Line
         One of its lines.
     values : Curve
-        Its numbers; what is not finite is not drawn.
+        Its numbers; values that are not finite are not drawn.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     index : int
-        How many lines of the same role stand before it.
+        Number of lines of the same role before this one in the panel.
     **look
-        What differs from the looks of its role: ``color``, ``linestyle``, ``linewidth``.
+        Overrides of the style of its role: ``color``, ``linestyle``, ``linewidth``.
 
     Returns
     -------
     tuple of Artist
-        What the legend shows of it.
+        The artists that stand for it in the legend.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def draw_line(
 
 
 def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], index: int) -> tuple[Artist, ...]:
-    """Draw values with bars of one standard error, and hollow where the error is not known."""
+    """Draw points with bars of one standard error; points whose error is not known are hollow."""
     along_x = panel.measured_across
     marker = DATA_MARKERS[index % len(DATA_MARKERS)]
     bars = axes.errorbar(
@@ -130,7 +130,7 @@ def _points(axes: Axes, panel: Panel, values: Curve, style: dict[str, Any], inde
 
 
 def hollow_points(values: Curve) -> NDArray[np.bool_]:
-    """Tell which points have no error although the others have: a layer that was seldom visited, for instance.
+    """Tell which points of a curve with errors have none, a layer that was seldom visited for instance.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def hollow_points(values: Curve) -> NDArray[np.bool_]:
     Returns
     -------
     ndarray of bool
-        True at the points that are known and whose error is not; nowhere if the curve is no points but a line.
+        True at points whose value is known and whose error is not; False everywhere if the curve is drawn as a line.
 
     Examples
     --------
@@ -155,7 +155,7 @@ def hollow_points(values: Curve) -> NDArray[np.bool_]:
 
 
 def _crossings(values: NDArray[np.float64]) -> float:
-    """Return how often a curve goes over its whole range, up or down; at least once."""
+    """Return how often a curve crosses its whole range: the sum of all steps over the range, at least 1."""
     seen = values[np.isfinite(values)]
     extent = np.ptp(seen) if seen.size else 0.0
     return max(1.0, float(np.abs(np.diff(seen)).sum() / extent)) if extent else 1.0
@@ -186,9 +186,9 @@ def draw_steps(
     dataset : xarray.Dataset
         The run.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     index : int
-        How many measured lines stand before it.
+        Number of measured lines before this one in the panel.
     colour, style
         Colour and dashes, if they are not those of its role.
     filled : bool
@@ -197,7 +197,7 @@ def draw_steps(
     Returns
     -------
     tuple of Artist
-        What the legend shows of it.
+        The artists that stand for it in the legend.
 
     Examples
     --------
@@ -230,11 +230,11 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
     Parameters
     ----------
     role : str
-        What the curve is, one of `panels.ROLES`.
+        Role of the curve, one of `panels.ROLES`.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
     index : int
-        How many curves of that role stand before it.
+        Number of curves of this role before it.
 
     Examples
     --------

@@ -26,14 +26,14 @@ __all__ = ["MOST_PANELS", "figure", "is_sweep"]
 
 MOST_PANELS = 4
 _MOST_CURVES = 3
-"""Up to so many values of a second setting, its curves are told apart; beyond, a field is drawn."""
+"""A second setting with at most this many values is drawn as one curve for each value, with more as a field."""
 _ALIKE = 1e-3
-"""Theories that differ by less than this share of their range are drawn once."""
+"""Theory curves that differ by no more than this share of their range are drawn once."""
 
 _WIDE = 100.0
-"""Numbers that span more than this are shown on a logarithmic axis."""
+"""Positive numbers whose largest is more than this many times the smallest are shown on a logarithmic axis."""
 _LONGEST = 60
-"""Characters of a label that an axis has room for."""
+"""Greatest length of a label of an axis [characters]."""
 
 Floats = NDArray[np.float64]
 
@@ -54,11 +54,12 @@ def is_sweep(dataset: xr.Dataset) -> bool:
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
-    """Draw the headlines of a sweep against what was varied.
+    """Draw the headlines of a sweep against the settings that were varied.
 
-    One setting becomes the axis across. A second one becomes curves, or the other axis of a field where it has many
-    values; then the theory is drawn as contours. Theory is known at the points of the sweep alone, and joined. Vapour
-    pressures of several temperatures are drawn as ln p against 1/T, each with the slope that was measured with it.
+    One setting is on the horizontal axis. A second one gives a curve for each of its values or, if it has more than
+    three, the vertical axis of a field, with contours of the theory. Theory is known only at the points of the sweep;
+    straight lines join these. Vapour pressures at several temperatures are drawn as ln p against 1/T, each with the
+    slope that was measured in the same run.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        The figure, with a panel for each of the foremost headlines.
+        The figure, with a panel for each of the first four headlines; those with a theory come first.
 
     Raises
     ------
@@ -111,7 +112,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:
 
 
 def _panels(swept: Varied) -> tuple[xr.Dataset, tuple[Panel, ...]]:
-    """Return a sweep as curves along one dimension, and a panel for each of the foremost headlines."""
+    """Return a sweep as curves along one dimension, and a panel for each of the first four headlines."""
     dataset, across, other = swept.dataset, swept.across, swept.other
     unit = swept.units(across)[0] if swept.numeric(across) else "1"
     places = dataset[across].values if swept.numeric(across) else swept.places(across)
@@ -141,7 +142,7 @@ def _panels(swept: Varied) -> tuple[xr.Dataset, tuple[Panel, ...]]:
 
 
 def _different(theory: list[Line], flat: xr.Dataset) -> list[Line]:
-    """Return the theories of some curves, or one where they are all the same."""
+    """Return the theory curves; only one if all are the same."""
     if len(theory) < 2:
         return theory
     values = np.array([flat[line.y].values for line in theory])
@@ -170,13 +171,13 @@ def _panel(swept: Varied, flat: xr.Dataset, name: str, lines: tuple[Line, ...]) 
 
 
 def _spans(values: Floats) -> bool:
-    """Tell whether values span powers of ten."""
+    """Tell whether all values are positive and span more than a factor of 100."""
     seen = values[np.isfinite(values)]
     return bool(seen.size and seen.min() > 0.0 and seen.max() > _WIDE * seen.min())
 
 
 def _misfit(swept: Varied, name: str) -> str:
-    """Return how far the sweep is from theory where that is the most error bars; empty without a theory."""
+    """Return text with the misfit at the point where it is most standard errors; empty without theory or errors."""
     dataset, answer = swept.dataset, swept.theory(name)
     if answer is None or f"{name}_se" not in dataset:
         return ""

@@ -1,4 +1,4 @@
-"""How large, and in which colours: the two places a figure goes to, a page of notes and a slide."""
+"""Sizes and colours of figures, in two themes: one for a page of notes, one for a slide."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ import matplotlib.style
 from atmosbox.errors import SettingError
 
 OKABE_ITO = ("#000000", "#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
-"""Okabe and Ito's colours, which those who see no difference of red and green can tell apart."""
+"""Okabe and Ito's colours, which people who do not see the difference between red and green can tell apart."""
 
 _BLACK, _ORANGE, _SKY, _GREEN, _YELLOW, _BLUE, _VERMILLION, _PURPLE = OKABE_ITO
 DARK = "#1a1a1a"
 FAINT = "#595959"
 
-# Each curve differs from its neighbours by colour and by a second cue, so that a grey print can be read.
+# Each curve differs from the others by colour and by a second cue, so that a print in grey can be read.
 DATA_COLOURS = (_BLUE, _VERMILLION, _PURPLE, _SKY, _GREEN, _ORANGE)
 DATA_MARKERS = ("o", "s", "^", "D", "v", "P")
-# Of several measured curves of one run, beside those of another.
+# Dashes of the measured curves of one run where runs are compared: there the colour tells which run it is.
 DATA_DASHES = ("solid", (0.0, (1.0, 1.0)), (0.0, (4.0, 1.0, 1.0, 1.0)))
 THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
 THEORY_DASHES = ((5.0, 2.0), (1.2, 1.2), (9.0, 2.0, 2.0, 2.0, 2.0, 2.0))
 ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)
 ENVIRONMENT_DASHES = ((7.0, 2.0, 1.5, 2.0), (1.5, 1.5))
-# What is compared with lies broad and pale under the rest: where curves coincide, each is still seen.
+# A reference curve is broad and pale and lies under the others: where curves coincide, each is still seen.
 REFERENCE_COLOURS = (_ORANGE, _SKY)
 REFERENCE_WIDTH = 2.6
 FIELD_COLOURS = "viridis"
-# Areas are told apart by colour and by hatching, and lines to read a diagram by are paler than any curve.
+# Areas differ by colour and by hatching; the background lines of a diagram are paler than any curve.
 AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}
 AREA_HATCHES = {"CAPE": "////", "CIN": "\\\\\\\\"}
 PALE = "#c4c4c4"
@@ -44,19 +44,19 @@ class Theme:
     Parameters
     ----------
     name : str
-        What users call it.
+        Name of the theme, as users give it.
     narrow, wide : tuple of float
         Width and height of a figure with one panel and with several [inch].
     text, title, small : float
-        Type of axes and legends, of the panels' titles, and of the footer [pt].
+        Size of the type of axes and legends, of the panels' titles, and of the footer [pt].
     line, marker : float
         Width of lines and size of markers [pt].
     dots_per_inch : float
         Resolution on a screen.
     heading : bool
-        Whether the title of the run stands above the panels; on a page, the caption says it.
+        Whether the title of the run is written above the panels; a figure on a page has a caption for it.
     grows : bool
-        Whether the figure becomes higher where there is much to say over its panels, as a page allows.
+        Whether the figure becomes higher if there is much text above its panels; a page allows it, a slide does not.
 
     Examples
     --------
@@ -87,7 +87,7 @@ THEMES = {
 
 
 def find(name: str) -> Theme:
-    """Return the theme of that name.
+    """Return the theme of a name.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ def style(theme: Theme) -> AbstractContextManager[None]:
     Returns
     -------
     context manager
-        Within it matplotlib's settings are its own defaults and the theme's; after it they are the user's
-        again.
+        Inside the context, matplotlib has its own default settings and those of the theme; afterwards it has the
+        user's settings again.
 
     Examples
     --------

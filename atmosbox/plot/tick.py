@@ -1,4 +1,4 @@
-"""Numbers on the axes: matplotlib's locators, plain numbers, and a common power of ten for the label."""
+"""Ticks of the axes: matplotlib's locators, plain numbers, and a common power of ten for the label."""
 
 from __future__ import annotations
 
@@ -20,40 +20,41 @@ from atmosbox.plot.unit import power_of_ten
 
 __all__ = ["put_ticks"]
 
-# The mandatory levels of soundings [hPa], without 925, which there is seldom room for.
+# The mandatory levels of soundings [hPa], without 925, for which there is seldom room.
 _PRESSURE_LEVELS = (1000.0, 850.0, 700.0, 500.0, 400.0, 300.0, 250.0, 200.0, 150.0, 100.0, 70.0, 50.0, 30.0, 20.0, 10.0)
-# The digits that are written between two powers of ten, and the least ratio of two of them.
+# The leading digits of the ticks of a logarithmic axis, and the least ratio between two such ticks; the densest first.
 _DIGITS = (((1.0, 2.0, 5.0), 2.0), ((1.0, 3.0), 3.0), ((1.0,), 10.0))
-# How much room a number takes beside the next one, across and upright, and the width of a digit and the gap between two
-# numbers across, all in sizes of the type.
+# The room that a number takes along a horizontal and along a vertical axis, the width of a digit, and the gap between
+# two numbers on a horizontal axis, all in units of the type size.
 _ACROSS, _UPRIGHT, _DIGIT, _BETWEEN = 3.0, 1.5, 0.64, 0.7
-# On an axis over so many times its low end, powers of ten are written and not taken out; just below 1000, lest
-# rounding decide.
+# If the upper end of a logarithmic axis is at least this many times its lower end, its numbers are written as powers of
+# ten, and no common power goes into the label. Just below 1000, so that rounding does not decide.
 _MANY = 999.0
 
 
 def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bool = False) -> int:
-    """Put as many numbers on an axis as can be read, and return the power of ten that they are in units of.
+    """Put as many numbers on an axis as there is room for, and return the power of ten by which they were divided.
 
     Parameters
     ----------
     axis : matplotlib.axis.Axis
         The axis, with its limits set.
     log : bool
-        Whether it is logarithmic.
+        Whether the axis is logarithmic.
     length, size : float
         Length of the axis and size of its type [pt].
     pressure : bool
-        Whether it shows a pressure in hPa, and so the mandatory levels of soundings if it is logarithmic.
+        Whether the axis shows a pressure in hPa. If it is logarithmic, too, its ticks are the mandatory levels of
+        soundings where there is room for them.
 
     Returns
     -------
     int
-        A power of ten that belongs into the label of the axis; 0 for none.
+        The exponent of the power of ten that belongs into the label of the axis; 0 for none.
 
     Examples
     --------
-    Numbers of the order of 1e-15 are read as such:
+    Numbers of the order of 1e-15 are written in units of 1e-15:
 
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot(ylim=(-3e-15, 2e-15))
@@ -90,7 +91,7 @@ def put_ticks(axis: Axis, *, log: bool, length: float, size: float, pressure: bo
 
 
 def _log_locator(low: float, high: float, room: float, *, pressure: bool) -> Locator | None:
-    """Return what finds the numbers of a logarithmic axis; None where round ones are too few."""
+    """Return the locator of the ticks of a logarithmic axis; None where the axis is too short for round numbers."""
     decades = math.log10(high / low)
     levels = [level for level in _PRESSURE_LEVELS if low <= level <= high]
     closest = min((math.log10(lower / upper) for lower, upper in pairwise(levels)), default=0.0)
@@ -101,7 +102,7 @@ def _log_locator(low: float, high: float, room: float, *, pressure: bool) -> Loc
 
 
 def _written(value: float, power: int, *, plain: bool) -> str:
-    """Return a number of a logarithmic axis."""
+    """Return the text of a tick of a logarithmic axis."""
     if plain or power:
         return f"{value / 10.0**power:.6g}"
     exponent = math.log10(value)

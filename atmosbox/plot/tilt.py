@@ -1,4 +1,4 @@
-"""The room that a skew-T has: its temperatures, whose isotherms lean, and the names of levels beside it."""
+"""The range of temperatures of a skew-T, which depends on its size on the page, and the level names beside it."""
 
 from __future__ import annotations
 
@@ -12,21 +12,22 @@ from matplotlib.ticker import FixedFormatter, FixedLocator
 
 from atmosbox.plot.theme import DARK, FAINT, Theme
 
-ROTATION = 30.0  # of isotherms from the upright [degree], as MetPy has it
+ROTATION = 30.0  # angle of the isotherms from the vertical [degree], as in MetPy
 
-# As long as a decade of pressure are at least so many kelvin, where the axes are wide: else the adiabats lie flat.
+# On the page, a decade of pressure is at least as long as this many kelvin: otherwise the adiabats are too flat where
+# the axes are wide.
 _KELVINS_PER_DECADE = 60.0
-# The curves keep so far from the sides, in widths of the axes; and no diagram is narrower or wider [K].
+# Least distance of the curves from the sides, in widths of the axes; least and greatest width of a diagram [K].
 _MARGIN = 0.06
 _LEAST_WIDTH, _MOST_WIDTH = 40.0, 400.0
-_LEVEL = "level"  # by which the names of levels are found among the texts
+_LEVEL = "level"  # marks the names of levels among the texts of the axes
 
 
 def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
-    """Choose the range of temperatures for the room that a skew-T has, and move the names of its levels apart.
+    """Choose the range of temperatures of a skew-T for its size, and move the names of its levels apart.
 
-    Isotherms are inclined on the page, and so the room that a curve needs to the left and to the right depends on
-    how high and how wide the page is.
+    Isotherms are inclined on the page. How far a curve reaches to the left and to the right therefore depends on the
+    height and the width of the axes.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
 
     Examples
     --------
-    Because isotherms lean, a curve that cools by 80 K needs less than 80 K of the page:
+    Because isotherms are inclined, a curve that cools by 80 K needs less than 80 K of the width of the page:
 
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot(yscale="log", ylim=(1000.0, 100.0))
@@ -64,9 +65,10 @@ def fit_skewt(axes: Axes, width: float, height: float, size: float) -> None:
 
 
 def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[float, float]:
-    """Return the left end and the width of the temperatures at the bottom of axes of a height per width [degC, K].
+    """Return the lowest temperature at the bottom of the axes [degC], and the range of temperatures there [K].
 
-    A curve leans to the right by the tangent of the rotation; in a wider range of temperatures it leans less.
+    ``slope`` is the height of the axes divided by their width. Each point of a curve is moved to the right by its
+    height times the tangent of the rotation. Measured in kelvin, that shift grows with the range of temperatures.
     """
     points = np.concatenate([np.zeros((0, 2)), *(np.asarray(line.get_xydata()) for line in axes.lines)])
     points = points[np.isfinite(points).all(axis=1)]
@@ -83,16 +85,16 @@ def _temperatures(axes: Axes, bottom: float, top: float, slope: float) -> tuple[
 
 
 def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
-    """Mark levels across a skew-T, with their names to the right of it.
+    """Draw a horizontal line across a skew-T for each level, with its name to the right of the diagram.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
         The axes, with their pressures set.
     levels : dict of str to float
-        Pressures, by what they are called [hPa]; those outside the diagram are left out.
+        Pressure of each level by its name [hPa]; levels outside the diagram are left out.
     theme : Theme
-        How large.
+        The theme: sizes of type, lines and markers.
 
     Examples
     --------
@@ -116,7 +118,7 @@ def put_levels(axes: Axes, levels: dict[str, float], theme: Theme) -> None:
 
 
 def _apart(places: list[float], gap: float, height: float) -> list[float]:
-    """Return ascending places, moved until they are a gap apart and within the height."""
+    """Return ascending positions, moved until they are at least a gap apart and none is above the height."""
     moved = list(places)
     for i in range(1, len(moved)):
         moved[i] = max(moved[i], moved[i - 1] + gap)

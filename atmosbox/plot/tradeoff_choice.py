@@ -1,4 +1,4 @@
-"""What a measured trade says first: which way of running to take, and in which quantity it is seen."""
+"""What the figure of a measured trade shows first: the recommended way of running, and the quantity to plot."""
 
 from __future__ import annotations
 
@@ -29,28 +29,28 @@ __all__ = [
 
 MOST_PANELS = 4
 SEEN = 2.0
-"""A bias of fewer standard errors than this is not told from zero: its place is an upper limit."""
+"""A bias of fewer standard errors than this is not told from zero: an upper limit is drawn in its place."""
 WANTED = TARGETS["lecture"]
-"""How accurate a run is that is recommended: as ``atmosbox run SCENE --accuracy lecture`` picks it."""
+"""The accuracy of a recommended run, the one that ``atmosbox run SCENE --accuracy lecture`` asks for."""
 
 
 def series_of(dataset: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the series of a trade, as its file describes them: engine, what varies, other settings, laws."""
+    """Return the series of a trade as its file describes them: engine, varied setting, other settings, laws of bias."""
     rows: list[dict[str, Any]] = json.loads(dataset.attrs["atmosbox_parameters"]).get("series", [])
     return rows
 
 
 def foremost(dataset: xr.Dataset) -> list[str]:
-    """Return the quantities to show: those with a law first, then numbers, then curves."""
+    """Return the quantities to show, at most four: those with a law first, otherwise in the order of the file."""
     lawful = {name for row in series_of(dataset) for name in row["order"]}
     names = [str(name) for name in dataset.quantity.values]
     return sorted(names, key=lambda name: name not in lawful)[:MOST_PANELS]
 
 
 def telling(dataset: xr.Dataset) -> str:
-    """Return the quantity that tells the ways of running apart best: the one in which most of them show a bias.
+    """Return the quantity that best shows how the ways of running differ: the one in which most of them have a bias.
 
-    A quantity with a law goes before one without, and a number before a curve.
+    Numbers come before curves, and then quantities with a law of bias before those without.
     """
     lawful = {name for row in series_of(dataset) for name in row["order"]}
 
@@ -63,21 +63,21 @@ def telling(dataset: xr.Dataset) -> str:
 
 
 def _is_curve(one: xr.Dataset) -> bool:
-    """Tell whether a quantity is a curve, whose error is the mean along it."""
+    """Tell whether a quantity is a curve; its error is a mean along the curve."""
     return str(one.label.item()).startswith("profile of ")
 
 
 def total(dataset: xr.Dataset) -> NDArray[np.float64]:
-    """Return the error to expect of a single run, ``(rung, quantity)``: bias and noise together [K, or a share].
+    """Return the expected error of a single run, ``(rung, quantity)`` [K, or a share].
 
-    What is not known of the bias counts in full.
+    It is the root of the sum of squares of bias, standard error of the bias, and noise.
     """
     square = sum(dataset[name].transpose("rung", "quantity").values ** 2 for name in ("bias", "bias_se", "noise"))
     return np.sqrt(np.asarray(square, dtype=np.float64))
 
 
 def limit(unit: str) -> float:
-    """Return the largest error of a run that is recommended, in kelvin, or as a share.
+    """Return the largest error of a recommended run [K, or a share].
 
     Examples
     --------
@@ -88,10 +88,11 @@ def limit(unit: str) -> float:
 
 
 def recommended(dataset: xr.Dataset) -> tuple[int, bool] | None:
-    """Return the cheapest way of running whose numbers are all accurate enough, and whether there is one.
+    """Return the index of the recommended way of running, and whether all its numbers are accurate enough.
 
-    Where there is none, it is the most accurate way. Only ways of running the same experiment count: a series with a
-    switch of its own, such as discs in a plane, is another one. None where nothing fits.
+    It is the cheapest way whose numbers are all accurate enough or, if there is none, the most accurate way. Only ways
+    of running the same experiment count: a series with a switch of its own, such as discs in a plane, is another
+    experiment. None if no way has known errors and a known cost.
     """
     numbers = np.array([not _is_curve(dataset.sel(quantity=name)) for name in dataset.quantity.values])
     allowed = np.array([limit(str(unit)) for unit in dataset.unit.values])
@@ -109,7 +110,7 @@ def recommended(dataset: xr.Dataset) -> tuple[int, bool] | None:
 
 
 def in_words(value: object) -> str:
-    """Return a setting as a figure says it.
+    """Return the value of a setting as text for a figure.
 
     Examples
     --------

@@ -1,7 +1,8 @@
-"""Error against seconds: the figure of a measurement of speed against accuracy.
+"""Error against processor time: the figure of a measured trade of speed against accuracy.
 
-By default it is one graph, for the last row of a lecture hall: what a single run is off by, against what it costs, and
-which run to take. With all panels it shows the foremost quantities, and of each its bias, its noise and their laws.
+By default it is one graph, readable from the last row of a lecture hall: the error of a single run against its
+processor time, and the recommended run. With all panels it shows up to four quantities, and for each of them bias,
+noise and their laws.
 """
 
 from __future__ import annotations
@@ -40,13 +41,13 @@ if TYPE_CHECKING:
 __all__ = ["figure"]
 
 CLEAR = 6.0
-"""From so many standard errors on, a law may be drawn through a bias."""
+"""Where possible, the law of a bias is drawn through one that is more than this many standard errors."""
 
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes", *, all_panels: bool = False) -> Figure:
-    """Draw errors against seconds: one quantity, or a panel for each of the foremost.
+    """Draw errors against processor time: one quantity, or a panel for each of up to four.
 
     Parameters
     ----------
@@ -55,16 +56,16 @@ def figure(dataset: xr.Dataset, theme: str = "notes", *, all_panels: bool = Fals
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen.
     all_panels : bool
-        Whether all of the foremost quantities are drawn, each with bias, noise and laws, and not only the error of
-        a single run in the quantity that tells the ways of running apart best.
+        Whether up to four quantities are drawn, each with bias, noise and laws, and not only the error of a single
+        run in the quantity that best shows how the ways of running differ.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure. In one panel a mark is the error to expect of a single run, filled where most of it is bias and
-        hollow where most of it is chance; the ring is the run that is recommended. In all panels a filled mark is
-        the bias, the mean error of many runs; a hollow one below an arrow says that no bias was seen above twice its
-        standard error; a pale ring is the noise, by which a single run scatters; the grey line runs along the best
+        The figure. In one panel a mark is the expected error of a single run, filled where most of it is bias and
+        hollow where most of it is chance; the ring is the recommended run. In all panels a filled mark is the bias,
+        the mean error of many runs; a hollow one with an arrow is an upper limit, twice the standard error, where no
+        larger bias was seen; a pale ring is the noise, the scatter of a single run; the grey line runs along the best
         totals; thin lines are laws.
 
     Raises
@@ -78,7 +79,7 @@ def figure(dataset: xr.Dataset, theme: str = "notes", *, all_panels: bool = Fals
 
 
 def _one_panel(dataset: xr.Dataset, look: Theme) -> Figure:
-    """Draw the error of a single run in one quantity against what it costs."""
+    """Draw the error of a single run in one quantity against its processor time."""
     name = telling(dataset)
     one = dataset.sel(quantity=name)
     share, unit = _unit(one)
@@ -142,7 +143,7 @@ def _one_panel(dataset: xr.Dataset, look: Theme) -> Figure:
 
 
 def _all_panels(dataset: xr.Dataset, look: Theme) -> Figure:
-    """Draw bias and noise of the foremost quantities against what a run costs."""
+    """Draw bias and noise of up to four quantities against the processor time of a run."""
     chosen = foremost(dataset)
     width, height = look.wide if len(chosen) > 1 else look.narrow
     drawing = Figure(figsize=(width, height * (1.0 if look.heading else 1.45)), layout="constrained")
@@ -171,7 +172,7 @@ def _all_panels(dataset: xr.Dataset, look: Theme) -> Figure:
 
 
 def _unit(one: xr.Dataset) -> tuple[float, str]:
-    """Return by how much the error of a quantity is multiplied, and the unit in which it is then shown."""
+    """Return the factor from the error of a quantity in the file to the one shown, and the unit that is shown."""
     return (1.0, "K") if str(one.unit.values) == "K" else (100.0, "%")
 
 
@@ -185,7 +186,7 @@ def _ticks(axes: Axes) -> None:
 
 
 def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
-    """Draw one quantity."""
+    """Draw the panel of one quantity."""
     one = dataset.sel(quantity=name)
     scale, unit = _unit(one)
     seconds = dataset.engine_seconds.values
@@ -224,7 +225,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, name: str, look: Theme) -> None:
 
 
 def _front(axes: Axes, seconds: NDArray[np.float64], total: NDArray[np.float64], look: Theme) -> None:
-    """Draw the line along the runs that no cheaper run betters."""
+    """Draw the line along the runs of which no cheaper run is more accurate (the Pareto front)."""
     x, y = [], []
     best = math.inf
     for k in np.argsort(seconds):
@@ -246,7 +247,7 @@ def _law(
     se: NDArray[np.float64],
     look: Theme,
 ) -> None:
-    """Draw a known law through the finest run whose bias was clearly seen: laws hold where errors are small."""
+    """Draw a known law of bias through the smallest bias that was clearly seen: laws hold where errors are small."""
     order = row["order"].get(name)
     known = here & np.isfinite(bias)
     if order is None or known.sum() < 1 or here.sum() < 2:
@@ -262,7 +263,7 @@ def _law(
 def _statistics(
     axes: Axes, dataset: xr.Dataset, seconds: NDArray[np.float64], noise: NDArray[np.float64], look: Theme
 ) -> None:
-    """Draw the law of chance, one over the root of the time, through the reference."""
+    """Draw the law of chance, noise proportional to 1/√time, through the noise of the reference."""
     reference = json.loads(dataset.attrs["atmosbox_parameters"])["tradeoff"].get("reference")
     finite = seconds[np.isfinite(seconds)]
     if reference is None or not finite.size or not math.isfinite(noise[reference]):
@@ -273,18 +274,18 @@ def _statistics(
 
 
 def _engine(dataset: xr.Dataset, row: int) -> str:
-    """Return the name of a series' engine."""
+    """Return the name of the engine of a series."""
     return str(dataset.engine.values[dataset.series.values == row][0]).partition(":")[0]
 
 
 def _colour(dataset: xr.Dataset, row: int) -> str:
-    """Return the colour of a series' engine."""
+    """Return the colour of a series, which is that of its engine."""
     known = list(dict.fromkeys(str(text).partition(":")[0] for text in dataset.engine.values))
     return to_hex(DATA_COLOURS[known.index(_engine(dataset, row)) % len(DATA_COLOURS)])
 
 
 def _series(dataset: xr.Dataset, row: int) -> tuple[str, str, str]:
-    """Return the engine of a series, what varies in it and from where to where, and the settings of all its runs."""
+    """Return the engine of a series, its varied setting with the range of values, and the settings of all its runs."""
     rows = series_of(dataset)
     row_is = (dataset.series.values == row) & np.isfinite(dataset.engine_seconds.values)
     values = dataset.value.values[row_is][np.argsort(dataset.engine_seconds.values[row_is])]
@@ -299,14 +300,14 @@ def _series(dataset: xr.Dataset, row: int) -> tuple[str, str, str]:
 
 
 def _way(dataset: xr.Dataset, k: int) -> str:
-    """Return a way of running in words: its engine, the options of that, and the settings."""
+    """Return a way of running as text: the engine, its options, and the settings."""
     settings = json.loads(str(dataset.settings.values[k]))
     engine = str(dataset.engine.values[k]).replace(":", ", ").replace("=", " ")
     return ", ".join([engine, *(f"{name} {in_words(value)}" for name, value in settings.items())])
 
 
 def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
-    """Return what the marks mean: the series, then bias, noise, front and laws."""
+    """Return the entries of the legend: the series, then bias, noise, Pareto front and laws."""
     made = np.isfinite(dataset.engine_seconds.values)
     entries = []
     for row in sorted({int(k) for k in dataset.series.values[made]}):
@@ -328,5 +329,5 @@ def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
 
 
 def _sentence(text: str) -> str:
-    """Return a text that begins with a capital."""
+    """Return a text with a capital as its first letter."""
     return text[:1].upper() + text[1:]

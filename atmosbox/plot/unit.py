@@ -1,4 +1,4 @@
-"""From the SI units of a file to the units that a graph is read in."""
+"""From the SI units of a file to the units of a graph."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SPELLINGS = {"degC": "°C", "um": "µm", "us": "µs", "percent": "%"}
 def convert(
     value: ArrayLike, unit: str, shown: str, *, name: str = "value", difference: bool = False
 ) -> NDArray[np.float64]:
-    """Return a quantity in the units that it is shown in.
+    """Convert a quantity from the units of the file to the units that are shown.
 
     Parameters
     ----------
@@ -26,9 +26,10 @@ def convert(
     shown : str
         The units to show; empty for those of the file.
     name : str
-        What the quantity is called if it must be refused.
+        Name of the quantity in an error message.
     difference : bool
-        Whether the value is a difference or an error, which has no zero point: 1 K is 1 degC.
+        Whether the value is a difference or an error, to which no offset is added: a difference of 1 K is one of
+        1 degC.
 
     Returns
     -------
@@ -38,7 +39,7 @@ def convert(
     Raises
     ------
     FileError
-        If the one unit cannot be turned into the other.
+        If the units cannot be converted into each other.
 
     Examples
     --------
@@ -62,7 +63,7 @@ def convert(
 
 
 def of_difference(unit: str) -> str:
-    """Return the unit of a difference: that of two temperatures in degC is the kelvin.
+    """Return the unit of a difference of two quantities: the difference of two temperatures in degC is in kelvin.
 
     Parameters
     ----------
@@ -83,19 +84,19 @@ def of_difference(unit: str) -> str:
 
 
 def spelled(unit: str, power: int = 0) -> str:
-    """Return a unit as it is printed, if need be with a power of ten.
+    """Return a unit as it is printed, with a power of ten before it if there is one.
 
     Parameters
     ----------
     unit : str
         The unit as files write it, "m s-1" for instance.
     power : int
-        The power of ten that the numbers beside it are to be multiplied by.
+        Exponent of the power of ten by which the numbers in this unit must be multiplied; 0 for none.
 
     Returns
     -------
     str
-        The unit with raised exponents.
+        The unit, its exponents as superscripts.
 
     Examples
     --------
@@ -109,7 +110,7 @@ def spelled(unit: str, power: int = 0) -> str:
 
 
 def labelled(label: str, unit: str, power: int = 0) -> str:
-    """Return what stands at an axis: what it shows and in which unit, which a bare number has not.
+    """Return the label of an axis: the quantity and, unless it is a pure number, its unit in brackets.
 
     Parameters
     ----------
@@ -118,7 +119,7 @@ def labelled(label: str, unit: str, power: int = 0) -> str:
     unit : str
         Its unit, as files write it.
     power : int
-        The power of ten that the numbers beside it are to be multiplied by.
+        Exponent of the power of ten by which the numbers on the axis must be multiplied; 0 for none.
 
     Examples
     --------
@@ -139,7 +140,7 @@ def power_of_ten(power: int) -> str:
     Returns
     -------
     str
-        The power, with a raised exponent.
+        The power, its exponent as a superscript.
 
     Examples
     --------
@@ -150,6 +151,6 @@ def power_of_ten(power: int) -> str:
 
 
 def _raised(word: str) -> str:
-    """Return one factor of a unit with its exponent, if it has one, raised."""
+    """Return one factor of a unit; its exponent, if there is one, as a superscript."""
     base = word.rstrip("-0123456789")
     return base + word[len(base) :].translate(_SIGNS) if base else word

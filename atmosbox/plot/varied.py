@@ -1,4 +1,4 @@
-"""A sweep as a figure needs it: what was varied, in which units and words, and what was measured."""
+"""A sweep, prepared for a figure: the settings that were varied, with units and labels, and the headlines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Varied"]
 
 _UNEVEN = 4.0
-"""Values whose steps differ by more, and which span more, are shown on a logarithmic axis."""
+"""An axis is logarithmic if both ratios exceed this: largest step to smallest step, last value to first value."""
 
 Floats = NDArray[np.float64]
 
@@ -30,13 +30,13 @@ class Varied:
     Parameters
     ----------
     dataset : xarray.Dataset
-        The sweep; the settings that were varied are its dimensions.
+        The sweep; its dimensions are the settings that were varied.
     across : str
-        The setting for the axis across: of numbers before words, the one with the most values.
+        The setting on the horizontal axis: a numeric one if there is any, and of these the one with the most values.
     other : str or None
         The second setting that was varied, if there is one.
     names : tuple of str
-        The headlines, those with a theory first.
+        Names of the headlines, those with a theory first.
     members : int
         Number of runs at each point.
 
@@ -57,7 +57,7 @@ class Varied:
 
     @classmethod
     def read(cls, dataset: xr.Dataset) -> Varied:
-        """Return what `atmosbox sweep` has written, made ready to be drawn.
+        """Prepare a dataset that `atmosbox sweep` has written.
 
         Raises
         ------
@@ -97,16 +97,19 @@ class Varied:
         return self.dataset[dim].dtype.kind in "fi"
 
     def name(self, dim: str) -> str:
-        """Return the name of a setting, as a legend says it."""
+        """Return the name of a setting for a legend."""
         return dim.removesuffix("_setting").replace("_", " ")
 
     def label(self, dim: str, longest: int) -> str:
-        """Return what a setting is, where that is short enough for an axis, else its name."""
+        """Return the description of a numeric setting if it is no longer than the given length, else its name."""
         text = str(self.dataset[dim].attrs.get("long_name", ""))
         return text if self.numeric(dim) and 0 < len(text) <= longest else self.name(dim)
 
     def units(self, dim: str) -> tuple[str, str]:
-        """Return the units of a setting in the file, and those that are shown: the same where it must be."""
+        """Return the unit of a setting in the file and the unit that is shown.
+
+        The unit of the file is shown, too, if the file names no other or one into which it cannot be converted.
+        """
         unit = str(self.dataset[dim].attrs.get("units", "1"))
         shown = str(self.dataset[dim].attrs.get("display_units", "")) or unit
         try:
@@ -116,13 +119,13 @@ class Varied:
         return unit, shown
 
     def places(self, dim: str) -> Floats:
-        """Return where the values of a setting stand on an axis: words at whole numbers."""
+        """Return the positions of the values of a setting on an axis: words are at 0, 1, 2 and so on."""
         if not self.numeric(dim):
             return np.arange(self.dataset.sizes[dim], dtype=float)
         return convert(self.dataset[dim].values, *self.units(dim), name=dim)
 
     def words(self, dim: str) -> list[str]:
-        """Return the values of a setting with their unit, as a legend says them."""
+        """Return the values of a setting as text with their unit, for a legend."""
         if not self.numeric(dim):
             return [str(word) for word in np.char.decode(self.dataset[dim].values.astype("S"))]
         shown = self.units(dim)[1]
@@ -130,7 +133,7 @@ class Varied:
         return [f"{value:.6g}".replace("-", "−") + unit for value in self.places(dim)]
 
     def geometric(self, dim: str) -> bool:
-        """Tell whether the values of a setting are nearer to even ratios than to even steps."""
+        """Tell whether a setting needs a logarithmic axis: positive values with very uneven steps over a wide range."""
         values = self.dataset[dim].values
         if not self.numeric(dim) or len(values) < 3 or not values[0] > 0.0:
             return False

@@ -1,8 +1,7 @@
-"""Runs side by side: what differs in how they were made, and by how much their numbers differ.
+"""Comparison of runs: which of their settings differ, and by how much their headline numbers differ.
 
-Read in this order: `change` (which settings are not the same, and what to call each run by), `difference` (the headline
-numbers of all, with the difference of each from the first and its standard error), `compared_file` (one figure of
-all).
+Read in this order: `change` (the settings that differ, and a label for each run), `difference` (the headline numbers of
+all runs, with their differences from the first run and the standard errors), `compared_file` (one figure of all runs).
 """
 
 from atmosbox.plot.compare.change import Change, Naming, naming

@@ -1,4 +1,4 @@
-"""What differs between runs, in words: the changed setting, and it alone."""
+"""The settings that differ between runs, and labels that name only these."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ __all__ = ["Change", "Naming", "naming"]
 
 _MADE_BY = ("scene", "engine", "version")
 _NOT_SAID = "-"
-_MOST_SAID = 2  # changes that a label says; of more, the title speaks
+_MOST_SAID = 2  # greatest number of changes in a label; if there are more, runs are labelled by their files
 
 
 @dataclass(frozen=True)
 class Change:
-    """Something that is not the same in all runs.
+    """A setting, or another property, that is not the same in all runs.
 
     Parameters
     ----------
@@ -51,18 +51,18 @@ class Change:
 
 @dataclass(frozen=True)
 class Naming:
-    """What runs are called by.
+    """The labels of several runs, and what differs between the runs.
 
     Parameters
     ----------
     scenes : tuple of str
-        The scene of each.
+        The scene of each run.
     changes : tuple of Change
         What differs, the scene first.
     labels : tuple of str
-        What to call each run, all different.
+        A label for each run, all different.
     same : bool
-        Whether all hold the same numbers.
+        Whether all runs hold the same numbers.
 
     Examples
     --------
@@ -77,7 +77,7 @@ class Naming:
 
     @property
     def title(self) -> str:
-        """What differs beside the scenes, in one line."""
+        """What differs apart from the scenes, in one line."""
         said = ", ".join(str(change) for change in self.changes if change.name != "scene")
         if self.changes:
             return said or "with the same settings"
@@ -85,24 +85,24 @@ class Naming:
 
 
 def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
-    """Return what differs between runs, and what each is called by.
+    """Return what differs between runs, and a label for each.
 
     Parameters
     ----------
     datasets : sequence of xarray.Dataset
         The runs.
     files : sequence of str
-        What they are called by where nothing differs.
+        Names of their files, which label runs where nothing or too much differs.
 
     Returns
     -------
     Naming
-        The names. Runs of different scenes are named by these and by the settings that they share.
+        The labels and changes. Of runs of different scenes, only the settings that all of them have are compared.
 
     Raises
     ------
     FileError
-        If a file does not say what it holds.
+        If the parameters of a file cannot be read.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
 
 
 def _parameters(scene: str) -> dict[str, Parameter]:
-    """Return the settings of a scene that comes with atmosbox; none of another, whose file is never run for this."""
+    """Return the settings of a scene that comes with atmosbox; none for a user's own scene, whose file is not run."""
     try:
         if scene not in scenarios.names():
             return {}
@@ -160,7 +160,7 @@ def _value(value: object, parameter: Parameter | None) -> str:
 
 
 def _labels(changes: Sequence[Change], files: Sequence[str]) -> tuple[str, ...]:
-    """Return what to call each run; where two would be called alike, their files tell them apart."""
+    """Return a label for each run; labels that would be equal are made different by the name of the file."""
     first = next((change for change in changes if change.name == "scene"), None)
     if first is not None and len(set(first.values)) == len(files):
         made = list(first.values)
@@ -193,7 +193,7 @@ def _spoken(name: str) -> str:
 
 
 def _says_what(change: Change) -> bool:
-    """Tell whether the values alone say what they are of, by their unit."""
+    """Tell whether all values have a unit, so that they need no name beside them."""
     return all(" " in value for value in change.values)
 
 

@@ -40,11 +40,11 @@ def save(
     datasets : sequence of xarray.Dataset
         The runs, two to six.
     names : Naming
-        What they are called by.
+        The labels of the runs, and the settings that differ.
     path : str or path-like
-        The file, whose suffix says the format unless ``format`` does.
+        The file; its suffix gives the format unless ``format`` does.
     format : {"png", "svg", "pdf"}, optional
-        The format.
+        The format, by default that of the suffix.
     theme : {"notes", "slides"}
         A figure for a page, or one for a screen.
     force : bool
@@ -60,7 +60,7 @@ def save(
     FileError
         If the file exists, cannot be written, or the runs have no graph in common.
     SettingError
-        If there are too many runs, or format or theme are unknown.
+        If there are fewer than two or more than six runs, or the format or the theme is unknown.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def save(
 
 
 def spoken(text: str) -> str:
-    """Return a text with its units as they are printed.
+    """Return a text in which units are spelled as they are printed.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The headline numbers of several runs, and by how much they differ."""
+"""The headline numbers of several runs, and their differences."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Measured:
     value, error : float
         The measurement and its standard error [unit]; NaN where the run has none.
     theory : float
-        The answer of the textbook [unit]; NaN where there is none.
+        The value of the textbook [unit]; NaN where there is none.
 
     Examples
     --------
@@ -46,15 +46,15 @@ class Compared:
     Parameters
     ----------
     name, label : str
-        Its name in the file, and what a table calls it.
+        Its name in the file, and its name in a table.
     unit : str
-        The unit of all numbers; differences of degC are in K.
+        The unit of all numbers; differences of numbers in degC are in K.
     runs : tuple of Measured
         The number of each run.
 
     Examples
     --------
-    By how much it is warmer, in standard errors:
+    The second run is 20 K warmer; the standard error is 0.5 K, so the difference is 40 standard errors:
 
     >>> warm = Compared("t", "temperature", "degC", (Measured(5.0, 0.3, 5.1), Measured(25.0, 0.4, 24.9)))
     >>> warm.difference(1), warm.error(1), warm.sigma(1)
@@ -67,20 +67,20 @@ class Compared:
     runs: tuple[Measured, ...]
 
     def difference(self, run: int) -> float:
-        """Return the number of a run minus that of the first."""
+        """Return the number of a run minus that of the first run."""
         return self.runs[run].value - self.runs[0].value
 
     def error(self, run: int) -> float:
-        """Return the standard error of that difference, of runs that chance has made independent."""
+        """Return the standard error of the difference, for runs that are statistically independent."""
         return math.hypot(self.runs[run].error, self.runs[0].error)
 
     def sigma(self, run: int) -> float:
-        """Return the difference in standard errors; NaN where there is none."""
+        """Return the difference in units of its standard error; NaN where that is not known."""
         error = self.error(run)
         return self.difference(run) / error if error > 0.0 else math.nan
 
     def expected(self, run: int) -> float:
-        """Return the difference that theory expects; NaN where there is no theory."""
+        """Return the difference between the theories of a run and of the first; NaN where there is no theory."""
         return self.runs[run].theory - self.runs[0].theory
 
 
@@ -100,7 +100,7 @@ def compared(datasets: Sequence[xr.Dataset]) -> tuple[Compared, ...]:
     Raises
     ------
     FileError
-        If a file does not say which numbers it is about.
+        If the attribute ``atmosbox_headlines`` of a file cannot be read.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def _headlines(dataset: xr.Dataset) -> list[str]:
 
 
 def _compared(datasets: Sequence[xr.Dataset], name: str) -> Compared:
-    """Return one number of all runs, in the unit of the first that has it."""
+    """Return one headline number of all runs, in the unit of the first run that has it."""
     attrs = next(dataset[name].attrs for dataset in datasets if name in dataset.variables)
     unit = str(attrs.get("display_units", attrs.get("units", "1")))
     label = str(attrs.get("long_name", name.replace("_", " ")))
