@@ -1,8 +1,8 @@
 """The errors of atmosbox, each with a message of one plain sentence.
 
-The message says what is wrong, with the value that was given, and what to type instead; ``str(error)`` is the message,
-and the command line prints it without a traceback. Every class is also a subclass of the built-in exception that a
-Python programmer would catch, and has the exit status of the command line::
+The message says what is wrong, with the value that was given, and what to type instead; ``str(error)`` is that
+sentence, and the command line prints it alone, without a traceback. Every class is also the builtin exception that a
+Python programmer would catch, and has the status with which the command line ends::
 
     AtmosboxError                        1
     |-- SettingError (ValueError)        2   a setting has a value that it may not have
@@ -10,11 +10,11 @@ Python programmer would catch, and has the exit status of the command line::
     |   |-- UnitError                    2   a number or its unit cannot be understood or does not fit the setting
     |   `-- PackingError                 2   the molecules do not fit into their box
     |-- UnknownSceneError (LookupError)  2   there is no scene of that name
-    |-- ConfigError (ValueError)         2   a settings file contains something that it must not
-    |-- SoundingError (ValueError)       2   a sounding cannot be understood, or is impossible
-    |-- FileError (OSError)              2   a file cannot be read or written, exists already, or is of another program
+    |-- ConfigError (ValueError)         2   a settings file holds something that is not allowed there
+    |-- SoundingError (ValueError)       2   a sounding cannot be understood, or cannot be true
+    |-- FileError (OSError)              2   a file is unreadable, foreign, in the way or unwritable
     |   `-- DiskFullError                1   the disk filled up while a run was saved
-    |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer physically possible
+    |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer valid
     `-- PhysicsError (ArithmeticError)   3   a physics check failed: the run disagrees with the textbook
 """
 
@@ -41,20 +41,20 @@ __all__ = [
 
 
 def shown(value: object, longest: int = 60) -> str:
-    r"""Return a value as a message can repeat it: short, printable and on one line.
+    r"""Return a value in the form in which a sentence can repeat it: short, printable and on one line.
 
     Parameters
     ----------
     value
         The value that the user gave, of any type and size.
     longest
-        Largest number of characters to repeat; larger for the path of a file, which is useful only when complete.
+        Number of characters that are repeated; more for the path of a file, which is useful only as a whole.
 
     Returns
     -------
     str
-        The value as text; characters that a terminal cannot print are escaped, and text that is empty, is cut, or
-        begins or ends with white space is put in quotes.
+        The value as text; characters that a terminal cannot print are escaped, and text that is empty, cut off, or
+        begins or ends with a blank is put in quotes.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def shown(value: object, longest: int = 60) -> str:
         return f"about {'-' if value < 0 else ''}1e{power}"
     try:
         text = value if isinstance(value, str) else str(value) if isinstance(value, int | float) else repr(value)
-    except Exception:  # str() of an object of another program may fail
+    except Exception:  # an unknown object may fail to describe itself
         text = f"a {type(value).__name__}"
     cut = text[:longest]
     safe = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in cut)
@@ -77,12 +77,12 @@ def shown(value: object, longest: int = 60) -> str:
 
 
 class AtmosboxError(Exception):
-    """An error of atmosbox, with a message of one sentence.
+    """Something that atmosbox could not do; the message is one sentence.
 
     Parameters
     ----------
     sentence
-        The message: what is wrong and what to do about it.
+        What is wrong and what the user can do.
 
     Attributes
     ----------
@@ -100,12 +100,12 @@ class AtmosboxError(Exception):
     exit_code: ClassVar[int] = 1
 
     def reword(self, words: Callable[[str], str]) -> None:
-        """Change the words of the message, for a caller who does not type commands; given values stay as they are.
+        """Change the wording for a caller who does not type commands; the given values stay as they are.
 
         Parameters
         ----------
         words
-            Function that takes a sentence, or a part of it, and returns it in other words.
+            Function that returns a sentence, or a part of it, in the new wording.
         """
         self.args = tuple(words(part) if isinstance(part, str) else part for part in self.args)
 
@@ -120,7 +120,7 @@ class SettingError(AtmosboxError, ValueError):
     value
         The value as the user gave it; None if there is none to show.
     problem
-        What is wrong with the value, worded to follow it in the sentence, with the allowed range.
+        What is wrong with it, with the range that is allowed; the sentence puts it after the value.
     fix
         What to type instead.
 
@@ -146,7 +146,7 @@ class SettingError(AtmosboxError, ValueError):
         self.fix = fix
 
     def reword(self, words: Callable[[str], str]) -> None:
-        """Change the words of the message; the value stays as the user gave it."""
+        """Change the wording; the value stays as the user gave it."""
         self.setting, self.problem, self.fix = words(self.setting), words(self.problem), words(self.fix)
         self.args = (self.setting, self.value, self.problem, self.fix)
 
@@ -157,7 +157,7 @@ class SettingError(AtmosboxError, ValueError):
 
 
 class UnknownSettingError(SettingError):
-    """A scene has no setting of that name; the message offers the nearest one."""
+    """A scene has no setting of that name; the sentence suggests the nearest one."""
 
 
 class UnitError(SettingError):
@@ -165,7 +165,7 @@ class UnitError(SettingError):
 
 
 class PackingError(SettingError):
-    """The molecules do not fit into their box."""
+    """The molecules are too many or too large for their box."""
 
 
 class UnknownSceneError(AtmosboxError, LookupError):
@@ -181,13 +181,13 @@ class ConfigError(AtmosboxError, ValueError):
 
 
 class SoundingError(AtmosboxError, ValueError):
-    """A sounding is in no known format, lacks required values, or has values that are impossible in an atmosphere."""
+    """A sounding is in no known format, lacks required values, or has values that no atmosphere can have."""
 
     exit_code = 2
 
 
 class FileError(AtmosboxError, OSError):
-    """A file cannot be read, was not written by atmosbox, exists already, or cannot be written."""
+    """A file is unreadable, not written by atmosbox, in the way of a new one, or cannot be written."""
 
     exit_code = 2
 
