@@ -1,4 +1,4 @@
-"""The command ``list``: list the scenes."""
+"""The command ``list``: which scenes there are."""
 
 from __future__ import annotations
 

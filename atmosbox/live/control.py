@@ -1,4 +1,4 @@
-"""The controls on the page: knobs that change the running box, and settings that restart it."""
+"""What the page offers to be changed: the knobs of a box that runs, and the settings with which it begins anew."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from atmosbox.scene.parameter import Parameter, Value
 __all__ = ["COLLISIONS", "Control", "controls", "in_words", "number_between"]
 
 COLLISIONS = "collisions"
-"""Name of the switch for collisions, which every engine has."""
+"""The switch that every engine has."""
 
 _MOST_MOLECULES = 50_000
 _STEPS = 200
@@ -24,16 +24,16 @@ _WIDE = 1000.0
 
 @dataclass(frozen=True)
 class Control:
-    """A knob, setting or switch that the page can change.
+    """One thing that can be changed.
 
     Parameters
     ----------
     parameter
-        Its name, unit, range and description.
+        Its name, unit, range and words.
     value
-        Its present value.
+        What it is now.
     restarts
-        Whether a change restarts the box.
+        Whether the box begins anew with it.
     """
 
     parameter: Parameter
@@ -42,16 +42,16 @@ class Control:
 
     @property
     def name(self) -> str:
-        """Name of the control."""
+        """Its name."""
         return self.parameter.name
 
     def parse(self, value: object) -> Value:
-        """Return the requested value, in the unit of the control.
+        """Return what was asked for, in the unit of the control.
 
         Raises
         ------
         SettingError
-            If the value is not allowed; the message says which values are.
+            If the value is not allowed; the sentence says what is.
 
         Examples
         --------
@@ -64,7 +64,7 @@ class Control:
         return self.parameter.parse(value)
 
     def record(self) -> dict[str, Any]:
-        """Return the control as data for the page.
+        """Return it as data for the page.
 
         Examples
         --------
@@ -94,7 +94,7 @@ class Control:
 
 
 def _step(parameter: Parameter) -> float:
-    """Return a round step for a slider: some hundreds of steps make the range, and one of them meets the default."""
+    """Return a round step, some hundreds of which make the range, and which meets the default."""
     if parameter.kind == "int":
         return 1
     if parameter.low is None or parameter.high is None or parameter.high <= parameter.low:
@@ -114,23 +114,23 @@ def controls(
     *,
     collisions: bool | None,
 ) -> tuple[Control, ...]:
-    """Return all controls: first those that act at once.
+    """Return all that can be changed: first what acts at once.
 
     Parameters
     ----------
     knobs
-        The knobs of the box.
+        Those of the box.
     parameters
-        The settings of the scene; the seed, free texts and settings that have a knob are left out.
+        The settings of the scene; the seed and free texts are left out, and what a knob stands for.
     values
-        The present values of settings and knobs.
+        The settings as they are, and where the knobs stand.
     collisions
-        Whether molecules collide; None if that cannot be switched.
+        Whether molecules meet; None where they must.
 
     Returns
     -------
     tuple of Control
-        The controls in the order in which the page shows them.
+        In the order in which the page shows them.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def number_between(value: object, name: str, low: float, high: float) -> float:
     Raises
     ------
     SettingError
-        If the value is not a number, or is below `low` or above `high`.
+        If it is none, or lies outside.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def number_between(value: object, name: str, low: float, high: float) -> float:
 
 
 def in_words(value: object) -> str:
-    """Return a value that a page has sent as text for a message.
+    """Return what a page has sent, for a sentence.
 
     Examples
     --------

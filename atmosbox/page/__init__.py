@@ -1,13 +1,13 @@
-"""The page that shows a box: its molecules in three dimensions, and its graphs on the same clock.
+"""The HTML page that shows a box: its molecules in three dimensions, and its graphs at the same time of the run.
 
-A run becomes one HTML file that opens from disk without a network (`save`); a box that is running is shown by the
-same page, fed through a socket (`live_page`), or, if it runs in the page itself, by a worker (`lab_page`). All use the
-same data: a *stage* that says once what there is to see, and *frames* that say where everything is.
+A saved run becomes one HTML file that opens from disk without a network (`save`). The same page shows a box while it
+runs: the frames come through a socket (`live_page`) or, if the box runs in the page itself, from a worker (`lab_page`).
+All use the same data: a *stage* that describes the run once, and *frames* with the positions at each moment.
 
-Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (its graphs), `page_liquid` and
-`frame` (one moment as bytes), `thinning` (what a large run leaves out), `saved_run` (from a dataset to all of
+Read in this order: `page_box` and `page_stage` (what is shown), `page_panel` (the graphs), `page_liquid` and
+`frame` (one moment as bytes), `thinning` (what is left out of a large run), `saved_run` (from a dataset to all of
 these), `word` (the sentences), `document` (the HTML) and `page_file`. The folder ``web`` holds the page's own
-scripts, ``vendor`` the two libraries that it draws with.
+scripts, ``vendor`` the two libraries that draw the page.
 """
 
 from atmosbox.page.document import lab_page, live_page, view_page

@@ -1,4 +1,4 @@
-"""The page as one HTML document: the libraries, our scripts, and the data of the runs, all in it."""
+"""The page as one HTML document that contains the libraries, our scripts, and the data of the runs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["LANGUAGES", "MODULES", "THEMES", "lab_page", "live_page", "view_page
 THEMES = ("auto", "light", "dark")
 
 LANGUAGES = ("auto", "en", "de", "es")
-"""The languages of a page; ``auto`` takes the first of the reader's browser that there is."""
+"""The languages of a page; ``auto`` takes the first language of the reader's browser that the page has."""
 
 MODULES = (
     "words.js",
@@ -42,7 +42,7 @@ MODULES = (
     "keys.js",
     "sheet.js",
 )
-"""Our scripts, each after those that it imports."""
+"""Our scripts, each after the scripts that it imports."""
 
 _LIVE = ("link.js", "controls.js", "notes.js", "pulse.js", "gauges.js", "lesson.js", "live.js")
 _ENTRIES = {"view": ("view.js",), "live": _LIVE, "lab": (*_LIVE, "lab.js")}
@@ -52,18 +52,19 @@ _THREE = ("three.core.min.js", "three.module.min.js", "OrbitControls.js")
 def view_page(
     runs: Sequence[Mapping[str, Any]], frames: Sequence[str], *, theme: str = "auto", language: str = "auto"
 ) -> str:
-    """Return the page that shows runs, complete.
+    """Return the complete page that shows saved runs.
 
     Parameters
     ----------
     runs : sequence of mapping
-        Of each run its ``stage``, its ``values`` by name, and what `atmosbox.page.saved_run.describe` says besides.
+        The record of each run: its ``stage``, its ``values`` by name, and the other entries of
+        `atmosbox.page.saved_run.Page`.
     frames : sequence of str
-        Of each run its frames, as `atmosbox.page.frame.pack` packs them.
+        The frames of each run, as `atmosbox.page.frame.pack` returns them.
     theme : {"auto", "light", "dark"}
-        Its colours; ``auto`` takes those that the reader's system prefers.
+        Colours of the page; ``auto`` takes those that the reader's system prefers.
     language : {"auto", "en", "de", "es"}
-        Its words; ``auto`` takes the first language of the reader's browser that there is.
+        Language of the page; ``auto`` takes the first language of the reader's browser that the page has.
 
     Returns
     -------
@@ -83,14 +84,14 @@ def view_page(
 
 
 def live_page(*, theme: str = "auto", language: str = "auto") -> str:
-    """Return the page that shows a box while it runs, complete; it fetches its data from ``/socket``.
+    """Return the complete page that shows a box while it runs; it gets its data through the WebSocket ``/socket``.
 
     Parameters
     ----------
     theme : {"auto", "light", "dark"}
-        Its colours.
+        Colours of the page.
     language : {"auto", "en", "de", "es"}
-        Its words.
+        Language of the page.
 
     Returns
     -------
@@ -108,20 +109,20 @@ def live_page(*, theme: str = "auto", language: str = "auto") -> str:
 def lab_page(
     title: str, starts: Sequence[Any], module: str, stored: str, *, theme: str = "auto", language: str = "auto"
 ) -> str:
-    """Return the page in which a box runs, complete.
+    """Return the complete page in which a box runs.
 
     Parameters
     ----------
     title : str
-        Of the scene.
+        Title of the scene.
     starts : sequence
-        Of each start that the page offers what it is called, and how many bytes its plan and its memory have.
+        For each start that the page offers its label, and the number of bytes of its plan and of its memory.
     module, stored : str
-        The engine, and plans and memories of all starts: see `atmosbox.lab`; each compressed and in base64.
+        The engine, and the plans and memories of all starts (see `atmosbox.lab`), both compressed and in base64.
     theme : {"auto", "light", "dark"}
-        Its colours.
+        Colours of the page.
     language : {"auto", "en", "de", "es"}
-        Its words.
+        Language of the page.
 
     Returns
     -------
@@ -145,7 +146,7 @@ def lab_page(
 
 @functools.cache
 def words(language: str) -> dict[str, Any]:
-    """Return the words of a page in a language: see ``language/en.toml``.
+    """Return the texts of the page in a language: see ``language/en.toml``.
 
     Examples
     --------
@@ -156,7 +157,7 @@ def words(language: str) -> dict[str, Any]:
 
 
 def _document(entry: str, title: str, theme: str, language: str, data: Iterable[str]) -> str:
-    """Return the HTML around some data."""
+    """Return the HTML document that contains some data."""
     scripts = [_module(name, _text("vendor", "three", name)) for name in _THREE]
     scripts += [_module(name, _text("web", name)) for name in (*MODULES, *_ENTRIES[entry])]
     first = "en" if language == "auto" else language
@@ -190,7 +191,7 @@ def _text(*place: str) -> str:
 
 
 def _module(name: str, text: str) -> str:
-    """Return a script that the page's first script turns into a module."""
+    """Return the element of a script that ``boot.js`` turns into a module."""
     return f'<script type="text/plain" data-module="{name}">{_inline(text)}</script>'
 
 
@@ -199,11 +200,11 @@ def _block(name: str, kind: str, text: str) -> str:
 
 
 def _inline(text: str) -> str:
-    """Return a script that cannot end the element that it stands in."""
+    """Return a script in which no text can end the HTML element around it."""
     return text.replace("</script", "<\\/script")
 
 
 def _json(content: Any) -> str:
-    """Return JSON that may stand in HTML."""
+    """Return JSON that is safe inside an HTML element."""
     text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

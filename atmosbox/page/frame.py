@@ -1,4 +1,4 @@
-"""One moment as bytes: where the molecules are, how fast, and where the liquid is."""
+"""One frame as bytes: positions and speeds of the molecules, and the drops."""
 
 from __future__ import annotations
 
@@ -21,27 +21,28 @@ Floats = NDArray[np.floating]
 def encode(
     sequence: int, time: float, length: Floats, position: Floats, speed: Floats, highest: float, drops: Floats
 ) -> bytes:
-    r"""Return a frame as the page reads it.
+    r"""Return a frame as the bytes that the page reads.
 
     Little endian: the number of the frame (uint32), the time (float64), the three sides of the box (float32), the
-    number n of molecules (uint32), the highest speed (float32), their positions over the sides (3 n uint16), their
-    speeds over the highest (n uint8), their states (n uint8: 0 in the gas, 1 not in it), the number m of drops
-    (uint32), and of each its position and its radius (4 m float32).
+    number n of molecules (uint32), the highest speed (float32), the positions divided by the sides (3 n uint16), the
+    speeds divided by the highest (n uint8), the states of the molecules (n uint8: 0 in the gas, 1 not in the gas), the
+    number m of drops (uint32), and the position and the radius of each drop (4 m float32). Quotients from 0 to 1 are
+    scaled to the full range of their integer type.
 
     Parameters
     ----------
     sequence : int
         The number of the frame.
     time : float
-        In the unit of the stage.
+        The time, in the unit of the stage.
     length : (axis,)
-        Sides of the box now.
+        Sides of the box in this frame.
     position : (molecule, axis)
-        Where the molecules are, in the unit of `length`; NaN for one that is in the liquid.
+        Positions of the molecules, in the unit of `length`; NaN for a molecule in the liquid.
     speed : (molecule,)
-        Their speeds.
+        Speeds of the molecules; NaN for a molecule in the liquid.
     highest : float
-        The speed at the top of the scale, in the same unit; faster ones are shown like it.
+        The speed at the top of the scale, in the unit of `speed`; faster molecules have the same colour.
     drops : (drop, 4)
         Position and radius of each drop, in the unit of `length`.
 
@@ -74,7 +75,7 @@ def encode(
 
 
 def pack(frames: Iterable[bytes]) -> str:
-    """Return frames as text that stands in a page: deflated (zlib), and in base64.
+    """Return frames as text for an HTML page: compressed (zlib), and in base64.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ def pack(frames: Iterable[bytes]) -> str:
     Returns
     -------
     str
-        The text; the same frames always give the same.
+        The text; the same frames always give the same text.
 
     Examples
     --------

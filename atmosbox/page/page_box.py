@@ -1,4 +1,4 @@
-"""The box on the stage: its sides, what its walls do, and the unit in which it is measured."""
+"""The box on the page: its sides, the laws of its walls, and the unit of length that is shown."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ class Box:
     length : (axis,)
         Its three sides [m].
     walls : (wall,)
-        What each wall is: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
+        The law of each wall: ``specular``, ``periodic``, ``heat_bath``, ``piston`` or ``pool``, in the order x low,
         x high, y low, y high, z low, z high.
     wall_temperature : (wall,)
-        Their temperatures [K], None for a wall that has none.
+        Temperature of each wall [K]; None for a wall without one.
     planar : bool
-        Whether nothing moves along y.
+        Whether the molecules do not move along y.
     gravity : bool
-        Whether molecules fall.
+        Whether there is gravity.
     reach : float, optional
-        How high the ceiling will come [m], where that is known.
+        Greatest height of the ceiling during the run [m], if it is known.
 
     Examples
     --------
@@ -48,16 +48,16 @@ class Box:
 
     @property
     def unit(self) -> str:
-        """The unit in which its sides are read."""
+        """The unit in which its sides are shown."""
         return length_unit(max(self.length))
 
     @property
     def metre(self) -> float:
-        """One metre in that unit."""
+        """One metre in the unit that is shown."""
         return 1.0 / _UNITS[self.unit]
 
     def as_record(self) -> dict[str, object]:
-        """Return the box as data for the page, in its own unit."""
+        """Return the box as data for the page, its lengths in the unit that is shown."""
         length = [side * self.metre for side in self.length]
         warm = [t if t is not None and math.isfinite(t) else None for t in self.wall_temperature]
         return {
@@ -95,7 +95,7 @@ def page_box(seen: Molecules) -> Box:
 
 
 def length_unit(length: float) -> str:
-    """Return the unit in which a length is read.
+    """Return the unit in which a length is shown.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def length_unit(length: float) -> str:
     Returns
     -------
     str
-        The largest of nm, µm, mm, m and km of which it holds at least one; nm for what is smaller.
+        The largest of nm, µm, mm, m and km that is not longer than the length; nm for shorter lengths.
 
     Examples
     --------
@@ -117,14 +117,14 @@ def length_unit(length: float) -> str:
 
 
 def length_text(length: float, figures: int = 2) -> str:
-    """Return a length as it is read.
+    """Return a length as text.
 
     Parameters
     ----------
     length : float
         The length [m].
     figures : int
-        How many figures are written.
+        Number of significant digits.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The page of a run as a file, which is there whole or not at all."""
+"""The page of a run as a file, which appears only when it is complete."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def save(
     theme : {"auto", "light", "dark"}
         The colours of the page.
     language : {"auto", "en", "de", "es"}
-        Its words; ``auto`` takes the first language of the reader's browser that there is.
+        Language of the page; ``auto`` takes the first language of the reader's browser that the page has.
     force : bool
         Whether a file of that name may be replaced.
 
@@ -55,7 +55,7 @@ def save(
 
     Notes
     -----
-    Neither the date nor chance enters the page: the same runs give the same bytes.
+    The page contains neither a date nor a random number: the same runs give the same bytes.
 
     Examples
     --------
@@ -91,12 +91,12 @@ def page_text(runs: Sequence[xr.Dataset], *, theme: str = "auto", language: str 
 
 
 def check_choice(name: str, value: str, known: Sequence[str]) -> None:
-    """Refuse a theme or a language that there is not.
+    """Refuse a theme or a language that does not exist.
 
     Raises
     ------
     SettingError
-        If the value is none of those that are known.
+        If the value is not one of the known ones.
     """
     if value not in known:
         raise SettingError(name, value, "is unknown", f"give {', '.join(known[:-1])} or {known[-1]}")

@@ -1,7 +1,8 @@
-"""Liquid that has no place in the model, given one to be seen: a mist as clumps, a pool and rain as layers.
+"""The picture of liquid that has no position in the model: a mist is drawn as clumps, a pool and rain as layers.
 
-The mist of a scene is an area that vapour meets and a number of molecules in it, and a pool is a floor and a number:
-the engine follows no molecule of them. The page draws as much of them as there is, and says that it chose the places.
+In the model, a mist is an area that vapour molecules hit and a number of molecules in the mist; a pool is the floor and
+a number of molecules. The engine does not follow these molecules. The page draws the right amount of liquid, at places
+of its own choice, and tells the reader so.
 """
 
 from __future__ import annotations
@@ -11,35 +12,35 @@ from numpy.typing import NDArray
 
 __all__ = ["POOL", "RAIN", "SWELLING", "clumps", "layer", "places"]
 
-_A_CLUMP = 12.0  # molecules, once all water has condensed
-_MOST = 40
-_MARGIN = 0.08  # of the box, which clumps leave free
+_A_CLUMP = 12.0  # molecules in a clump when all water has condensed
+_MOST = 40  # clumps
+_MARGIN = 0.08  # share of the box at each side without clumps
 SWELLING = 0.55
-"""Radius of a clump of one molecule, over the diameter with which that is drawn."""
+"""Radius of a clump of one molecule, divided by the diameter with which a molecule of water is drawn."""
 POOL, RAIN = -1.0, -2.0
-"""What a layer is: it stands in place of a radius."""
+"""The kind of a layer, in place of a radius."""
 
 Floats = NDArray[np.float64]
 
 
 def clumps(number: int, water: int, length: Floats, diameter: float) -> Floats:
-    """Return the clumps that a mist is drawn as, all alike and at places that never change.
+    """Return the clumps of a mist, all of one size, at places that are fixed shares of the box.
 
     Parameters
     ----------
     number : int
-        How many molecules are in the mist now.
+        Number of molecules in the mist in this frame.
     water : int
-        How many molecules of water there are in all.
+        Number of molecules of water in the run.
     length : (axis,)
-        Sides of the box now.
+        Sides of the box in this frame.
     diameter : float
-        With which a molecule of water is drawn, in the same unit.
+        Diameter with which a molecule of water is drawn, in the unit of `length`.
 
     Returns
     -------
     ndarray of float, (clump, 4)
-        Places and radii; the volume of all grows in proportion to the number.
+        Positions and radii; the volume of all clumps together is proportional to the number of molecules.
 
     Examples
     --------
@@ -56,9 +57,9 @@ def clumps(number: int, water: int, length: Floats, diameter: float) -> Floats:
 
 
 def places(water: int) -> Floats:
-    """Return where clumps of so many molecules of water are drawn, as shares of the box.
+    """Return the places of the clumps for a number of molecules of water, as shares of the box.
 
-    If fewer molecules have condensed than there are places, they take the first ones.
+    If fewer molecules have condensed than there are places, only the first places are used.
 
     Examples
     --------
@@ -70,16 +71,16 @@ def places(water: int) -> Floats:
 
 
 def layer(number: int, water: int, *, rain: bool = False) -> Floats:
-    """Return the layer of liquid on the floor, as a drop whose radius is negative and says what it is.
+    """Return the layer of liquid on the floor, as a drop whose negative radius tells its kind, `POOL` or `RAIN`.
 
     Parameters
     ----------
     number : int
-        How many molecules are in the layer.
+        Number of molecules in the layer.
     water : int
-        How many molecules of water there are in all.
+        Number of molecules of water in the run.
     rain : bool
-        Whether it is rain that has fallen, and not a pool.
+        Whether the layer is fallen rain and not a pool.
 
     Returns
     -------
@@ -97,7 +98,7 @@ def layer(number: int, water: int, *, rain: bool = False) -> Floats:
 
 
 def _spread(count: int, base: int) -> Floats:
-    """Return numbers from 0 to 1 that lie apart: the sequence of van der Corput."""
+    """Return evenly spread numbers from 0 to 1: the van der Corput sequence in a base."""
     found = np.zeros(count)
     index, part = np.arange(1, count + 1), 1.0
     while index.any():

@@ -1,4 +1,4 @@
-"""The graphs of a scene, as data for the page: which values, and how SI becomes the unit that is read."""
+"""The graphs of a scene as data for the page: their variables, and the conversion from SI to the units shown."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 __all__ = ["Meaning", "declared", "names", "panel_record"]
 
 _ALONG = (*ATMOSPHERE_VARIABLES, "liquid_molecule_count")
-"""What the picture of a parcel on its way is made of; a few molecules of liquid are no cloud."""
+"""Variables of the picture of an ascent; the count is needed because a few liquid molecules are not yet a cloud."""
 
 
 class Meaning(NamedTuple):
-    """What a variable is: its unit in the file, and its words."""
+    """The meaning of a variable: its unit in the file, and its description."""
 
     unit: str
     words: str
 
 
 def declared(name: str, time_unit: str = "ns") -> Meaning:
-    """Return what a variable means, by its declaration.
+    """Return the meaning of a variable from its declaration.
 
     Parameters
     ----------
     name : str
-        Its name; "heat_from_wall[z_low]" is the part of it at a label.
+        Name of the variable; "heat_from_wall[z_low]" is the part of ``heat_from_wall`` at a label.
     time_unit : str
         The unit of the elapsed time.
 
     Returns
     -------
     Meaning
-        Its unit and its words; of an undeclared name, "1" and the name itself.
+        Unit and description; for an undeclared name "1" and the name itself.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def names(panels: Iterable[Panel]) -> tuple[str, ...]:
     Parameters
     ----------
     panels : iterable of Panel
-        The panels of the scene. One of the kind ``discs`` needs none, for the stage itself shows the discs.
+        The panels of the scene. One of the kind ``discs`` needs no variables, because the stage shows the discs.
 
     Returns
     -------
@@ -92,21 +92,21 @@ def panel_record(
     panel : Panel
         The panel, of any kind but ``discs``.
     meaning : callable
-        Tells the unit and the words of a variable by its name.
+        Function that returns the `Meaning` of a variable by its name.
     sentences : sequence of str
-        The headline numbers that it carries.
+        The headline numbers of the panel, as sentences.
     marks : dict of str to float, optional
         Pressures that a skew-T marks [hPa].
 
     Returns
     -------
     dict
-        What JSON can hold. A value of a line is shown as ``value * factor + offset``.
+        The panel in types that JSON can hold. A value of a line is shown as ``value * factor + offset``.
 
     Raises
     ------
     FileError
-        If the unit of a variable cannot be turned into that of the panel.
+        If the unit of a variable cannot be converted to that of the panel.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def panel_record(
 
 
 def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Callable[[str], Meaning]) -> dict[str, Any]:
-    """Return a line of a panel, each of its variables with the way into the unit that is shown."""
+    """Return a line of a panel; each variable has the factor and the offset that give the unit shown."""
 
     def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
         from atmosbox.plot.unit import convert

@@ -1,4 +1,4 @@
-"""What there is to see, said once: the box, the molecules and how they are drawn, the graphs, the words."""
+"""The stage: what the page gets once of a run, namely the box, how molecules are drawn, the graphs and the texts."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ __all__ = ["NEIGHBOURS", "Stage", "round_up", "stage"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-_SEEN = 0.034  # diameter that can be seen, over the side of a cube as large as the box, if there are _CROWD of them
+_SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
 _CROWD = 800
-_BESIDE_DROPS = 0.4  # so wide, over what is usual, molecules are drawn where there are drops to be seen
+_BESIDE_DROPS = 0.4  # factor on that diameter in a scene with drops, so that the drops stand out
 _ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
 NEIGHBOURS = 12.0
-"""At which the scale of colours ends where it tells neighbours."""
+"""Upper end of the colour scale where colours show the number of neighbours."""
 _PARTICLES = {False: "molecule", True: "disc"}
 
 
 class Stage(NamedTuple):
-    """What the page gets once, and what it needs to read frames.
+    """The data that the page gets once, and what is needed to make frames for it.
 
     Attributes
     ----------
     record : dict
-        The stage as JSON can hold it.
+        The stage in types that JSON can hold.
     shown : (shown,)
-        Which molecules are drawn, of those of the run.
+        Indices of the molecules that are drawn.
     variables : tuple of str
         The variables that the graphs need.
     """
@@ -62,24 +62,24 @@ class Stage(NamedTuple):
         rained: int = 0,
         highest: float | None = None,
     ) -> bytes:
-        """Return one moment as the page reads it.
+        """Return one frame as the bytes that the page reads.
 
         Parameters
         ----------
         sequence : int
             The number of the frame.
         time : float
-            In the unit of the stage.
+            The time, in the unit of the stage.
         length : (axis,)
-            Sides of the box now [m].
+            Sides of the box in this frame [m].
         position, speed : (molecule, axis) and (molecule,)
-            Of all molecules of the run [m, m/s]; NaN for one that is in the liquid.
+            Positions and speeds of all molecules of the run [m, m/s]; NaN for a molecule in the liquid.
         drops : (drop, 4), optional
-            Positions and radii of drops that have a place [m]; rows of NaN are left out.
+            Positions and radii of drops that the engine follows [m]; rows of NaN are left out.
         liquid, rained : int
-            How many molecules are in a mist or a pool, and how many have left as rain.
+            Number of molecules in a mist or a pool, and number of molecules that have left as rain.
         highest : float, optional
-            The speed at the top of the scale of this moment [m/s]; that of the stage by default.
+            The speed at the top of the colour scale of this frame [m/s]; by default that of the stage.
 
         Returns
         -------
@@ -136,51 +136,52 @@ def stage(
     sentences: Sequence[Sequence[str]] = (),
     marks: Mapping[int, dict[str, float]] | None = None,
 ) -> Stage:
-    """Return the stage of a run: what the page gets once.
+    """Return the stage of a run: the data that the page gets once.
 
     Parameters
     ----------
     scene, title : str
-        The name of the scene, and what it is called.
+        Name and title of the scene.
     box : Box
         The box at the start.
     mass, diameter : (molecule,)
-        Of every molecule of the run [kg, m]; NaN where it is not known.
+        Mass and diameter of every molecule of the run [kg, m]; NaN where they are not known.
     fastest : float
-        Speed that the scale of colours must reach [m/s]; it ends at the next round number.
+        Speed that the colour scale must reach [m/s]; the scale ends at the next round number. With ``counted``, the
+        end of the scale itself, a number of neighbours.
     water : (molecule,), optional
-        Which molecules are water.
+        Whether each molecule is water.
     drops : bool
-        Whether drops fly among the molecules: they are drawn true to size, and molecules so small that they stand out.
+        Whether drops fly among the molecules. Drops are drawn to size, and molecules smaller, so that drops stand out.
     right : (molecule,), optional
-        Which molecules belong to the second of two gases, those that began on the right.
+        Whether each molecule belongs to the second of two gases, which was on the right at the start.
     story, facts, settings, version, seed, engine
-        What the caption says.
+        Contents of the caption.
     time_unit : str
         The unit of the times of frames.
     panels : sequence of Panel
         The graphs.
     most : int
-        How many molecules may be drawn.
+        Greatest number of molecules that are drawn.
     discs : bool
-        Whether the molecules are called discs and have sizes of their own.
+        Whether the molecules are called discs and are drawn each with its own size.
     counted : bool
-        Whether the colours tell how many neighbours a molecule has, and not its speed.
+        Whether the colours show the number of neighbours of a molecule, and not its speed.
     meaning : callable, optional
-        Tells unit and words of a variable; by default its declaration does.
+        Function that returns the `Meaning` of a variable; by default that of its declaration.
     sentences : sequence of sequence of str
-        The headlines of each panel.
+        The headline numbers of each panel, as sentences.
     marks : mapping of int to dict, optional
-        Pressures that panels mark, by the number of the panel.
+        Pressures of the levels that panels mark [hPa], by the number of the panel.
 
     Returns
     -------
     Stage
-        The record, which molecules it shows, and the variables it needs.
+        The record, the molecules that are drawn, and the variables of the graphs.
 
     Examples
     --------
-    Molecules that would be specks are drawn wider, and the stage says so:
+    Molecules that would be too small to see are drawn wider, and the record says so:
 
     >>> box = Box(length=(8.4e3, 8.4e3, 2.5e4), gravity=True)
     >>> column = stage(
@@ -200,7 +201,7 @@ def stage(
     wider, said = _width(wide, room, len(shown), discs=discs, unit=box.unit)
     drawn = wide * wider
     if not discs and np.ptp(wide[np.isfinite(wide)]) == 0.0:
-        drawn = drawn * np.cbrt(heavy / np.nanmax(heavy))  # alike in diameter, told apart by their masses
+        drawn = drawn * np.cbrt(heavy / np.nanmax(heavy))  # equal diameters: the drawn size shows the mass
     species = [
         {
             "name": name,
@@ -251,7 +252,7 @@ def stage(
 def _kinds(
     mass: Floats, water: NDArray[np.bool_] | None, right: NDArray[np.bool_] | None, *, discs: bool
 ) -> tuple[tuple[str, ...], Indices]:
-    """Return the names of the kinds of molecules, and of which kind each is."""
+    """Return the names of the kinds of molecules, and the index of the kind of each molecule."""
     if water is not None and water.any():
         return ("dry air", "water"), water.astype(np.intp)
     if right is not None:
@@ -267,7 +268,7 @@ def _kinds(
 
 
 def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str) -> tuple[float, str]:
-    """Return by which factor molecules are drawn wider than they collide, and the sentence that says so."""
+    """Return the ratio of the drawn to the collision diameter of molecules, and the sentence that tells it."""
     known = diameter[np.isfinite(diameter)]
     size = float(known.mean()) if known.size else 0.0
     particle = _PARTICLES[discs].capitalize()
@@ -291,7 +292,7 @@ def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str)
 
 
 def round_up(value: float) -> float:
-    """Return the next round number; 1 for what is no positive number.
+    """Return the next larger round number; 1 if the value is not a finite positive number.
 
     Examples
     --------
@@ -305,11 +306,11 @@ def round_up(value: float) -> float:
 
 
 def _mean(values: Floats) -> float:
-    """Return the mean of what is known."""
+    """Return the mean of the finite values; 0 if there are none."""
     known = values[np.isfinite(values)]
     return float(f"{known.mean():.6g}") if known.size else 0.0
 
 
 def _figures(values: Floats) -> list[float]:
-    """Return numbers in so many figures as a picture needs."""
+    """Return numbers with five significant digits, which are enough for a picture."""
     return [float(f"{value:.5g}") for value in values]

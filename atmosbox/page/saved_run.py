@@ -1,4 +1,4 @@
-"""From the dataset of a run to the data of its page: the stage, the frames, the values of the graphs, the words."""
+"""From the dataset of a run to the data of its page: the stage, the frames, the values of the graphs, the texts."""
 
 from __future__ import annotations
 
@@ -24,36 +24,37 @@ if TYPE_CHECKING:
 
 __all__ = ["Page", "pages"]
 
-_FASTEST = 99.9  # percentile of the speeds at which the scale of colours ends
+_FASTEST = 99.9  # percentile of the speeds that the colour scale must reach
 _FIGURES, _TIME_FIGURES = 6, 9
 
 Floats = NDArray[np.float64]
 
 
 class Page(NamedTuple):
-    """A run as data for its page: what is said once, and the frames."""
+    """A run as data for its page: the record with all that is given once, and the frames."""
 
     record: dict[str, Any]
     frames: list[bytes]
 
 
 def pages(runs: Sequence[xr.Dataset]) -> list[Page]:
-    """Return the data of the page of some runs.
+    """Return the data of the page of one or several runs.
 
     Parameters
     ----------
     runs : sequence of xarray.Dataset
-        The runs, with their molecules. Of several, each is headed by what differs.
+        The runs, with their molecules. If there are several, the heading of each names what differs.
 
     Returns
     -------
     list of Page
-        One for each.
+        The data of each run.
 
     Raises
     ------
     FileError
-        If a run holds no molecules, or no frame.
+        If a run holds no molecules or no frames, if the runs have different units of time, or if colours show
+        neighbours in one run and speeds in another.
 
     Examples
     --------
@@ -119,7 +120,7 @@ def _page(dataset: xr.Dataset, seen: Molecules, heading: str, fastest: float, ru
 
 
 def _frames(told: Stage, seen: Molecules, kept: NDArray[np.int_]) -> Iterator[bytes]:
-    """Yield the frames that are kept."""
+    """Yield the frames whose indices are in ``kept``, as bytes."""
     for sequence, index in enumerate(kept):
         yield told.frame(
             sequence,
@@ -134,7 +135,7 @@ def _frames(told: Stage, seen: Molecules, kept: NDArray[np.int_]) -> Iterator[by
 
 
 def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str, float]], list[list[str]]]:
-    """Return the panels that the file can fill, the pressures that they mark, and their sentences in numbers."""
+    """Return the panels for which the file has data, the levels that they mark, and their headline sentences."""
     from dataclasses import replace
 
     from atmosbox.plot.caption import headlines
@@ -157,13 +158,13 @@ def _graphs(dataset: xr.Dataset) -> tuple[tuple[Panel, ...], dict[int, dict[str,
 
 
 def _held(dataset: xr.Dataset, name: str) -> bool:
-    """Tell whether a run that may have been stopped early has a variable."""
+    """Tell whether a run, which may have been stopped early, has values of a variable."""
     name = name.partition("[")[0]
     return name in dataset.variables and dataset[name].size > 0
 
 
 def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str, Any]:
-    """Return the values of the graphs by name, and which of them go with time."""
+    """Return the values of the graphs by name, and the names of the variables that are functions of time."""
     from atmosbox.plot.curve import read
 
     walls = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
@@ -184,12 +185,12 @@ def _values(dataset: xr.Dataset, panels: Sequence[Panel], box: Box) -> dict[str,
 
 
 def _figure(value: float, figures: int) -> float | None:
-    """Return a number in so many figures, None for one that is not finite."""
+    """Return a number rounded to some significant digits; None if it is not finite."""
     return float(f"{value:.{figures}g}") if math.isfinite(value) else None
 
 
 def _meaning(dataset: xr.Dataset, name: str) -> Meaning:
-    """Return what a variable of the file means, or would mean."""
+    """Return the meaning of a variable from the file, or from its declaration if the file lacks it."""
     if name.partition("[")[0] not in dataset:
         return declared(name)
     attrs = dataset[name.partition("[")[0]].attrs
@@ -197,6 +198,6 @@ def _meaning(dataset: xr.Dataset, name: str) -> Meaning:
 
 
 def _fastest(speed: NDArray[np.floating]) -> float:
-    """Return a speed that hardly any molecule exceeds [m/s]."""
+    """Return a speed that only one molecule in a thousand exceeds [m/s]; 0 if no speed is known."""
     known = speed[np.isfinite(speed)]
     return float(np.percentile(known, _FASTEST)) if known.size else 0.0

@@ -1,4 +1,4 @@
-"""What a page leaves out of a large run, so that it can still be mailed and a school's computer can draw it."""
+"""What is left out of the page of a large run, so that it fits into a mail and a school's computer can draw it."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ from numpy.typing import NDArray
 __all__ = ["MOST", "Share", "chosen", "share"]
 
 MOST = 5000
-"""So many molecules are drawn at most: a computer that draws without a graphics card keeps up with them."""
+"""Greatest number of molecules that are drawn: a computer without a graphics card can draw as many fast enough."""
 
-_ROOM = 850_000  # molecules times frames, which make a page of 10 MB
-_ENOUGH = 240  # frames, before which molecules are left out
+_ROOM = 850_000  # molecules times frames of a page of 10 MB
+_ENOUGH = 240  # frames; a page with fewer would rather leave out molecules
 
 Indices = NDArray[np.intp]
 
 
 class Share(NamedTuple):
-    """How many molecules and frames of a run a page holds."""
+    """Numbers of molecules and frames of a run that a page holds."""
 
     molecules: int
     frames: int
 
 
 def share(molecules: int, frames: int, runs: int = 1) -> Share:
-    """Return how much of a run fits into a page.
+    """Return how many molecules and frames of a run fit into a page.
 
     Parameters
     ----------
     molecules, frames : int
-        How many the run has.
+        Numbers of molecules and frames of the run.
     runs : int
-        How many runs share the page.
+        Number of runs on the page.
 
     Returns
     -------
     Share
-        How many are kept. First molecules beyond `MOST` are left out, then frames, down to 240, then molecules
-        again.
+        The numbers that are kept. First, molecules beyond `MOST` are left out, then frames, down to 240, then more
+        molecules.
 
     Examples
     --------
@@ -52,21 +52,21 @@ def share(molecules: int, frames: int, runs: int = 1) -> Share:
 
 
 def chosen(count: int, most: int, water: NDArray[np.bool_] | None = None) -> Indices:
-    """Return which molecules are drawn, evenly spaced in the list of all.
+    """Return which molecules are drawn, evenly spaced in the list of all molecules.
 
     Parameters
     ----------
     count : int
-        How many there are.
+        Number of molecules.
     most : int
-        How many may be drawn.
+        Greatest number of molecules that are drawn.
     water : (molecule,), optional
-        Which are water; as long as these are no more than half of those drawn, all of them are drawn.
+        Whether each molecule is water. All molecules of water are drawn if they are at most half of ``most``.
 
     Returns
     -------
     ndarray of int
-        Their indices, rising.
+        Indices of the molecules that are drawn, in ascending order.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def chosen(count: int, most: int, water: NDArray[np.bool_] | None = None) -> Ind
 
 
 def _even(count: int, most: int) -> Indices:
-    """Return so many of the numbers below a count, evenly spaced."""
+    """Return at most ``most`` of the whole numbers below ``count``, evenly spaced."""
     if count <= most:
         return np.arange(count)
     return np.unique(np.rint(np.linspace(0, count - 1, most)).astype(np.intp))

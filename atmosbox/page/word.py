@@ -1,4 +1,4 @@
-"""What a page says in words: the story, the settings and how they differ, and what the picture leaves out."""
+"""The texts of a page: the story, the settings and their differences, and notes on what the picture leaves out."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 __all__ = ["changed", "footer_of", "notes", "settings_of", "story_of"]
 
-_FAR = 0.15  # of the box; where molecules fly farther between two frames, the page says so
-_NEAR = 0.03  # of the box; so far they fly in a film that shows how they collide
+_FAR = 0.15  # share of the box; if molecules fly farther between two frames, the page says so
+_NEAR = 0.03  # share of the box that molecules fly between two frames of a run that shows their collisions
 
 
 def story_of(dataset: xr.Dataset) -> str:
-    """Return what a scene is about: its model card up to what is modelled.
+    """Return what a scene is about: its model card up to the word "Modelled".
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def story_of(dataset: xr.Dataset) -> str:
 
 
 def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
-    """Return the settings of a run as a reader knows them.
+    """Return the settings of a run as text.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
     Returns
     -------
     list of tuple of str
-        Names and values, with the units of the scene where atmosbox has it.
+        Names and values; the values have units if the scene comes with atmosbox.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def settings_of(dataset: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def changed(runs: Sequence[xr.Dataset]) -> list[str]:
-    """Return for each run what sets it apart from the others, and nothing else.
+    """Return a heading for each run that names only what differs between the runs.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def changed(runs: Sequence[xr.Dataset]) -> list[str]:
     Returns
     -------
     list of str
-        Headings; runs that are alike in all are numbered.
+        The headings. Runs of different scenes have the titles of their scenes; runs that do not differ are numbered.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def footer_of(dataset: xr.Dataset) -> str:
 
 
 def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str]:
-    """Return what the picture leaves out or adds, in sentences.
+    """Return sentences on what the picture leaves out or adds.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str
     stage : mapping
         The record of its stage.
     frames : int
-        How many of its frames the page holds.
+        Number of frames that the page holds.
 
     Returns
     -------
@@ -182,7 +182,10 @@ def notes(seen: Molecules, stage: Mapping[str, Any], *, frames: int) -> list[str
 
 
 def _flight(seen: Molecules) -> tuple[float, float]:
-    """Return how far a molecule comes from frame to frame [m], in the middle of the run, and in sides of the box."""
+    """Return the median distance of a molecule between two frames in the middle of a run [m], and its share of the box.
+
+    That share is relative to the geometric mean of the sides.
+    """
     if len(seen.time) < 2 or not seen.position.shape[1]:
         return 0.0, 0.0
     middle = len(seen.time) // 2
@@ -194,7 +197,7 @@ def _flight(seen: Molecules) -> tuple[float, float]:
 
 
 def _shorter(seen: Molecules, stage: Mapping[str, Any], of_side: float) -> str:
-    """Return which run shows the collisions: one so short that molecules fly little from frame to frame."""
+    """Return a sentence that names a run so short that its frames show the collisions."""
     unit = stage["time"]["unit"]
     number, _, own = dict(stage["settings"]).get("duration", "").partition(" ")
     if own != unit or not number:
@@ -204,7 +207,7 @@ def _shorter(seen: Molecules, stage: Mapping[str, Any], of_side: float) -> str:
 
 
 def _units(scene: str) -> dict[str, str]:
-    """Return the units of the settings of a scene that comes with atmosbox; of another one's nothing is known."""
+    """Return the units of the settings of a scene that comes with atmosbox; none for a user's own scene."""
     from atmosbox import scenarios
 
     if scene not in scenarios.names():
@@ -217,7 +220,7 @@ def _heading(told: Mapping[str, str], names: Sequence[str]) -> str:
 
 
 def _phrase(value: object, unit: str) -> str:
-    """Return a value with its unit, as it is read."""
+    """Return a value with its unit as text."""
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, int | float) and math.isfinite(value):

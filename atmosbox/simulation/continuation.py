@@ -1,4 +1,4 @@
-"""One run among many that continues from where an earlier process, which was killed, has left it."""
+"""One run among many that goes on where an earlier call of the same, which was killed, has left it."""
 
 from __future__ import annotations
 
@@ -18,25 +18,24 @@ if TYPE_CHECKING:
 __all__ = ["execute_from"]
 
 _PATIENCE = 10.0
-"""Longest time to wait until the process that had the run before ends [s]: it ends when the engine allows it."""
+"""For how long the process that was at the run before may take to end [s]: it does, once the engine lets it."""
 
 
 def execute_from(
     prepared: Prepared, path: str | os.PathLike[str] | None, progress: Callable[[float, str], None] | None = None
 ) -> Outcome:
-    """Run a prepared scenario, from its stored state if there is one, and store its state on the way.
+    """Run a prepared scenario, from where its state stands if there is one; its state is kept as it goes on.
 
-    A state that is damaged, or of another version or other settings, is ignored: the run begins anew. If no file can be
-    written, or another process has the same run, the run begins anew, too, and stores no state.
+    A state that is damaged, or of another version or other settings, counts for nothing: the run begins anew. So it
+    does without keeping any where no file can be written, or where another process is at the same run.
 
     Parameters
     ----------
     prepared
         From `atmosbox.simulation.preparation.prepare`.
     path
-        Path that its file would have, see `atmosbox.file.run_states.StateCheckpoint`; None stores no state.
+        What its file would be if it had one, see `atmosbox.file.run_states.StateCheckpoint`; None keeps no state.
     progress
-        Called with the completed share and a word on the present activity.
         Called with the share that is done and a word on what is being done.
 
     Raises
@@ -44,7 +43,7 @@ def execute_from(
     Interrupted
         After Ctrl-C.
     EngineError
-        If the engine cannot continue.
+        If the engine cannot go on.
     """
     from atmosbox.file.run_states import StateCheckpoint
 
@@ -64,12 +63,12 @@ def execute_from(
 
 
 def _take(checkpoint: StateCheckpoint) -> None:
-    """Take a state for this process alone; wait for a process that is about to end.
+    """Take a state for this process alone, as soon as a process that is about to end lets it go.
 
     Raises
     ------
     FileError
-        If the other process does not end in time.
+        If the other process goes on.
     """
     until = time.monotonic() + _PATIENCE
     while True:

@@ -1,21 +1,21 @@
-// The atmosphere around a lifted parcel: ground or mountains, the parcel where it is now, its cloud, its rain, its gauges.
+// The atmosphere around a lifted parcel: ground or mountains, the parcel at its present place, cloud, rain and gauges.
 
 import { curveColour, look, theme } from "./colour.js";
 import { word } from "./words.js";
 
-const CLOUD = 2e-4; // liquid per dry air [kg/kg] of a thin cumulus, from which on a cloud is drawn
-const CLUSTER = 4; // so few molecules of liquid, or fewer, are no cloud: in air of 80 % of humidity there are as many by chance
-const GAP = 0.07; // how high above the mountains the parcel is drawn, in heights of the picture
-const PUFFS = 9; // how many puffs a cloud is wide
+const CLOUD = 2e-4; // liquid per dry air above which a cloud is drawn [kg/kg], as in a thin cumulus
+const CLUSTER = 4; // this many molecules of liquid, or fewer, are no cloud: air of 80 % humidity has as many by chance
+const GAP = 0.07; // height of the parcel above the mountains in the picture, in heights of the picture
+const PUFFS = 9; // number of puffs across the width of a cloud
 const COLOURS = {
   light: { low: "#e4f0f8", high: "#9cc4e2", ground: "#8aa37b", rock: "#9a8f80", cloud: "#ffffff", rim: "#8c97a3", clear: "#cfe3f1" },
   dark: { low: "#3b5468", high: "#1d3247", ground: "#4d6342", rock: "#6b6256", cloud: "#dfe6ee", rim: "#8c97a3", clear: "#4d7390" },
 };
 
-// A hygrometer says nothing where so few molecules, or fewer, would saturate the air: their number scatters too much.
+// There is no hygrometer where this many molecules, or fewer, would saturate the air: their number scatters too much.
 const FEW = 50;
 
-// The way of a run as a curve of its graph: heights [km] over time, and what was measured on it.
+// The path of the parcel as a curve of its graph: heights [km] over time, and the variables measured along the path.
 export function wayOf(panel, numbers) {
   const time = numbers.get("elapsed_time"), height = numbers.get("parcel_height");
   if (!time?.length || !height?.length) return [];
@@ -25,7 +25,7 @@ export function wayOf(panel, numbers) {
   return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, rain, humidity, condensed, base: base[0] ?? Infinity } }];
 }
 
-// Draw the ways of all runs up to a time into a box of the canvas; `up` turns a height into a pixel.
+// Draw the paths of all runs up to a time into a box of the canvas; `up` converts a height to a pixel.
 export function drawAtmosphere(context, box, curves, time, up, unit) {
   const colours = COLOURS[theme()];
   const sky = context.createLinearGradient(0, box.top + box.height, 0, box.top);
@@ -43,7 +43,7 @@ export function drawAtmosphere(context, box, curves, time, up, unit) {
   });
 }
 
-// A way with its places in the picture: straight up, each run in a part of its own, or from end to end over mountains.
+// A path with its positions in the picture: vertical, each run in its own part, or from end to end over mountains.
 function placed({ x, y, way }, number, runs, time, box) {
   const highest = y.reduce((most, value, place) => (value > y[most] ? place : most), 0);
   const crosses = y[highest] - Math.min(...y.slice(highest)) > 0.1 * (Math.max(...y) - Math.min(...y));
@@ -51,7 +51,7 @@ function placed({ x, y, way }, number, runs, time, box) {
   const now = time === null ? x.length - 1 : Math.max(0, x.findLastIndex((each) => each <= time));
   const across = (place) => (crosses
     ? box.left + box.width * (0.05 + 0.9 * (x[place] - x[0]) / span) : box.left + wide * (number + 0.3));
-  // below the measured base there is no cloud, but single clusters of molecules
+  // liquid below the measured cloud base is not a cloud but single clusters of molecules
   const cloudy = (place) => (way.liquid[place] ?? 0) > CLOUD && !(way.condensed[place] <= CLUSTER) && !(way.pressure[place] > way.base);
   return { y, ...way, crosses, across, cloudy, now, wide };
 }
@@ -68,7 +68,7 @@ function drawGround(context, box, { y, crosses, across }, up, colours) {
   context.fill();
 }
 
-// First the rims of all puffs, then what fills them, so that a cloud has one outline.
+// Draw first the rims of all puffs, then their insides, so that a cloud has one outline.
 function drawCloud(context, box, { y, now, liquid, cloudy, crosses, across, wide }, up, unit, colours) {
   const places = Array.from({ length: now + 1 }, (_, place) => place).filter(cloudy);
   if (!places.length) return;
@@ -122,7 +122,7 @@ function drawRain(context, box, { y, now, rain, cloudy, crosses, across, wide },
   context.stroke();
 }
 
-// The parcel, as large as it has grown by its temperature and its pressure.
+// Draw the parcel; its size follows from its temperature and its pressure.
 function drawParcel(context, { y, now, temperature, pressure, cloudy, across }, up, unit, rim, colours) {
   const grown = Math.cbrt((temperature[now] / temperature[0]) * (pressure[0] / pressure[now])) || 1;
   context.fillStyle = rim;
@@ -131,7 +131,7 @@ function drawParcel(context, { y, now, temperature, pressure, cloudy, across }, 
   disc(context, across(now), up(y[now]), 8 * grown * unit);
 }
 
-// Thermometer, barometer and, where there is water, hygrometer, in figures that the last row can read.
+// Draw thermometer, barometer and, in a scene with water, hygrometer, with digits readable from the last row.
 function drawGauges(context, box, { now, temperature, pressure, humidity, crosses, wide }, number, runs, unit) {
   const rows = [
     [temperature[now], (kelvin) => `${(kelvin - 273.15).toFixed(0)} °C`, look().warm],

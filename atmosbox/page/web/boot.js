@@ -1,7 +1,7 @@
-// Turns the scripts that stand in this page as text into modules, in the order in which they stand.
+// Turns the scripts that this page contains as text into modules, in their order on the page.
 //
-// A page that was opened from disk may not import a module from another file. What it may import is a blob that it made
-// itself, so every script becomes one, and the names it imports are replaced by the addresses of the blobs before it.
+// A page that was opened from disk may not import a module from another file, but it may import a blob that it made
+// itself. So each script becomes a blob, and the names of its imports are replaced by the addresses of earlier blobs.
 (() => {
   "use strict";
   const address = { };

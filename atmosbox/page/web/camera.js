@@ -1,4 +1,4 @@
-// The camera: four places, and what a mouse or a finger makes of them.
+// The camera: four fixed places, and its control by mouse or finger.
 
 import * as THREE from "three";
 import { OrbitControls } from "./OrbitControls.js";
@@ -7,7 +7,8 @@ import { scaled } from "./figure.js";
 const DEGREES = Math.PI / 180;
 const MARGIN = [64, 58]; // pixels around the box, for the numbers at its edges
 
-// From which side, by azimuth and elevation, and how much closer than where all of the box is seen.
+// Direction of the camera by azimuth and elevation [degree]; `closer` divides the distance from which all of the box is
+// seen.
 export const PLACES = [
   { name: "corner", azimuth: -58, elevation: 17, closer: 1 },
   { name: "front", azimuth: -90, elevation: 0, closer: 1 },
@@ -28,15 +29,15 @@ export class Camera {
     this.place = box.planar ? 1 : 0;
   }
 
-  // How much space the box needs: as much as it ever will, with what stands on its ceiling. Two boxes side by side are seen
-  // from equally far, so that one can compare them.
+  // Size of the space that the picture must show: the largest box of the run, with the piston on its ceiling. Two boxes
+  // side by side get the same size, so that they are seen from the same distance and can be compared.
   room() {
     const [x, y] = this.box.length;
     const z = this.box.reach * (this.box.walls[5] === "piston" ? 1.18 : 1);
     return [x, y, z].map((side, axis) => Math.max(side, this.besides?.[axis] ?? 0));
   }
 
-  // Look from one of the places, so that the box as high as it will ever be is in the picture.
+  // Move the camera to one of the places, at a distance from which the highest box of the run is in the picture.
   go(place) {
     this.place = place;
     const { azimuth, elevation, closer } = PLACES[place];
@@ -83,7 +84,7 @@ export class Camera {
     if (this.place !== null) this.go(this.place);
   }
 
-  // The nearest and the farthest that anything in the box can be, for the haze.
+  // Least and greatest distance of a point of the box from the camera, for the haze.
   depths() {
     const [x, y, z] = this.room();
     const distance = this.eye.position.distanceTo(new THREE.Vector3(x / 2, y / 2, z / 2));

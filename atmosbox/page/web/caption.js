@@ -1,16 +1,16 @@
-// The words under the box: what is seen, how it is drawn, and where it comes from.
+// The text under the box: what the picture shows, how it is drawn, and the provenance of the run.
 
 import { figure, round, spelled } from "./figure.js";
 import { phrase, story, word } from "./words.js";
 
 const HOTTEST = 1e6;
 
-// The sides of the box and what its walls are, in a sentence.
+// The sides of the box and the laws of its walls, in a sentence.
 function boxSentence({ box }, { walls: kelvins = box.wall_temperature, length = box.length } = {}) {
   const sides = box.planar ? [length[0], length[2]] : length;
   const size = `${sides.map((side) => figure(side)).join(" × ")} ${box.unit}`;
   const baths = kelvins ?? box.wall_temperature;
-  // a smooth wall that was given a temperature by hand is a heat bath; that of a table's rim is none to be read
+  // a smooth wall that was given a temperature by hand is a heat bath; the temperature of a table's rim is not shown
   const now = box.walls.map((law, index) => (baths[index] !== null && law === "specular" ? "heat_bath" : law));
   const laws = [...new Set(now.filter((_, index) => !(box.planar && index >> 1 === 1)))];
   const warm = [...new Set(baths.filter((kelvin) => kelvin !== null && kelvin < HOTTEST).map((kelvin) => figure(kelvin - 273.15)))];
@@ -18,15 +18,15 @@ function boxSentence({ box }, { walls: kelvins = box.wall_temperature, length = 
   return word(`${box.planar ? "flat_" : ""}box${box.gravity ? "_gravity" : ""}`, { size, walls });
 }
 
-// The small type, in whose parts numbers stand between words.
+// The small type; its parts contain numbers, so each part is translated as a phrase.
 const named = (footer) => footer.split(" · ").map((part, place) => (place > 1 ? phrase(part) : part)).join(" · ");
 
 // A setting as files write it, "-5 m s-1", as it is printed.
 const printed = (text) => String(text).replace(/^(-?)(\d[\d.]*(?:e[+-]?\d+)?)(?: (.*))?$/, (all, sign, digits, unit) =>
   [`${sign && "−"}${digits}`, spelled(unit)].filter(Boolean).join(" "));
 
-// The first lines are there at once; a button opens the rest. Returns what lets the words of a box that runs follow it:
-// `follow({ walls, length, settings })` takes what is known anew.
+// Show the first lines; a button opens the rest. Returns an object with which the text of a running box can be updated:
+// `follow({ walls, length, settings })` takes the values that have changed.
 export function showCaption(parent, runs) {
   parent.replaceChildren();
   const text = document.createElement("div");

@@ -1,9 +1,9 @@
-// The one clock of the page: what time it is in the box, and how fast it goes.
+// The only clock of the page: the time in the box, and the pace of the film.
 
 const SLOWEST = 1 / 32, FASTEST = 32;
 
 export class Clock extends EventTarget {
-  // `pace` is how much time of the box passes in a second of the film.
+  // `pace` is the time in the box that passes in a second of the film.
   constructor({ start, end, pace, instants }) {
     super();
     Object.assign(this, { start, end, pace, instants, time: start, playing: false, factor: 1 });
@@ -33,7 +33,7 @@ export class Clock extends EventTarget {
     this.tell("time");
   }
 
-  // Go so many frames on, and stand still there.
+  // Move by a number of frames, forward or backward, and pause.
   step(number) {
     this.playing = false;
     const slack = 1e-9 * (this.end - this.start);
@@ -50,7 +50,7 @@ export class Clock extends EventTarget {
     this.tell("change");
   }
 
-  // Let so many seconds of the film pass.
+  // Let some seconds of the film pass.
   pass(seconds) {
     if (!this.playing) return;
     this.time = Math.min(this.time + seconds * this.pace * this.factor, this.end);
@@ -62,8 +62,8 @@ export class Clock extends EventTarget {
   }
 }
 
-// How much time of the box a second of the film shows at first: molecules fly twice through the box, but a film is
-// neither shorter than 12 seconds nor longer than 90.
+// The pace at first, in time of the box per second of the film: molecules cross the box twice in a second, but the film
+// takes at least 12 and at most 90 seconds.
 export function naturalPace(duration, crossing) {
   return Math.min(Math.max(2 * crossing, duration / 90), duration / 12);
 }

@@ -1,12 +1,12 @@
-// Colours: the scale of speeds, the kinds of molecules, the curves, and how warm a wall looks.
+// Colours: the scale of speeds, the kinds of molecules, the curves, and the temperatures of walls.
 
-// viridis, which grey prints and colour-blind eyes read as dark to bright.
+// viridis, which goes from dark to bright also in a grey print and for colour-blind readers.
 const VIRIDIS = [
   "440154", "481a6c", "472f7d", "414487", "39568c", "31688e", "2a788e", "23888e",
   "1f988b", "22a884", "35b779", "54c568", "7ad151", "a5db36", "d2e21b", "fde725",
 ].map(parse);
 
-// Okabe and Ito's colours; on a dark ground the darker ones are lifted.
+// Okabe and Ito's colours; on a dark background the darker ones are made lighter.
 const LOOKS = {
   light: {
     data: ["#0072b2", "#d55e00", "#b4568f", "#2f93cf"],
@@ -28,7 +28,7 @@ const LOOKS = {
   },
 };
 
-// How a curve differs from its neighbours beside its colour.
+// The second cue, besides colour, by which a curve differs from the others.
 export const DASHES = {
   data: [[]],
   theory: [[6, 3], [1.5, 2.5], [10, 3, 2, 3]],
@@ -36,7 +36,7 @@ export const DASHES = {
   reference: [[]],
 };
 
-const COLDEST = 233, WARMEST = 333; // K, where walls have their full colour
+const COLDEST = 233, WARMEST = 333; // temperatures at which walls have their full colour [K]
 
 export function parse(hex) {
   const number = parseInt(hex.replace("#", ""), 16);

@@ -1,9 +1,9 @@
-// What may be changed while the box runs: a line for each setting, with its unit.
+// The settings that may be changed while the box runs: a line for each, with its unit.
 
 import { spelled } from "./figure.js";
 import { phrase, word } from "./words.js";
 
-const WIDE = 300; // a slider over so many times its lowest value goes by ratios
+const WIDE = 300; // a slider is logarithmic if its highest value is more than this many times its lowest
 const PATIENCE = 120; // ms between two values that a moving slider sends
 
 const brief = (number) => Number(Number(number).toPrecision(5));
@@ -16,12 +16,12 @@ export class Controls {
     Object.assign(this, { parent, set, shown: new Map() });
   }
 
-  // Show again what is in force, because what was typed was refused.
+  // Show the values in force again, because a typed value was refused.
   restore() {
     if (this.told) this.show(this.told);
   }
 
-  // Build the controls anew, or only take over their values.
+  // Build the controls again or, if they are the same, only update their values.
   show(controls) {
     this.told = controls;
     const names = controls.map(({ name }) => name).join();
@@ -63,7 +63,7 @@ export class Controls {
     const place = (number) => (ratios ? Math.log(number) : number);
     const box = make("input", { type: "number", step: "any", value: brief(value) });
     if (bounded) Object.assign(box, { min: low, max: high });
-    box.addEventListener("keydown", ({ key }) => key === "Enter" && box.blur()); // so that the keys play again
+    box.addEventListener("keydown", ({ key }) => key === "Enter" && box.blur()); // so that keys control the player again
     const send = (number) => Number.isFinite(number) && this.set(name, number);
     const slider = make("input", { type: "range", step: ratios ? "any" : step ?? "any" });
     box.addEventListener("change", () => {

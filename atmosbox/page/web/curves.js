@@ -1,10 +1,10 @@
-// From the values of a run, in SI, to the curves of a graph in the units that are read.
+// From the values of a run, in SI, to the curves of a graph in the units that are shown.
 
 import { wayOf } from "./atmosphere.js";
 
 const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
 
-// The values of a run by name. Those that go with time may grow while the page is open.
+// The values of a run by name. Those that are functions of time may grow while the page is open.
 export class Numbers {
   constructor({ values = {}, timed = [] } = {}) {
     this.values = { ...values };
@@ -15,7 +15,7 @@ export class Numbers {
     return this.values[name];
   }
 
-  // The temperatures of the six walls at a time, or at last; null where they are not known.
+  // The temperatures of the six walls at a time, by default the latest; null where they are not known.
   walls(time = Infinity) {
     const times = this.values.elapsed_time ?? [];
     let index = times.findIndex((each) => each > time);
@@ -49,10 +49,10 @@ export class Numbers {
 
 const shown = (values, way) => values.map((value) => (value === null ? NaN : value * way.factor + way.offset));
 
-// A single number beside a list of values goes along with all of them.
+// A single number beside a list of values is repeated along the list.
 const along = (values, count) => (values.length === 1 && count > 1 ? new Array(count).fill(values[0]) : values);
 
-// The curves of a panel, those that the run has values of.
+// The curves of a panel for which the run has values.
 export function curvesOf(panel, numbers) {
   if (panel.kind === "atmosphere") return wayOf(panel, numbers);
   const seen = {};
@@ -87,7 +87,7 @@ function curveOf(panel, line, numbers) {
   return curve;
 }
 
-// Means of x and y over equal parts of the x axis that hold values, and the scatter of y in each.
+// Means of x and y over equal parts of the x axis that contain values, and the scatter of y in each.
 function averaged({ x, y }, panel) {
   const place = panel.x.log ? Math.log : (value) => value;
   const known = x.map((value, index) => index).filter((index) =>
@@ -101,7 +101,7 @@ function averaged({ x, y }, panel) {
     part[0] += 1;
     part[1] += x[index];
     part[2] += y[index];
-    part[3] += (y[index] - y[known[0]]) ** 2; // about the first value, lest digits are lost
+    part[3] += (y[index] - y[known[0]]) ** 2; // about the first value, so that no digits are lost
   }
   const held = parts.filter(([number]) => number > 0);
   const means = held.map(([number, , sum]) => sum / number);

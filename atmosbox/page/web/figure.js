@@ -1,11 +1,11 @@
-// Numbers as they are read: their figures, their units, and the ticks of an axis.
+// Numbers as text: their digits, their units, and the ticks of an axis.
 
 import { numbers } from "./words.js";
 
 const SPELLED = { degC: "°C", percent: "%", um: "µm", us: "µs", 1: "" };
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
-// So many pixels of a screen of usual size; on a large one, which is seen from afar, more.
+// A length in pixels of a screen of usual size; more pixels on a large screen, which is seen from farther away.
 export const scaled = (pixels) => pixels / 16 * parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 const raised = (text) => [...text].map((sign) => RAISED[sign]).join("");
@@ -28,7 +28,7 @@ export function figure(value, digits = 3) {
 
 export const withUnit = (value, unit, digits) => [figure(value, digits), spelled(unit)].filter(Boolean).join(" ");
 
-// Round numbers from low to high, about so many.
+// Round numbers from low to high, about as many as wanted.
 export function ticks(low, high, about) {
   if (!(high > low)) return [low];
   const raw = (high - low) / Math.max(about, 1);
@@ -39,7 +39,7 @@ export function ticks(low, high, about) {
   return found;
 }
 
-// Ticks of a logarithmic axis: powers of ten, with 2 and 5 between them where there is room; of a short one, round numbers.
+// Ticks of a logarithmic axis: powers of ten, with 2 and 5 between them where there is room; round numbers on a short one.
 export function logTicks(low, high, about) {
   const decades = Math.log10(high / low);
   if (decades < 1) return ticks(low, high, about).filter((value) => value > 0);
@@ -55,7 +55,7 @@ export function logTicks(low, high, about) {
   return found;
 }
 
-// What is written at the ticks of an axis: all with the same decimals, and large or small ones with one power of ten.
+// The texts of the ticks of an axis: all with the same decimals, large or small ones with one common power of ten.
 export function tickTexts(values) {
   const largest = Math.max(...values.map(Math.abs));
   if (!(largest > 0)) return { texts: values.map(() => "0"), power: 0 };

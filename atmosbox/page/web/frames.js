@@ -1,8 +1,8 @@
-// Moments of a box: read from bytes, and kept in order of time.
+// Frames of a box: read from bytes, and kept in order of time.
 
 const HEAD = 32; // bytes before the positions
 
-// One moment, from a place in a buffer. Its arrays are views of the buffer.
+// One frame, from a position in a buffer. Its arrays are views of the buffer.
 export function decode(buffer, start = 0) {
   const view = new DataView(buffer, start);
   const count = view.getUint32(24, true);
@@ -12,7 +12,7 @@ export function decode(buffer, start = 0) {
     time: view.getFloat64(4, true),
     length: [12, 16, 20].map((place) => view.getFloat32(place, true)),
     count,
-    fastest: view.getFloat32(28, true), // the speed that 255 stands for
+    fastest: view.getFloat32(28, true), // the speed that is stored as 255
     position: new Uint16Array(buffer, start + HEAD, 3 * count),
     speed: new Uint8Array(buffer, start + HEAD + 6 * count, count),
     state: new Uint8Array(buffer, start + HEAD + 7 * count, count),
@@ -21,7 +21,7 @@ export function decode(buffer, start = 0) {
   return { frame, end: start + HEAD + 8 * count + 4 + 16 * drops };
 }
 
-// All moments of a run, from the text that the page carries: deflated, and in base64.
+// All frames of a run, from the text in the page: compressed, and in base64.
 export async function unpack(text) {
   const squeezed = Uint8Array.from(atob(text.trim()), (sign) => sign.charCodeAt(0));
   const stream = new Blob([squeezed]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -35,7 +35,7 @@ export async function unpack(text) {
   return frames;
 }
 
-// The moments of one box. A film of limited length forgets the oldest.
+// The frames of one box. A film of limited length drops the oldest.
 export class Film {
   constructor(frames = [], limit = Infinity) {
     this.frames = frames;
@@ -55,7 +55,7 @@ export class Film {
 
   get end() { return this.frames.at(-1)?.time ?? 0; }
 
-  // Number of the last frame that is not later than a time.
+  // Index of the last frame that is not later than a time.
   before(time) {
     let low = 0, high = this.frames.length - 1;
     while (low < high) {
@@ -65,7 +65,7 @@ export class Film {
     return low;
   }
 
-  // The frames around a time, and where between them it lies.
+  // The two frames around a time, and the position of the time between them.
   around(time) {
     const index = this.before(time);
     const first = this.frames[index], second = this.frames[index + 1] ?? first;

@@ -1,10 +1,10 @@
-// What stands around the molecules: edges, walls tinted by their temperature, the piston, the liquid.
+// The objects around the molecules: edges, walls tinted by their temperature, the piston, the liquid.
 
 import * as THREE from "three";
 import { look, parse, wallColour } from "./colour.js";
 
-const DROPS = 96; // drawn at most
-const POOL = -1; // a drop of negative radius is a layer on the floor: a pool, or rain
+const DROPS = 96; // greatest number that is drawn
+const POOL = -1; // a drop of negative radius is a layer on the floor: a pool for this value, else rain
 
 const colour = (rgb) => new THREE.Color().setRGB(...rgb, THREE.SRGBColorSpace);
 
@@ -34,7 +34,7 @@ export class Furniture {
     return mesh;
   }
 
-  // A wall is seen from inside alone: those between the eye and the molecules do not hide them.
+  // A wall is seen only from inside: a wall between the camera and the molecules does not hide them.
   #wall(law, index) {
     if (law === "periodic" || law === "piston" || this.box.planar) return null;
     const material = new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false });
@@ -77,20 +77,20 @@ export class Furniture {
     if (this.metal) this.metal.color = colour(parse(now.metal));
     for (const wall of this.walls) {
       const warm = this.box.wall_temperature[wall.userData.index];
-      const heated = warm !== null;  // as a smooth wall has it that was warmed by hand
+      const heated = warm !== null;  // also a smooth wall that was given a temperature by hand
       wall.material.color = colour(heated ? wallColour(warm) : parse(now.edge));
       wall.material.opacity = heated ? 0.3 : 0.06;
     }
   }
 
-  // Walls that are warmer or cooler than they were.
+  // Take new temperatures of the walls.
   warm(temperatures) {
     if (!temperatures.some((kelvin, index) => kelvin !== null && kelvin !== this.box.wall_temperature[index])) return;
     this.box.wall_temperature = this.box.wall_temperature.map((old, index) => temperatures[index] ?? old);
     this.paint();
   }
 
-  // The box as long as it is now, and what liquid there is.
+  // Draw the box with its present sides, and the liquid.
   arrange(length, drops, sharesDrops, share) {
     const [x, y, z] = length;
     for (const edge of this.edges) stretch(edge, length, this.bar, 0);
@@ -146,7 +146,7 @@ export class Furniture {
   }
 }
 
-// The twelve edges of the box, or the four of a flat one.
+// The twelve edges of the box, or the four edges of a planar one.
 function edgesOf(box) {
   const found = [];
   for (let axis = 0; axis < 3; axis += 1) {

@@ -1,4 +1,4 @@
-// Thermometer, barometer and hygrometer beside the box, in figures that the last row reads, and said aloud on demand.
+// Thermometer, barometer and hygrometer beside the box, readable from the last row, and read aloud on demand.
 
 import { numbers, word } from "./words.js";
 
@@ -7,14 +7,14 @@ const DIGITS = { "°C": 1, hPa: 0, "%": 0 };
 const shown = (value, unit) => `${numbers(value.toFixed(DIGITS[unit] ?? 1).replace("-", "−"))} ${unit}`;
 
 export class Gauges {
-  // `parent` is read by eyes, `voice` by screen readers, and only when `say` is called.
+  // `parent` is the visible element; `voice` is read by screen readers, and only when `say` is called.
   constructor(parent, voice) {
     Object.assign(this, { parent, voice, parts: new Map(), sentence: "" });
     parent.setAttribute("role", "group");
     parent.setAttribute("aria-label", word("measured"));
   }
 
-  // Show what was measured last: of each gauge its name, its value and its unit.
+  // Show the latest measurement: name, value and unit of each gauge.
   show(gauges) {
     this.parent.hidden = gauges.length === 0;
     const names = gauges.map(({ name }) => name).join();
@@ -34,7 +34,7 @@ export class Gauges {
       const line = Object.assign(document.createElement("span"), { className: `gauge ${name}` });
       const number = document.createElement("output");
       number.setAttribute("aria-label", word(name));
-      number.setAttribute("aria-live", "off"); // it changes ten times a second: M says it
+      number.setAttribute("aria-live", "off"); // it changes several times a second: the key M reads it aloud
       line.append(Object.assign(document.createElement("small"), { textContent: word(name) }), number);
       this.parts.set(name, number);
       this.parent.append(line);

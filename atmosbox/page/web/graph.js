@@ -1,4 +1,4 @@
-// One graph: uPlot gives axes, grid and size, the curves are drawn as the figures of a run draw them.
+// One graph: uPlot gives axes, grid and size; the curves are drawn in the style of the figures of a run.
 
 import { drawAtmosphere } from "./atmosphere.js";
 import { curveColour, curveDash, look } from "./colour.js";
@@ -11,8 +11,8 @@ const ORDER = { reference: 0, environment: 1, data: 2, theory: 3 };
 const font = (size) => `${size}px system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif`;
 
 export class Graph {
-  // `seek` is called with the time that a click on a graph over time points at; `whole` says that the curves are there
-  // from the start, so that what is to come must be veiled.
+  // `seek` is called with the time at which a graph over time was clicked; `whole` tells that the curves are complete
+  // from the start, so that the part after the present time must be veiled.
   constructor(parent, panel, { runs = 1, seek = null, whole = false } = {}) {
     Object.assign(this, { panel, runs, seek, whole, curves: [], fixed: null, time: null });
     this.element = document.createElement("figure");
@@ -36,7 +36,7 @@ export class Graph {
     line.replaceChildren();
     line.title = sentences.map((sentence) => numbers(phrase(sentence))).join("\n");
     for (const sentence of sentences) {
-      const [words, number] = sentence.split(" = "); // the number first, for a narrow graph cuts the end off
+      const [words, number] = sentence.split(" = "); // the number first, because a narrow graph cuts off the end
       const bold = Object.assign(document.createElement("b"), { textContent: numbers(number ?? "") });
       line.append(bold, ` ${phrase(words)} `);
     }
@@ -84,9 +84,9 @@ export class Graph {
     this.at(this.time);
   }
 
-  // The numbers on an axis, as many as have room.
+  // The numbers on an axis, as many as there is room for.
   #ticks(axis, plot) {
-    if (!this.held) return []; // an axis that holds nothing says nothing
+    if (!this.held) return []; // an axis without curves has no ticks
     const { log } = this.panel[axis];
     const [low, high] = this.range[axis].map((value) => (log ? 10 ** value : value));
     const room = axis === "x" ? (plot.width - scaled(60)) / scaled(52) : (plot.height - scaled(32)) / scaled(30);
@@ -96,7 +96,7 @@ export class Graph {
   #texts(axis, plot) {
     const { texts, power } = tickTexts(this.#ticks(axis, plot));
     const { label, unit } = this.panel[axis];
-    if (axis === "x" && this.panel.kind === "atmosphere") return texts.map(() => ""); // the way across is no measure
+    if (axis === "x" && this.panel.kind === "atmosphere") return texts.map(() => ""); // the horizontal axis has no scale
     const words = [powerText(power), unit].filter(Boolean).join(" ");
     const text = words ? `${phrase(label)} (${words})` : phrase(label);
     const spot = this.part(axis === "x" ? ".along" : ".up");
@@ -108,7 +108,7 @@ export class Graph {
     return 14 + scaled(7) * Math.max(2, ...(texts ?? []).map((text) => text?.length ?? 0));
   }
 
-  // Show these curves.
+  // Set the curves that the graph shows.
   set(curves) {
     this.curves = curves.toSorted((first, second) => ORDER[first.role] - ORDER[second.role]);
     this.#measure();
@@ -166,7 +166,7 @@ export class Graph {
     }
   }
 
-  // What each curve is called. Of two runs the colour tells which is meant, and the dashes which curve.
+  // The legend. If there are two runs, the colour tells the run, and the dashes tell the curve.
   #key() {
     const key = this.part(".key");
     key.replaceChildren();
@@ -194,7 +194,7 @@ export class Graph {
       && this.curves.filter((curve) => curve.role === "data" && (curve.run ?? 0) === run).length > 1;
   }
 
-  // Pixels of the canvas, of a point in the units of the panel.
+  // Position on the canvas [pixel] of a point in the units of the panel.
   #spot(x, y) {
     const along = this.panel.kind === "skewt" ? slanted(x, y, this.foot) : this.to.x(x);
     return [this.plot.valToPos(along, "x", true), this.plot.valToPos(this.to.y(y), "y", true)];
@@ -228,7 +228,7 @@ export class Graph {
     let above = -Infinity;
     for (const [name, pressure] of Object.entries(this.panel.marks ?? {}).toSorted((one, other) => one[1] - other[1])) {
       const [, y] = this.#spot(0, pressure);
-      const under = y - above < 15 * unit; // of two levels that are close, the lower has its name below
+      const under = y - above < 15 * unit; // the lower of two close levels has its name below it
       above = y;
       context.strokeStyle = context.fillStyle = look().ink;
       context.lineWidth = unit;
@@ -241,7 +241,7 @@ export class Graph {
     }
   }
 
-  // Let the graph show that it is such a time: what is to come is veiled, or a dot runs along the curves.
+  // Show a time on the graph: the later part is veiled, or a dot moves along the curves.
   at(time) {
     this.time = time;
     if (time === null) return;

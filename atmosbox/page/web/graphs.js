@@ -4,7 +4,7 @@ import { curvesOf } from "./curves.js";
 import { Graph } from "./graph.js";
 import { highestShare, speedCurves, speedPanel } from "./speeds.js";
 
-const PATIENCE = 90; // ms between two counts of the speeds
+const PATIENCE = 90; // least time between two counts of the speeds [ms]
 
 const letter = (run) => String.fromCharCode(65 + run);
 
@@ -12,7 +12,7 @@ const letter = (run) => String.fromCharCode(65 + run);
 const subject = (panel) => JSON.stringify([panel.kind, panel.lines.map(({ x, y, role }) => [x.name, y.name, role])]);
 
 export class Graphs {
-  // `runs`: of each its stage, its film and its numbers.
+  // `runs`: the stage, the film and the numbers of each run.
   constructor(parent, runs, seek) {
     Object.assign(this, { parent, runs, whole: Boolean(seek) });
     this.panels = [];
@@ -27,7 +27,7 @@ export class Graphs {
     for (const each of this.panels) {
       each.graph = new Graph(parent, this.#titled(each), { runs: runs.length, seek, whole: Boolean(seek) });
     }
-    // where the colours tell neighbours, the frames hold no speeds
+    // if the colours show numbers of neighbours, the frames hold no speeds
     const told = runs.every(({ stage }) => !stage.speed.counted);
     this.speeds = told ? new Graph(parent, speedPanel(runs[0].stage), { runs: runs.length }) : null;
     parent.dataset.count = this.panels.length + (told ? 1 : 0);
@@ -41,14 +41,14 @@ export class Graphs {
     return { ...panel, title, sentences: members.flatMap(({ run, panel: own }) => own.sentences.map((text) => text.replace(" = ", ` = ${letter(run)} `))) };
   }
 
-  // Draw the curves anew, for values may have come.
+  // Draw the curves again, because new values may have come.
   refresh() {
     for (const { graph, members } of this.panels) {
       graph.set(members.flatMap(({ run, panel }) => curvesOf(panel, this.runs[run].numbers).map((curve) => ({ ...curve, run }))));
     }
   }
 
-  // Let all graphs show that it is such a time. While the film runs, the speeds need not be counted for every picture.
+  // Show a time on all graphs. While the film runs, the speeds need not be counted for every picture.
   at(time, running = false) {
     for (const { graph } of this.panels) graph.at(time);
     if (!this.speeds) return;
@@ -64,8 +64,8 @@ export class Graphs {
     this.speeds.set(curves);
   }
 
-  // How high the axis of the speeds is: of a film that is there whole, as high as it ever needs; of a box that runs, anew
-  // when its gas has become so warm or so cold that the curve would leave the graph, or lie at its foot.
+  // Set the upper end of the axis of the speeds. For a complete film it is fixed and high enough for all frames; for a
+  // running box it changes when the curve comes near the upper end of the graph, or is low in it.
   #rescale(curves) {
     const peak = curves.filter(({ role }) => role === "theory").reduce((most, { y }) => Math.max(most, ...y), 0);
     if (!this.highest) this.highest = Math.max(...this.runs.map(({ stage, film }) => highestShare(film.frames, stage)));

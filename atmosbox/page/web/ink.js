@@ -1,9 +1,9 @@
-// How a curve is drawn: lines and bands, points and bars, steps; each with a second cue beside its colour.
+// Drawing of curves: lines and bands, points and bars, steps; each with a second cue besides its colour.
 
 import { curveDash, look } from "./colour.js";
 
-const MOST_POINTS = 40; // up to so many measured values are points with bars, beyond a line with a band
-const MOST_CROSSINGS = 25; // of its own range, up to which a curve has its full width
+const MOST_POINTS = 40; // at most this many measured values are points with bars, more are a line with a band
+const MOST_CROSSINGS = 25; // of its own range; a curve with more is drawn thinner
 
 export function markerSvg(index, colour) {
   return [
@@ -46,7 +46,7 @@ export function drawCurve(context, curve, { spot, unit, across, colour, several,
   return undefined;
 }
 
-// A curve that crosses its own range again and again becomes thinner, so that its scatter stays readable.
+// A curve that crosses its own range very often is drawn thinner, so that its scatter stays readable.
 function slender({ x, y }, across) {
   const values = (across ? x : y).filter(Number.isFinite);
   let way = 0, low = Infinity, high = -Infinity;
@@ -78,7 +78,7 @@ function drawErrors(context, { x, y, error, role }, spot, unit, across, bars) {
   }
 }
 
-// A histogram, between the bounds of its bins.
+// Draw a histogram as steps between the bounds of its bins.
 function drawSteps(context, { x, y, error }, spot, unit, floor) {
   if (x.length < 2) return;
   const bounds = x.map((value, place) => (place ? (x[place - 1] + value) / 2 : value - (x[1] - value) / 2));
@@ -99,7 +99,7 @@ function drawSteps(context, { x, y, error }, spot, unit, floor) {
   if (error) drawErrors(context, { x, y, error, role: "data" }, spot, unit, false, true);
 }
 
-// A point whose error is not known, as of a layer that was seldom visited.
+// Draw a point whose error is not known, as in a layer that was seldom visited.
 function hollow(context, unit) {
   context.save();
   context.fillStyle = look().card;

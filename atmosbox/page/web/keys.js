@@ -15,7 +15,7 @@ export const KEYS = [
   ["?", word("key_help")],
 ];
 
-// `actions`: what each key does, by the name that the browser gives it.
+// `actions`: the function of each key, by the browser's name of the key.
 export function listen(actions) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -1,4 +1,4 @@
-// The page of a box that runs in the page itself: what a socket is to a live page, a worker is to this one.
+// The page of a box that runs in the page itself: a worker takes the place of the socket of a live page.
 
 import { begin as beginLive } from "./live.js";
 
@@ -11,7 +11,7 @@ const save = (name, text) => {
 };
 
 export class Bench {
-  // `hear(message)` for what is said in words, `see(buffer)` for frames, `state("open" | "lost")`.
+  // Calls `hear(message)` for messages, `see(buffer)` for frames, `state("open" | "lost")` for the connection.
   constructor({ hear, see, state }) {
     const address = URL.createObjectURL(new Blob([read("worker")], { type: "text/javascript" }));
     this.worker = new Worker(address);
@@ -34,5 +34,5 @@ export class Bench {
 
 export function begin() {
   const bench = beginLive(Bench, { saves: true });
-  document.addEventListener("ask", ({ detail }) => bench.say(detail)); // what a test asks for
+  document.addEventListener("ask", ({ detail }) => bench.say(detail)); // used by tests
 }

@@ -1,16 +1,16 @@
-// The engine of a lab: memory, kernels by name, tables of theory, and series that can grow for ever.
+// The engine of a lab: memory, kernels by name, tables of theory, and time series without a limit of time.
 
 "use strict";
 
 const TYPES = { float64: Float64Array, int64: BigInt64Array, uint8: Uint8Array, uint16: Uint16Array, uint32: Uint32Array,
   uint64: BigUint64Array, float32: Float32Array, int32: Int32Array };
-const MOST = 4000; // points of a series; then every second one goes
+const MOST = 4000; // points of a series; at more points, every second one is removed
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
 const inflated = async (bytes) =>
   new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
 
-// The kernels in their memory.
+// The kernels and their memory.
 class Machine {
   static async of(module, { plan, stored }) {
     const memory = new WebAssembly.Memory({ initial: Math.ceil(plan.size / 65536) });
@@ -18,7 +18,7 @@ class Machine {
     return Object.assign(new Machine(), { memory, plan, kernels, view: new DataView(memory.buffer), stored });
   }
 
-  // Write the box as it was at its start.
+  // Set the memory to the state of the box at its start.
   restore() {
     const all = new Uint8Array(this.memory.buffer);
     all.fill(0, this.plan.base);
@@ -47,7 +47,7 @@ class Machine {
   }
 }
 
-// What a plan says together with the first one; "=" stands before what replaces all that is there.
+// A plan, completed by the first one; an entry under "=" replaces the entry of the first plan as a whole.
 function merged(own, first) {
   if (Array.isArray(own)) return own.length === first?.length ? own.map((each, place) => merged(each, first[place])) : own;
   if (own === null || typeof own !== "object" || first === null || typeof first !== "object") return own;
@@ -56,8 +56,8 @@ function merged(own, first) {
   return { ...first, ...Object.fromEntries(news) };
 }
 
-// The starts of a page, by their settings or by title: the plan of each, and what its memory holds. A plan says only
-// what differs from the first one.
+// The starts of a page, by their settings or by title: the plan and the contents of the memory of each. A plan holds
+// only its differences from the first plan.
 class Starts {
   static async of({ starts, module, stored }) {
     const all = await inflated(bytesOf(stored)), found = new Map();
@@ -81,8 +81,8 @@ class Starts {
   }
 }
 
-// What the curves of a table say at a place of its grid: between two, the straight line. Where a table goes along what
-// is not known now, it says so itself.
+// The values of the curves of a table at a value of its grid, by linear interpolation. If that value is not known at
+// present, the result is the table's own entry `otherwise`.
 function between({ grid, curves, otherwise }, value) {
   if (otherwise && !Number.isFinite(value)) return { ...otherwise };
   let high = grid.findIndex((each) => each >= value);
@@ -97,7 +97,7 @@ function between({ grid, curves, otherwise }, value) {
 
 const brief = (value) => (Number.isFinite(value) ? Number(value.toPrecision(7)) : null);
 
-// Series that can grow for ever, in so many points as a graph can show.
+// A time series without a limit of time, with at most as many points as a graph can show.
 class Trace {
   constructor() {
     Object.assign(this, { rows: [], every: 1, count: 0, sent: 0, reset: true });

@@ -1,15 +1,15 @@
-// The box in a worker, which sends the same messages as `atmosbox live`. It stands behind lab_machine.js, in one script.
+// The box in a worker, which sends the same messages as `atmosbox live`. It follows lab_machine.js in the same script.
 //
-// Nothing of the physics stands here. What a kernel returns, and where its numbers are, the plan says, which Python has
-// written; so do the factors from the units of the engine to SI, and the curves of theory, which are read off tables.
+// This file contains no physics. A plan, which Python has written, tells what each kernel returns and where its numbers
+// are, and holds the factors from the units of the engine to SI and the tables of the curves of theory.
 
-const PERIOD = 1000 / 60, SHARE = 0.8; // ms between two pictures, and the share of them that the engine may take
-const MEASURE = 250, STATE = 500; // ms between two messages
-const EVENTS = 4000; // between two looks at the clock
-const FRAMES = 20; // that a gauge takes the mean of
+const PERIOD = 1000 / 60, SHARE = 0.8; // ms between two pictures, and the share of that time for the engine
+const MEASURE = 250, STATE = 500; // ms between two messages with measurements, and between two with the state of the box
+const EVENTS = 4000; // collisions and other events between two readings of the clock
+const FRAMES = 20; // over which a gauge takes the mean
 const WALLS = ["x_low", "x_high", "y_low", "y_high", "z_low", "z_high"];
-const DRAG = 1500; // ms within which a slider that moves is one change
-const STEP = 0.04; // s of a class that one step shows
+const DRAG = 1500; // ms within which movements of a slider are one change
+const STEP = 0.04; // real time that one step shows [s]
 const SLOWEST = 0.25, FASTEST = 16;
 const [DONE, BUSY] = [0, 1];
 const WHY = { 2: "events pile up without end", 3: "more molecules have come together than its cells have room for",
@@ -75,13 +75,14 @@ class Box {
       undo: this.past.length > 0 };
   }
 
-  // The temperatures of the walls now [K].
+  // The present temperatures of the walls [K].
   walls() {
     const found = this.trace.rows.at(-1) ?? {};
     return WALLS.map((wall, place) => brief(found[`wall_temperature[${wall}]`] ?? NaN) ?? this.told.stage.box.wall_temperature[place]);
   }
 
-  // What the gauges say: on a way what was measured last, else the mean of some frames, as molecules are few.
+  // The readings of the gauges: during an ascent the latest measurement, otherwise the mean of some frames, because few
+  // molecules scatter.
   gauges() {
     const rows = this.trace.rows.slice(this.plan.ends ? -1 : -FRAMES);
     if (!rows.length) return [];
@@ -94,13 +95,13 @@ class Box {
 
   // ---------------------------------------------------------------- time
 
-  // The time of a sample of the frame that is under way.
+  // The time of the next sample of the present frame.
   moment() {
     const { frame: length, samples } = this.plan;
     return this.sample === samples ? (this.frame + 1) * length : (this.frame + this.sample / samples) * length;
   }
 
-  // Let time pass, until then or until the clock says so.
+  // Let time pass until `goal`, or until the deadline of the real clock.
   pass(goal, deadline) {
     const { machine } = this;
     while (this.now < goal) {
@@ -124,7 +125,7 @@ class Box {
     }
   }
 
-  // Let the instruments sample the box; tell whether to go on.
+  // Let the instruments sample the box; return whether to go on.
   measure() {
     const { machine, plan } = this;
     machine.call("sample");
@@ -167,7 +168,7 @@ class Box {
     }
   }
 
-  // Send where everything is: see atmosbox/page/frame.py.
+  // Send a frame: see atmosbox/page/frame.py.
   look() {
     const { machine, plan } = this;
     machine.call("look");
@@ -187,7 +188,7 @@ class Box {
     postMessage(buffer, [buffer]);
   }
 
-  // Send what is new to the graphs.
+  // Send new values for the graphs.
   tell() {
     const { plan, trace, machine } = this;
     if (!this.fresh) return;
@@ -211,7 +212,7 @@ class Box {
     if (Object.keys(values).length) say({ type: "arrays", values });
   }
 
-  // ---------------------------------------------------------------- what the page asks for
+  // ---------------------------------------------------------------- requests of the page
 
   async obey(message) {
     const { type, value, name } = message;
@@ -241,8 +242,8 @@ class Box {
     say(this.state());
   }
 
-  // Begin anew with another setting, as another number of molecules, which is another box. Where the page has not room
-  // for both this value and the others that are set, the others become those that the page was written with.
+  // Begin anew with another setting that needs another box, such as the number of molecules. If the page does not hold
+  // the combination of this value with the present others, the others become those with which the page was written.
   async choose(name, value) {
     const { choices = [] } = this.told.controls.find((each) => each.name === name) ?? {};
     if (!choices.includes(value)) {
@@ -255,7 +256,7 @@ class Box {
     this.again();
   }
 
-  // Begin a preset, or, by the first of the list, what the page was written for.
+  // Begin a preset; the first of the list is the box for which the page was written.
   async try(number) {
     const titles = this.told.lesson.presets;
     if (!(number in titles)) return;
@@ -293,7 +294,7 @@ class Box {
     this.act(control, value);
   }
 
-  // Let a knob stand at a value, or as it stood before it was first turned.
+  // Set a knob to a value, or give it up so that the box is as before its first change.
   act(control, value, leaves = false) {
     const { name, unit } = control, knob = this.plan.knobs[name];
     if (leaves && knob.leave) this.machine.call(knob.leave);
@@ -306,7 +307,7 @@ class Box {
     this.since = this.frame + 1;
     this.led ||= knob.kernel === "lead";
     this.knobs[name] = value;
-    if (this.finished) Object.assign(this, { playing: true, finished: false }); // it rests only because its way was at an end
+    if (this.finished) Object.assign(this, { playing: true, finished: false }); // it had stopped only at the end of its ascent
     this.turned.push(`# at time ${this.now * this.plan.time}: ${name} = ${value} ${unit}`);
     if (this.turned.length > 5000) this.turned.shift();
     say({ type: "controls", controls: this.controls() });
@@ -319,7 +320,7 @@ class Box {
     this.act(this.told.controls.find(({ name }) => name === last.name), last.value, isFirst);
   }
 
-  // The command that begins the same run; the seed stands at its end.
+  // The command that begins the same run; its last word is the seed.
   command() {
     return this.plan.seeded ? this.plan.command.replace(/\d+$/, this.seed) : this.plan.command;
   }
@@ -355,6 +356,6 @@ async function hear(data) {
   }
 }
 
-// One after the other: another box is there before anything is asked of it.
+// Messages are handled one after the other, so that a new box is complete before the next request.
 let heard = Promise.resolve();
 onmessage = ({ data }) => { heard = heard.then(() => hear(data)); };

@@ -1,12 +1,12 @@
-// Names, units and numbers at the edges of the box: text over the picture, so that it stays sharp.
+// Names, units and numbers at the edges of the box: HTML text over the picture, so that it stays sharp.
 
 import * as THREE from "three";
 import { round, scaled, ticks } from "./figure.js";
 import { word } from "./words.js";
 
 const AXES = ["x", "y", word("height_z")];
-const GAP = 16, FAR = 44; // pixels between an edge and its numbers, and its name
-const SHORT = 60, END_ON = 0.93; // pixels, and a cosine: an edge that is seen short, or end on, has neither
+const GAP = 16, FAR = 44; // pixels between an edge and its numbers, and between an edge and its name
+const SHORT = 60, END_ON = 0.93; // an edge that looks shorter [pixel], or whose cosine is larger, has no labels
 
 export class Labels {
   constructor(parent, box) {
@@ -18,7 +18,7 @@ export class Labels {
     this.used = 0;
   }
 
-  // Write around the box as it is seen now.
+  // Write the labels for the present view of the box.
   write(length, camera, width, height) {
     this.used = 0;
     const project = (point) => {
@@ -37,7 +37,7 @@ export class Labels {
     for (const spare of this.pool.slice(this.used)) spare.style.display = "none";
   }
 
-  // The edge that an axis is read at: of the upright ones the leftmost, of the others on the floor the lowest.
+  // The edge with the labels of an axis: for height the leftmost vertical edge, otherwise the lowest edge in the picture.
   #edge(axis, length, project) {
     const ends = axis === 2 ? [[0, 0], [0, 1], [1, 0], [1, 1]] : [[0, 0], [1, 0]];
     let best = null;
@@ -59,7 +59,7 @@ export class Labels {
     const outward = ((low.x + high.x) / 2 - middle.x) * across.x + ((low.y + high.y) / 2 - middle.y) * across.y;
     if (outward < 0) across = { x: -across.x, y: -across.y };
     for (const value of ticks(0, length[axis], Math.max(1, size / scaled(75)))) {
-      if (value === 0 && axis !== 2) continue; // the corner has one nought, that of the height
+      if (value === 0 && axis !== 2) continue; // the corner has one zero, that of the height
       const spot = project(at.map((old, other) => (other === axis ? value : old)));
       this.#text(round(value), spot.x + across.x * scaled(GAP), spot.y + across.y * scaled(GAP), "tick");
     }

@@ -1,4 +1,4 @@
-// What the colours of the molecules mean.
+// The legend of the colours of the molecules.
 
 import { look, speedGradient } from "./colour.js";
 import { round } from "./figure.js";

@@ -1,19 +1,19 @@
-// What a class may try: named settings, a pump, undo, and challenges.
+// Offers for a class: named settings, a pump, undo, and challenges.
 
 import { figure, spelled } from "./figure.js";
 import { numbers, phrase, word } from "./words.js";
 
-const STROKE = 1.5; // times as many molecules, or as few, by one stroke of the pump
+const STROKE = 1.5; // factor on the number of molecules by one stroke of the pump, or its inverse
 
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
 
 export class Lesson {
-  // `say(message)` tells the box what to do.
+  // `say(message)` sends a message to the box.
   constructor(parent, say) {
     Object.assign(this, { parent, say, challenge: null });
   }
 
-  // Offer what the scene has.
+  // Show the presets, the pump and the challenges of the scene.
   offer({ presets = [], pump = false, challenges = [] } = {}) {
     const told = JSON.stringify([presets, pump, challenges]);
     if (told === this.told) return;
@@ -44,7 +44,7 @@ export class Lesson {
     presets.forEach((title, number) => list.append(make("option", { value: number, textContent: phrase(title) })));
     list.onchange = () => {
       if (list.value !== "") this.say({ type: "preset", number: Number(list.value) });
-      list.blur(); // so that the keys play again
+      list.blur(); // so that keys control the player again
     };
     return list;
   }
@@ -84,12 +84,12 @@ export class Lesson {
     this.card.replaceChildren(make("p", { className: "ask", textContent: numbers(phrase(this.challenge.ask)) }), this.verdict, hint);
   }
 
-  // Tell whether anything can be taken back.
+  // Update the undo button: whether any change can be undone.
   show({ undo }) {
     if (this.back && undo !== undefined) this.back.disabled = !undo;
   }
 
-  // Look whether what has been measured meets the challenge, at any moment.
+  // Check whether the measurements have met the challenge at any time.
   judge(values) {
     if (this.challenge === null) return;
     const { reach } = this.challenge;

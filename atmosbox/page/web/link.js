@@ -1,9 +1,9 @@
-// The connection to the box that runs: it passes on messages, says when it is lost, and reconnects.
+// The connection to the running box: it passes on messages, reports when it is lost, and reconnects.
 
-const SOONEST = 500, LATEST = 5000; // ms between two attempts
+const SOONEST = 500, LATEST = 5000; // shortest and longest time between two attempts [ms]
 
 export class Link {
-  // `hear(message)` for what is said in words, `see(buffer)` for frames, `state("open" | "lost")`.
+  // Calls `hear(message)` for messages, `see(buffer)` for frames, `state("open" | "lost")` for the connection.
   constructor({ hear, see, state }) {
     Object.assign(this, { hear, see, state, wait: SOONEST });
     this.#connect();

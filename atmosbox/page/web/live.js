@@ -1,4 +1,4 @@
-// The page of a box that runs: frames and numbers come through a socket, and changes go back.
+// The page of a running box: frames and numbers come through a socket, and changes of settings go back.
 
 import { showCaption } from "./caption.js";
 import { Controls } from "./controls.js";
@@ -17,7 +17,7 @@ import { Sheet } from "./sheet.js";
 import { Stage } from "./stage.js";
 import { phrase, spell, word } from "./words.js";
 
-const KEPT = 240; // frames, which the path of a molecule is drawn from
+const KEPT = 240; // frames, from which the path of a molecule is drawn
 const LOOK = 200; // ms between two updates of the graphs
 
 const find = (name) => document.getElementById(name);
@@ -52,7 +52,7 @@ class Live {
     this.stale = true;
   }
 
-  // A new box begins: forget all that was shown of the one before.
+  // A new box begins: remove all that was shown of the previous one.
   open({ stage: record, controls, state, lesson }) {
     this.stage?.leave();
     find("boxes").replaceChildren();
@@ -79,14 +79,14 @@ class Live {
     this.start(state);
   }
 
-  // A box that has not been started yet plays, unless the reader prefers that nothing moves.
+  // Start a box that has not run yet, unless the reader's system asks for reduced motion.
   start({ playing, time }) {
     if (this.started) return;
     this.started = true;
     if (!playing && time === 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.link.say({ type: "play" });
   }
 
-  // What the box says of itself, at least twice a second.
+  // Show the state of the box, which comes at least twice a second.
   state(told) {
     this.pulse.show(told);
     this.lesson.show(told);
@@ -97,7 +97,7 @@ class Live {
     }
   }
 
-  // Where the knobs stand: the words under the box follow them.
+  // Show the values of the knobs, also in the text under the box.
   knobs(controls) {
     this.controls.show(controls);
     this.caption?.follow({ settings: controls.filter(({ kind }) => kind === "number") });
@@ -122,13 +122,13 @@ class Live {
     if (last === undefined || !this.pulse.state.playing) this.pulse.show({ time: frame.time });
   }
 
-  // The box has become so warm or so cold that the scale of speeds is another from this frame on.
+  // The scale of speeds changes with this frame, because the box has become much warmer or colder.
   rescale(fastest) {
     this.stage.record.speed.high = fastest;
     showLegend(find("legend"), this.stage.record, this.stage.mode);
   }
 
-  // Between two frames that came, molecules go on evenly; so the picture is one frame behind.
+  // Molecules move evenly from one received frame to the next; so the picture is one frame behind.
   draw(now) {
     const { frames } = this.film ?? { frames: [] };
     if (!frames.length) return;
@@ -140,7 +140,7 @@ class Live {
     this.stage.render();
   }
 
-  // The graphs need not be as quick as the picture.
+  // Update the graphs, which is done less often than the picture.
   look() {
     if (!this.stale || !this.graphs) return;
     this.stale = false;
@@ -154,7 +154,7 @@ class Live {
   }
 }
 
-// `Connection` is where the box runs: elsewhere, unless the page brings it along.
+// `Connection` connects to the box: through a socket by default, to a worker if the box runs in the page.
 export function begin(Connection = Link, offers = {}) {
   spell();
   const live = new Live(Connection, offers);

@@ -1,4 +1,4 @@
-// The molecules: one point each, which the graphics card turns into a shaded ball. So thousands of them are cheap.
+// The molecules: one point each, which the graphics card draws as a shaded ball, so that thousands of them are cheap.
 
 import * as THREE from "three";
 
@@ -56,7 +56,7 @@ export class Molecules {
     this.material = new THREE.ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
-      // Soft rims that hide what is behind them and need no sorting; the picture itself stays opaque.
+      // Soft rims that hide objects behind them and need no sorting; the picture itself stays opaque.
       alphaToCoverage: true,
       blending: THREE.CustomBlending,
       blendSrc: THREE.OneFactor, blendDst: THREE.ZeroFactor, blendSrcAlpha: THREE.ZeroFactor, blendDstAlpha: THREE.OneFactor,
@@ -69,7 +69,7 @@ export class Molecules {
     this.object.frustumCulled = false;
   }
 
-  // Before a dark ground molecules need more light, and less haze.
+  // On a dark background molecules need more light and less haze.
   light(background, dark) {
     const { uniforms } = this.material;
     uniforms.background.value.setRGB(...background);
@@ -77,8 +77,8 @@ export class Molecules {
     uniforms.ambient.value = dark ? 0.86 : 0.66;
   }
 
-  // Put every molecule between its places in two frames. `wraps` tells which axes have no walls: there it takes the
-  // shorter way round. One that is in the gas in only one of the frames shrinks away or grows there.
+  // Put each molecule between its positions in two frames. `wraps` tells which axes are periodic: along these a molecule
+  // takes the shorter way. A molecule that is in the gas in only one of the frames shrinks or grows at its position there.
   place({ first, second, share }, wraps, sizes) {
     const { array: place } = this.position, { array: size } = this.size;
     for (let index = 0; index < this.count; index += 1) {
@@ -97,7 +97,7 @@ export class Molecules {
     this.position.needsUpdate = this.size.needsUpdate = true;
   }
 
-  // Colour every molecule by a function that writes three numbers for it.
+  // Colour the molecules by a function that writes three numbers for each.
   colour(write) {
     for (let index = 0; index < this.count; index += 1) write(index, this.tint.array, 3 * index);
     this.tint.needsUpdate = true;

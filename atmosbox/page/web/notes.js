@@ -1,10 +1,10 @@
-// Messages for the viewer: a sentence that goes away, or, if something was refused, stays.
+// Messages for the reader: a sentence that disappears after a while, or stays if something was refused.
 
 import { phrase, word } from "./words.js";
 
 const SIGNS = { info: "i", warning: "!", error: "×" };
 const WORDS = { warning: "note", error: "refused" };
-const READING = 7000; // ms
+const READING = 7000; // time after which a message disappears [ms]
 
 export function note(parent, { level = "info", text, name }) {
   if (name) parent.querySelector(`[data-name="${name}"]`)?.remove();

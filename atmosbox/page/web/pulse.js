@@ -1,4 +1,4 @@
-// The bar of a box that runs: play, step, begin anew with a seed, how fast, and recording.
+// The bar of a running box: play, step, begin anew with a seed, pace, and recording.
 
 import { figure, withUnit } from "./figure.js";
 import { icon } from "./transport.js";
@@ -7,7 +7,7 @@ import { phrase, word } from "./words.js";
 const SLOWEST = 0.25, FASTEST = 16;
 
 export class Pulse {
-  // `saves` where nothing can be recorded, but what has been measured can be saved.
+  // `saves` is true where nothing can be recorded, but the measurements can be saved.
   constructor(parent, say, { saves = false } = {}) {
     Object.assign(this, { say, saves, state: { playing: false, pace: 1, recording: null }, unit: "", particle: "molecule" });
     parent.innerHTML = `
@@ -56,14 +56,14 @@ export class Pulse {
     else this.say({ type: "record", file: this.part("file").value.trim() || null });
   }
 
-  // A new box begins: its unit of time, what moves in it, and where its recordings go if no file is named.
+  // A new box begins: set its unit of time, its word for a molecule, and the default file of its recordings.
   begin({ time, scene, particle }) {
     this.unit = time.unit;
     this.particle = particle;
     this.part("file").placeholder = `${scene.replace(/.*\//, "").replace(/\.py$/, "")}-live.nc`;
   }
 
-  // What the box says of itself.
+  // Show the state of the box.
   show(told) {
     Object.assign(this.state, told);
     const { playing, pace, recording, time, rate, ledger, molecules, seed, seeded, finished, busy } = this.state;

@@ -1,4 +1,4 @@
-// What surrounds the picture on both pages: cameras, colours, theme, tracing, the list of keys.
+// The tools around the picture on all pages: cameras, colours, theme, tracing, the list of keys.
 
 import { theme } from "./colour.js";
 import { PLACES } from "./camera.js";
@@ -9,7 +9,7 @@ import { phrase, word } from "./words.js";
 
 const find = (name) => document.getElementById(name);
 
-// Buttons of which one is pressed.
+// A group of buttons of which exactly one is pressed.
 function choice(parent, names, chosen, choose) {
   parent.replaceChildren();
   names.forEach((name, index) => {
@@ -21,7 +21,7 @@ function choice(parent, names, chosen, choose) {
 }
 
 export class Sheet {
-  // `stages`: the boxes; `repaint` is called when the theme has changed.
+  // `stages`: the boxes on the page; `repaint` is called when the theme has changed.
   constructor(stages, repaint) {
     Object.assign(this, { stages, repaint });
     find("theme").onclick = () => this.turnTheme();
@@ -30,7 +30,7 @@ export class Sheet {
     matchMedia("(prefers-color-scheme: dark)").onchange = () => this.paint();
     stages.forEach((stage) => stage.parent.addEventListener("pick", ({ detail }) => this.follow(stage, detail)));
     this.#tools();
-    this.follow(null, null); // in a box that begins anew no molecule is followed
+    this.follow(null, null); // when a box begins anew, no molecule is followed
   }
 
   #tools() {
@@ -58,7 +58,7 @@ export class Sheet {
     this.#tools();
   }
 
-  // Follow a molecule of a box, or none.
+  // Follow a molecule of a box, or no molecule.
   follow(chosen, molecule) {
     for (const stage of this.stages) stage.follow(stage === chosen ? molecule : null);
     find("trace").setAttribute("aria-pressed", molecule !== null && molecule !== undefined);
@@ -71,7 +71,7 @@ export class Sheet {
     this.follow(this.stages[0], followed ? null : this.stages[0].pick());
   }
 
-  // What is known of the molecule that is followed.
+  // A text about the molecule that is followed.
   story() {
     const stage = this.stages.find(({ trace }) => trace.molecule !== null);
     if (!stage?.shown) return "";

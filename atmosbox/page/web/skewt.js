@@ -1,14 +1,14 @@
-// What a skew-T is read by: its slanted temperatures, its adiabats, its shaded energies.
+// The parts of a skew-T: inclined isotherms, adiabats, and shaded energies.
 
 import { curveColour, look } from "./colour.js";
 
 const SLANT = 32; // K to the right for each factor e of pressure
 const KAPPA = 2 / 7, ZERO = 273.15;
 
-// Across the diagram, where X is the temperature at the foot.
+// The horizontal coordinate of the diagram, which is the temperature at its lower end.
 export const slanted = (temperature, pressure, foot) => temperature + SLANT * Math.log(foot / pressure);
 
-// Saturation vapour pressure over water [hPa] (Bolton 1980), for the lines in the background alone.
+// Saturation vapour pressure over water [hPa] (Bolton 1980), for the background lines only.
 const saturation = (celsius) => 6.112 * Math.exp(17.67 * celsius / (celsius + 243.5));
 
 function moistSlope(celsius, pressure) {
@@ -18,7 +18,7 @@ function moistSlope(celsius, pressure) {
   return (287 * kelvin + latent * mixing) / (1004 + latent * latent * mixing * 0.622 / (287 * kelvin * kelvin));
 }
 
-// The lines in the background: isotherms, dry and moist adiabats, each a list of (temperature, pressure).
+// The background lines: isotherms, dry and moist adiabats, each a list of (temperature, pressure).
 export function background(foot, top) {
   const pressures = Array.from({ length: 41 }, (_, step) => foot * (top / foot) ** (step / 40));
   const lines = [];
@@ -46,7 +46,7 @@ export function background(foot, top) {
   return lines;
 }
 
-// CAPE and CIN: polygons between the parcel and its environment, where the parcel is warmer or cooler.
+// CAPE and CIN: polygons between parcel and environment where the parcel is warmer (CAPE) or cooler (CIN).
 export function energies(panel, curves) {
   const parcel = curves.find(({ role }) => role === "data"), around = curves.find(({ role }) => role === "environment");
   const { LFC: lfc, EL: el } = panel.marks;
@@ -71,7 +71,7 @@ function at({ x, y }, pressure) {
   return NaN;
 }
 
-// Draw all of it; `spot` gives the pixel of a temperature and a pressure.
+// Draw background and energies; `spot` gives the pixel of a temperature and a pressure.
 export function drawSkewt(context, panel, curves, foot, top, spot, unit) {
   const path = (points) => {
     context.beginPath();

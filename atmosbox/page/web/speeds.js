@@ -1,12 +1,12 @@
-// How fast the molecules are at this moment, and Maxwell's curve for as much energy.
+// The distribution of the molecules' speeds in a frame, and Maxwell's distribution for the same kinetic energy.
 
 import { word } from "./words.js";
 
 const BOLTZMANN = 1.380649e-23; // J/K
 const BINS = 32;
-const TOP = 255; // a faster molecule is shown like this, and has no bin
+const TOP = 255; // the stored speed at the top of the scale; molecules with it may be faster and are in no bin
 
-// The panel of a graph that shows it.
+// The panel of this graph.
 export const speedPanel = (stage) => ({
   kind: "histogram",
   title: word(stage.particle === "disc" ? "speeds_now_discs" : "speeds_now"),
@@ -17,7 +17,7 @@ export const speedPanel = (stage) => ({
   y: { label: word(stage.particle === "disc" ? "share_of_discs" : "share_of_molecules"), unit: "%", log: false, invert: false },
 });
 
-// Counts by kind at a moment: how many, and the sums of the squares of their speeds.
+// For each kind of molecule in a frame: the counts in bins, the number, and the sum of the squares of the speeds.
 export function census(frame, stage) {
   const bins = new Float64Array(BINS), kinds = stage.species.map(() => ({ number: 0, squares: 0 }));
   let number = 0;
@@ -33,20 +33,20 @@ export function census(frame, stage) {
   return { bins, kinds, number };
 }
 
-// Temperature of the motion [K], by the kinetic energy of the molecules that are drawn.
+// Kinetic temperature [K], from the kinetic energy of the molecules that are drawn.
 export function kineticTemperature({ kinds, number }, stage) {
   const energy = kinds.reduce((sum, { squares }, kind) => sum + 0.5 * stage.species[kind].mass * squares, 0);
   return number ? 2 * energy / ((stage.box.planar ? 2 : 3) * number * BOLTZMANN) : NaN;
 }
 
-// Maxwell's density of speeds [s/m] at a temperature; of a plane gas, in two dimensions.
+// Maxwell's probability density of speeds [s/m] at a temperature; for a planar gas, that in two dimensions.
 function maxwell(speed, mass, temperature, planar) {
   const slope = mass / (BOLTZMANN * temperature);
   const fall = Math.exp(-0.5 * slope * speed * speed);
   return planar ? slope * speed * fall : Math.sqrt(2 / Math.PI) * slope ** 1.5 * speed * speed * fall;
 }
 
-// The curves of the graph at a moment.
+// The curves of the graph for a frame.
 export function speedCurves(frame, stage) {
   const counted = census(frame, stage);
   const { bins, kinds, number } = counted;
@@ -69,8 +69,8 @@ export function speedCurves(frame, stage) {
   return curves;
 }
 
-// How high the axis must be, so that it can stand still: Maxwell's curve has room in some frames of a film, and most of
-// the steps too. Molecules that all start alike would press everything else to the ground, and are cut off.
+// Upper end of a fixed axis: Maxwell's curve, with some margin, in about thirty frames of a film. Most steps of the
+// histogram fit, too; those of molecules that all start with one speed would be far too high, and are cut off.
 export function highestShare(frames, stage) {
   const every = Math.max(1, Math.floor(frames.length / 30));
   let highest = 0;

@@ -10,7 +10,7 @@ import { Trace } from "./trace.js";
 import { phrase, word } from "./words.js";
 
 const TABLE = Array.from({ length: 256 }, (_, share) => speedColour(share / 255));
-const SHARPEST = 2; // pixels of the screen per pixel of the page, at most
+const SHARPEST = 2; // greatest number of pixels of the screen per pixel of the page
 const CATCH = 14; // pixels within which a click finds a molecule
 
 export class Stage {
@@ -43,7 +43,7 @@ export class Stage {
     this.paint();
   }
 
-  // What draws; where the browser cannot draw in three dimensions, null, and a sentence in place of the picture.
+  // The renderer; null, with a sentence in place of the picture, if the browser cannot draw in three dimensions.
   #rendererOrSentence() {
     try {
       return new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, powerPreference: "high-performance" });
@@ -89,7 +89,7 @@ export class Stage {
     this.dirty = true;
   }
 
-  // Show the box at a time.
+  // Put all objects to their positions at a time.
   show(time) {
     if (!this.film.frames.length) return;
     const moment = this.film.around(time);
@@ -108,13 +108,13 @@ export class Stage {
     this.dirty = true;
   }
 
-  // Tint the walls as warm as they are: of each, its temperature, or null where that is not known.
+  // Tint the walls by their temperatures; null for a wall whose temperature is not known.
   warm(temperatures) {
     this.furniture.warm(temperatures);
     this.dirty = true;
   }
 
-  // Colour by speed, or by what a molecule is.
+  // Colour molecules by speed, or by kind.
   tint() {
     if (!this.shown) return;
     const { speed } = this.shown.first;
@@ -127,7 +127,7 @@ export class Stage {
     this.dirty = true;
   }
 
-  // The colour of the molecule that is followed, which no other has.
+  // Give the followed molecule a colour that no other molecule has.
   #traced() {
     return parse(this.mode === "speed" ? look().traced : look().ink);
   }
@@ -149,7 +149,7 @@ export class Stage {
     this.tint();
   }
 
-  // The molecule under a point of the picture, null if there is none; without a point, one in the middle of the box.
+  // The molecule at a point of the picture, null if there is none; without a point, one near the middle of the box.
   pick(x, y) {
     if (!this.shown) return null;
     const { clientWidth: width, clientHeight: height } = this.parent;
@@ -170,7 +170,7 @@ export class Stage {
     return best;
   }
 
-  // Give back what the graphics card holds.
+  // Free the memory of the graphics card.
   leave() {
     this.renderer?.dispose();
     this.renderer?.forceContextLoss();

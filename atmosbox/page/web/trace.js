@@ -1,8 +1,8 @@
-// One molecule that is followed: the path that it came, through the last frames.
+// The path of one molecule that is followed, through the last frames.
 
 import * as THREE from "three";
 
-const FRAMES = 48; // that the path goes back
+const FRAMES = 48; // of the path
 
 export class Trace {
   constructor() {
@@ -17,8 +17,8 @@ export class Trace {
     this.object.visible = false;
   }
 
-  // Draw the path up to where the molecule is now. It is broken where the molecule was in the liquid, and where it left
-  // through an open side and came back through the other.
+  // Draw the path up to the present position of the molecule. The path has gaps where the molecule was in the liquid and
+  // where it left through a periodic side and came back through the opposite one.
   draw(film, index, wraps, now, rgb) {
     this.object.visible = this.molecule !== null;
     if (this.molecule === null) return;

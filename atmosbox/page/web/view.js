@@ -1,4 +1,4 @@
-// The page of a run that is over, or of two: one clock, and everything follows it.
+// The page of one saved run, or of two: all parts follow one clock.
 
 import { showCaption } from "./caption.js";
 import { Clock, naturalPace } from "./clock.js";
@@ -70,7 +70,7 @@ export async function begin() {
   run(stages, clock);
 }
 
-// The place of a box on the page, with its heading if there are several.
+// The element of a box on the page, with a heading if there are several boxes.
 function frameOf({ heading }, number, count) {
   const frame = document.createElement("div");
   frame.className = "box";
@@ -83,7 +83,7 @@ function frameOf({ heading }, number, count) {
   return frame;
 }
 
-// How long a molecule of middling speed takes through the box, in the unit of the run's time.
+// Time that a molecule of medium speed takes to cross the box, in the unit of the run's time.
 function crossing({ box, metre, speed, time }) {
   const second = { s: 1, ns: 1e-9, ps: 1e-12 }[time.unit] ?? 1;
   return Math.max(...box.length) / metre / (0.4 * speed.high) / second;

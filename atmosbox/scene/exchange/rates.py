@@ -1,4 +1,4 @@
-"""The panel that shows how vapour and liquid approach equilibrium."""
+"""How the scenes of vapour and liquid are shown."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ __all__ = ["history"]
 def history(
     title: str, curves: dict[str, str], label: str, unit: str = "", *, parts: int, headline: str = "", theory: str = ""
 ) -> Panel:
-    """Return a panel of curves over the logarithm of time, because most of the change happens at the start.
+    """Return a panel of curves over the logarithm of time, for all happens at first.
 
     Parameters
     ----------
     title
-        Title of the panel, a sentence.
+        What it shows, as a sentence.
     curves
-        Names of variables, with the label of each.
+        Names of variables, and what they are called.
     label, unit
-        Label and unit of the vertical axis.
+        Of the vertical axis.
     parts
-        Number of equal parts of the axis of time over which the curves are averaged.
+        Into how many equal parts of the axis of time the curves are averaged.
     headline
-        Name of the number that is written into the panel.
+        Name of the number that is written into it.
     theory
-        Label of the theory of the first curve; empty for none.
+        What the theory of the first curve is called; none if empty.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The methods that every instrument has, and the type of its readings."""
+"""What every instrument does, and what it gives."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ class Readings(dict[str, Any]):
 
 
 class Instrument(Protocol):
-    """The methods that every instrument has."""
+    """What every instrument does."""
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Take one sample of what is averaged over a frame."""
+        """Read off what a frame takes its mean of."""
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Read what is measured at the end of a frame, and finish the means of the frame."""
+        """Read off what stands at the end of a frame, and finish its means."""
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return what has been measured; averages leave out the first ``settle`` frames."""
