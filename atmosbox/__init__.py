@@ -1,23 +1,23 @@
 """An atmosphere in a box: textbook meteorology that emerges from colliding molecules.
 
-A scene configures one shared engine of colliding molecules, a run measures what they do with error bars,
-and the answer of theory is laid beside it::
+A scene configures an engine of colliding molecules, which all scenes share. A run measures temperature, pressure and
+other quantities with error bars, and compares them with theory::
 
     import atmosbox as ab
 
-    ab.scenes()                                     # which scenes there are; ab.scenes("lifting-dry"): its settings
-    run = ab.run("lifting-dry", molecules=2000)     # an xarray.Dataset that begins with its headline numbers
+    ab.scenes()                                     # the scenes; ab.scenes("lifting-dry"): the settings of one
+    run = ab.run("lifting-dry", molecules=2000)     # an xarray.Dataset that prints its main results first
     ab.plot(run)                                    # its figure
     ab.show(ab.run("temperature", save_molecules=True))      # its molecules, in a notebook or in the browser
     ab.compare(run, ab.run("lifting-dry", temperature=30))   # two runs side by side
-    ab.sweep("condensation", {"temperature": [0, 10, 20]})   # how a number depends on a setting
-    ab.open("run.nc")                               # what was saved
-    ab.resume("run.part.nc")                        # a run that was stopped or killed goes on
+    ab.sweep("condensation", {"temperature": [0, 10, 20]})   # how the results depend on a setting
+    ab.open("run.nc")                               # a saved run
+    ab.resume("run.part.nc")                        # continue a run that was stopped or killed
 
-Importing `atmosbox` is quick: the engine and the libraries of the data are imported when a call needs them.
+Importing `atmosbox` is quick: the engine and the data libraries are imported when a call needs them.
 
 Where things are: `atmosbox.interface` holds these functions; `atmosbox.scenarios` the scenes;
-`atmosbox.engine` is the physics, to be read in the order its own docstring gives; `atmosbox.theory` holds
+`atmosbox.engine` is the physics, to be read in the order that its docstring gives; `atmosbox.theory` holds
 the closed-form answers.
 """
 
@@ -32,7 +32,7 @@ __all__ = ["__version__", "compare", "open", "plot", "resume", "run", "scenes", 
 
 
 def __getattr__(name: str) -> Any:
-    """Return a function of the public face when it is first used."""
+    """Return a public function; it is imported when it is first used."""
     if name == "plot":  # a room that can be called
         import atmosbox.plot as plot
 
@@ -47,7 +47,7 @@ def __getattr__(name: str) -> Any:
 
 
 def _function(name: str) -> Any:
-    """Return a function of the public face."""
+    """Return a public function."""
     from atmosbox import interface
 
     return getattr(interface, name)
@@ -57,5 +57,5 @@ CallableRoom.function_of = _function
 
 
 def __dir__() -> list[str]:
-    """Return what there is, for an editor that completes names."""
+    """Return the public names, for an editor that completes names."""
     return sorted({*globals(), *__all__})

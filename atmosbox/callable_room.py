@@ -1,7 +1,7 @@
-"""A room of the package that is also the function of its name: `atmosbox.plot` and `atmosbox.sweep`.
+"""A package that is also the function of the same name: `atmosbox.plot` and `atmosbox.sweep`.
 
 Python binds ``atmosbox.plot`` to the package of that name as soon as anything in it is imported, so a function of the
-same name would vanish. The package is therefore callable itself; which function it stands for, the package above says.
+same name would be hidden. The package itself is therefore callable; `atmosbox` says which function it calls.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ class CallableRoom(ModuleType):
     """
 
     function_of: ClassVar[Callable[[str], Callable[..., Any]]]
-    """Returns the function of a room by its name; `atmosbox` sets it when it is imported."""
+    """Function that returns the public function of a name; `atmosbox` sets it when it is imported."""
 
     def __call__(self, *args: Any, **options: Any) -> Any:
-        """Call the function of this room's name."""
+        """Call the function with the name of this package."""
         return CallableRoom.function_of(self.__name__.rpartition(".")[2])(*args, **options)

@@ -1,20 +1,20 @@
-"""Everything atmosbox can refuse or fail at, each said in one plain sentence.
+"""The errors of atmosbox, each with a message of one plain sentence.
 
-An error says what is wrong, with the value that was given, and what to type instead; ``str(error)`` is that
-sentence, and the command line prints it alone, without a traceback. Every class is also the builtin that a
-Python programmer would catch, and knows the status with which the command line ends::
+The message says what is wrong, with the value that was given, and what to type instead; ``str(error)`` is that
+sentence, and the command line prints it alone, without a traceback. Every class is also the builtin exception that a
+Python programmer would catch, and has the status with which the command line ends::
 
     AtmosboxError                        1
     |-- SettingError (ValueError)        2   a setting has a value that it may not have
     |   |-- UnknownSettingError          2   there is no setting of that name
-    |   |-- UnitError                    2   a number or its unit cannot be understood
+    |   |-- UnitError                    2   a number or its unit cannot be understood or does not fit the setting
     |   `-- PackingError                 2   the molecules do not fit into their box
     |-- UnknownSceneError (LookupError)  2   there is no scene of that name
-    |-- ConfigError (ValueError)         2   a settings file says something it cannot say
-    |-- SoundingError (ValueError)       2   a sounding cannot be understood, or not be true
+    |-- ConfigError (ValueError)         2   a settings file holds something that is not allowed there
+    |-- SoundingError (ValueError)       2   a sounding cannot be understood, or cannot be true
     |-- FileError (OSError)              2   a file is unreadable, foreign, in the way or unwritable
     |   `-- DiskFullError                1   the disk filled up while a run was saved
-    |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer lawful
+    |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer valid
     `-- PhysicsError (ArithmeticError)   3   a physics check failed: the run disagrees with the textbook
 """
 
@@ -41,20 +41,20 @@ __all__ = [
 
 
 def shown(value: object, longest: int = 60) -> str:
-    r"""Return a value as a sentence can repeat it: short, printable and on one line.
+    r"""Return a value in the form in which a sentence can repeat it: short, printable and on one line.
 
     Parameters
     ----------
     value
-        Whatever the user gave, of any type and size.
+        The value that the user gave, of any type and size.
     longest
-        How many characters of it are repeated; more for the path of a file, which is of use only when whole.
+        Number of characters that are repeated; more for the path of a file, which is useful only as a whole.
 
     Returns
     -------
     str
-        The value as text; what a terminal cannot print is escaped, and text that would not be seen, or not be
-        seen whole, is put in quotes.
+        The value as text; characters that a terminal cannot print are escaped, and text that is empty, cut off, or
+        begins or ends with a blank is put in quotes.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def shown(value: object, longest: int = 60) -> str:
         return f"about {'-' if value < 0 else ''}1e{power}"
     try:
         text = value if isinstance(value, str) else str(value) if isinstance(value, int | float) else repr(value)
-    except Exception:  # a stranger's object may fail to say what it is
+    except Exception:  # an unknown object may fail to describe itself
         text = f"a {type(value).__name__}"
     cut = text[:longest]
     safe = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in cut)
@@ -77,12 +77,12 @@ def shown(value: object, longest: int = 60) -> str:
 
 
 class AtmosboxError(Exception):
-    """Something atmosbox could not do, said in one sentence.
+    """Something that atmosbox could not do; the message is one sentence.
 
     Parameters
     ----------
     sentence
-        What is wrong and what to do about it.
+        What is wrong and what the user can do.
 
     Attributes
     ----------
@@ -100,12 +100,12 @@ class AtmosboxError(Exception):
     exit_code: ClassVar[int] = 1
 
     def reword(self, words: Callable[[str], str]) -> None:
-        """Say the same in other words, for a caller who does not type commands; what was given stays as it is.
+        """Change the wording for a caller who does not type commands; the given values stay as they are.
 
         Parameters
         ----------
         words
-            Returns a sentence, or a part of it, in those words.
+            Function that returns a sentence, or a part of it, in the new wording.
         """
         self.args = tuple(words(part) if isinstance(part, str) else part for part in self.args)
 
@@ -118,9 +118,9 @@ class SettingError(AtmosboxError, ValueError):
     setting
         The name of the setting.
     value
-        The value as the user gave it; None where there is none to show.
+        The value as the user gave it; None if there is none to show.
     problem
-        What is wrong with it, worded to follow the value, with the range that is allowed.
+        What is wrong with it, with the range that is allowed; the sentence puts it after the value.
     fix
         What to type instead.
 
@@ -146,7 +146,7 @@ class SettingError(AtmosboxError, ValueError):
         self.fix = fix
 
     def reword(self, words: Callable[[str], str]) -> None:
-        """Say the same in other words; the value stays as the user gave it."""
+        """Change the wording; the value stays as the user gave it."""
         self.setting, self.problem, self.fix = words(self.setting), words(self.problem), words(self.fix)
         self.args = (self.setting, self.value, self.problem, self.fix)
 
@@ -157,15 +157,15 @@ class SettingError(AtmosboxError, ValueError):
 
 
 class UnknownSettingError(SettingError):
-    """A scene has no setting of that name; the sentence offers the nearest one."""
+    """A scene has no setting of that name; the sentence suggests the nearest one."""
 
 
 class UnitError(SettingError):
-    """A number or its unit cannot be understood, or measures something else than the setting."""
+    """A number or its unit cannot be understood, or its unit has another dimension than the setting."""
 
 
 class PackingError(SettingError):
-    """So many molecules of that diameter do not fit into their box."""
+    """The molecules are too many or too large for their box."""
 
 
 class UnknownSceneError(AtmosboxError, LookupError):
@@ -175,19 +175,19 @@ class UnknownSceneError(AtmosboxError, LookupError):
 
 
 class ConfigError(AtmosboxError, ValueError):
-    """A settings file is not TOML, or holds something else than one scene and its settings."""
+    """A settings file is not TOML, or contains something that a settings file must not."""
 
     exit_code = 2
 
 
 class SoundingError(AtmosboxError, ValueError):
-    """A sounding is in no known format, lacks what it must hold, or says what no atmosphere can be."""
+    """A sounding is in no known format, lacks required values, or has values that no atmosphere can have."""
 
     exit_code = 2
 
 
 class FileError(AtmosboxError, OSError):
-    """A file is unreadable, not one of atmosbox's, in the way of a new one, or cannot be written."""
+    """A file is unreadable, not written by atmosbox, in the way of a new one, or cannot be written."""
 
     exit_code = 2
 

@@ -1,4 +1,4 @@
-"""The version of atmosbox, written once: the build, the files of runs and the command line read it here."""
+"""The version of atmosbox, written once: the build, the files of runs and the command line read it from here."""
 
 __all__ = ["__version__"]
 

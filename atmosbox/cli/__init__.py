@@ -1,15 +1,15 @@
-"""The command line: it parses and calls, and decides nothing.
+"""The command line: it parses what was typed and calls other modules, which do the work.
 
-Each command is one file: its options on top, below what it does. A new file is a new command. They share
+Each command is one file: its options on top, below them what it does. A new file is a new command. The commands share
 
-`application`  what all commands belong to
+`application`  the Typer application that all commands belong to
 `option`       the options that several commands have
 `request`      where the settings of a run come from: the command line, a `config` file, an earlier run
-`output_name`  the file that is written where no name is given
-`expectation`  the errors that were to be expected
+`output_name`  the output file if no name is given
+`expectation`  the expected errors of a run
 `terminal`     how an error ends a command
 
-What comes out, as text and as JSON, its tables, streams and the bar stand in `atmosbox.text`, which Python uses too.
+Results as text and as JSON, tables, streams and the progress bar are in `atmosbox.text`, which Python uses too.
 
 The result goes to stdout and everything else to stderr. The exit status is 0 if all went well, 1 if something
 failed, 2 if the request was wrong, 3 if a physics check failed, 130 after Ctrl-C and 143 after a request to
@@ -32,7 +32,7 @@ for _file in pkgutil.iter_modules(__path__):
 
 
 def main() -> None:
-    """Run the command line; this is what the program atmosbox calls.
+    """Run the command line: the entry point of the program atmosbox.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def main() -> None:
         With the status of the command.
     """
     warnings.formatwarning = lambda message, *rest, **named: f"warning: {message}\n"
-    # Python's own tidying up is no part of the command: Ctrl-C would change the status of what is done
+    # when Python cleans up at exit, the command is done: Ctrl-C must not change its exit status any more
     atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
     try:
         app(prog_name="atmosbox")

@@ -1,4 +1,4 @@
-"""The application that all commands belong to, and how its help looks."""
+"""The Typer application that all commands belong to, and the layout of its help."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ __all__ = ["app", "examples", "typed"]
 
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
-# In the order in which the help lists them: what one meets first comes first, and behind them any other by its name.
+# The order of the commands in the help: what a beginner needs first; commands not named here follow by name.
 _ORDER = "tour list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
 
 
 class _Group(TyperGroup):
-    """A group that remembers what was typed; its help has the commands in an order, each with its whole summary."""
+    """A group that remembers what was typed; its help lists the commands in `_ORDER`, each with its full summary."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         ctx.meta[_WORDS] = list(args)
@@ -37,18 +37,18 @@ class _Group(TyperGroup):
 
 
 def typed(ctx: typer.Context) -> str:
-    """Return what was typed, for the history of a file; bytes that are no text are spelled out."""
+    """Return the command as typed, for the history of a file; bytes that are not text are escaped."""
     words = ["atmosbox", *ctx.meta.get(_WORDS, sys.argv[1:])]
     return shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def examples(*lines: str) -> str:
-    """Return examples that stand below a help, one in a line."""
+    """Return the examples to print below a help text, one in each line."""
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
 def _version(wanted: bool) -> None:
-    """Say the version and end."""
+    """Print the version and exit."""
     if wanted:
         from atmosbox.version import __version__
 
@@ -67,7 +67,7 @@ app = typer.Typer(
         "atmosbox plot lifting-dry.nc     draw it",
     ),
     no_args_is_help=True,
-    rich_markup_mode=None,  # plain help is there at once, fits every terminal and can be searched
+    rich_markup_mode=None,  # plain help appears without delay, fits every terminal and can be searched
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": _WIDEST_HELP},
 )

@@ -1,4 +1,4 @@
-"""The command ``check``: verify the physics in a file and its conventions, or the engines in extreme cases."""
+"""The command ``check``: verify the physics and the CF conventions of a file, or the engines in extreme cases."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def check(
 
 
 def _check_file(file: str, *, as_json: bool) -> None:
-    """Verify a file and say what was found."""
+    """Verify a file and print the result."""
     from atmosbox.file.netcdf import read
     from atmosbox.simulation import runner
 
@@ -93,14 +93,14 @@ def _check_file(file: str, *, as_json: bool) -> None:
 
 
 class Conventions(NamedTuple):
-    """Whether a file keeps to the CF conventions; ``passed`` is None where nothing could tell."""
+    """Whether a file follows the CF conventions; ``passed`` is None if that could not be checked."""
 
     passed: bool | None
     sentence: str
 
 
 def conventions(path: Path) -> Conventions:
-    """Ask the compliance-checker, if there is one, whether a file keeps to CF-1.11.
+    """Check with the program compliance-checker, if it is installed, whether a file follows CF-1.11.
 
     Parameters
     ----------
@@ -110,9 +110,9 @@ def conventions(path: Path) -> Conventions:
     Returns
     -------
     Conventions
-        What it found.
+        The result of the check.
     """
-    # The one beside this Python is preferred to another that a shell would find.
+    # A compliance-checker beside this Python is preferred to another that a shell would find.
     places = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
     program = shutil.which(CHECKER, path=places)
     if program is None:
@@ -130,7 +130,7 @@ def conventions(path: Path) -> Conventions:
 
 
 def _messages(report: dict[str, Any]) -> list[str]:
-    """Return what the compliance-checker finds wrong."""
+    """Return the messages of the compliance-checker about what is wrong."""
     parts = [entry for rank in ("high", "medium", "low") for entry in report[f"{rank}_priorities"]]
     return [
         f"{part['name']}: {message}"
@@ -143,7 +143,7 @@ def _messages(report: dict[str, Any]) -> list[str]:
 def _check_extremes(
     file: str | None, engines: Sequence[str] | None, only: Sequence[str] | None, *, every: bool, as_json: bool
 ) -> None:
-    """Put engines through the extreme cases and say what became of them."""
+    """Run the engines in the extreme cases and print how each fared."""
     if file is not None:
         fix = f"give atmosbox check {file}, or atmosbox check --extremes"
         raise SettingError("--extremes", None, "is about the engines and not about a file", fix)
@@ -172,7 +172,7 @@ def _check_extremes(
 
 
 def _as_json(one: Finding, engine: str) -> dict[str, Any]:
-    """Return a finding as JSON has it."""
+    """Return a finding as a record for JSON."""
     verdict = one.verdict
     return {
         "extreme": one.extreme.name,
@@ -188,7 +188,7 @@ def _as_json(one: Finding, engine: str) -> dict[str, Any]:
 
 
 def _row(found: Sequence[Finding]) -> list[str]:
-    """Return the row of one extreme: what became of each engine, and the sentences."""
+    """Return the table row of one extreme case: the verdict on each engine, and the sentences."""
     said = [
         (f"{one.engine}: " if len(found) > 1 else "") + one.verdict.told
         for one in found

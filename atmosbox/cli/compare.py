@@ -92,7 +92,7 @@ def compare(
 
 
 def as_record(files: Sequence[str], names: Naming, numbers: Sequence[Compared]) -> dict[str, Any]:
-    """Return the comparison for JSON."""
+    """Return the comparison as a record for JSON."""
     return {
         "same": names.same,
         "changes": {change.name: list(change.values) for change in names.changes},

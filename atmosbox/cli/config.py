@@ -1,6 +1,6 @@
-"""A settings file, read but not yet checked.
+"""Read a settings file, without checking its settings.
 
-Which names and values are allowed, the settings of the scene tell:
+Which names and values are allowed is defined by the settings of the scene:
 :class:`atmosbox.scene.settings.SceneSettings`.
 """
 
@@ -26,7 +26,7 @@ _WORDS = {
 
 
 class Asked(NamedTuple):
-    """A run as a settings file, an earlier run or all of the command line asks for it.
+    """The request for a run by a settings file, by an earlier run or by the whole command line.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Asked(NamedTuple):
     save_molecules
         Whether the molecules are saved.
     accuracy
-        The accuracy that is wished, if any.
+        The requested accuracy, if any.
     """
 
     scene: str
@@ -49,14 +49,14 @@ class Asked(NamedTuple):
     accuracy: str | None = None
 
     def for_a_page(self) -> Asked:
-        """Return it on the exact engine, which is the one that a page holds, unless it asks for another itself."""
+        """Return the request with the exact engine, the one that a page contains, unless it names another."""
         return self._replace(engine="exact") if self.engine is None and self.accuracy is None else self
 
 
 def load_config(path: str | os.PathLike[str]) -> Asked:
     r"""Return the scene, the settings, and the engine or the accuracy that a TOML file asks for.
 
-    The file may hold the name of a scene, that of an engine or of an accuracy, and one table, and can run no code::
+    The file may name a scene, an engine or an accuracy, and hold one table of settings. It cannot run code::
 
         scene = "lifting-dry"
         accuracy = "lecture"
@@ -73,14 +73,14 @@ def load_config(path: str | os.PathLike[str]) -> Asked:
     Returns
     -------
     Asked
-        What it names.
+        The request.
 
     Raises
     ------
     FileError
         If the file cannot be read.
     ConfigError
-        If it is not TOML, or holds anything else; the sentence has the line where it is known.
+        If it is not TOML, or holds anything else; the message names the line if that is known.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def _toml(raw: bytes, where: str) -> tuple[str, dict[str, Any]]:
 
 
 def _line(text: str, key: str) -> str:
-    """Return ", line 3" for the line on which a key first stands; empty where it is not plain to see."""
+    """Return for example ", line 3" for the first line with a key; empty if the line cannot be told."""
     table = r"(?:settings[ \t]*\.[ \t]*)?"
     found = re.search(rf"^[ \t\[]*{table}[\"']?{re.escape(key)}[\"' \t]*[=.\]]", text, re.MULTILINE)
     return f", line {text.count(chr(10), 0, found.start()) + 1}" if found else ""

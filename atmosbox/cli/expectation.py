@@ -1,4 +1,4 @@
-"""What was known of the errors of a run beforehand, beside what the run found: as lines of text and as JSON."""
+"""The expected errors of a run beside those that it found, as lines of text and as JSON."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 def expectation_lines(
     expectation: Expectation | None, headlines: Sequence[Headline], engine: str, width: int
 ) -> list[str]:
-    """Return what was picked and which errors are to be expected, with those that were found if there are any.
+    """Return the lines that say which engine and settings were picked, which errors are expected and which were found.
 
     Parameters
     ----------
     expectation
-        What is known; None where nothing was asked for, or the engine was not measured at these settings.
+        The expected errors; None if no accuracy was asked for, or the engine was not measured at these settings.
     headlines
-        What the run found; none before it.
+        The results of the run; empty before it.
     engine
-        The engine with its options; empty for the one that the scene has without being asked.
+        The engine with its options; empty for the default engine of the scene.
     width
-        How many columns the lines may take.
+        Number of columns that the lines may take.
     """
     if expectation is None:
         if not engine:
@@ -61,14 +61,14 @@ def expectation_lines(
 
 
 def _meaning(wish: Wish) -> str:
-    """Return what a target that has a name means, in brackets."""
+    """Return the meaning of a named accuracy, in brackets; empty for any other accuracy."""
     if wish.text not in TARGETS:
         return ""
     return f" ({'the most accurate that was measured' if wish.best else wish.limits})"
 
 
 def _setting(settings: Mapping[str, Any], name: str) -> str:
-    """Return a setting as it was when the errors were measured."""
+    """Return a setting with its value in the measurement of the errors."""
     return said(name, settings[name]) if name in settings else f"the default of {name}"
 
 
@@ -79,14 +79,14 @@ def _shown(error: ExpectedError, size: float, sign: str = "") -> str:
 
 
 def _found(error: ExpectedError, headline: Headline | None) -> str:
-    """Return the misfit of a run in the unit of an error."""
+    """Return the difference of a run from theory, in the unit of the expected error; a dash if there is none."""
     if headline is None or headline.misfit is None or not (size := error.size(headline.theory)):
         return "-"
     return _shown(error, headline.misfit / size, "+")
 
 
 def expectation_json(expectation: Expectation | None, headlines: Sequence[Headline] = ()) -> dict[str, Any] | None:
-    """Return what was known of a run's errors for JSON, with what it found; None where nothing was."""
+    """Return the expected errors as a record for JSON, with those that the run found; None if none are known."""
     if expectation is None:
         return None
     made = expectation.as_dict()

@@ -1,4 +1,4 @@
-"""The command ``info``: what a scene is about, and what may be set."""
+"""The command ``info``: the description and the settings of a scene."""
 
 from __future__ import annotations
 

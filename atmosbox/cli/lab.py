@@ -1,4 +1,4 @@
-"""The command ``lab``: a page in which a scene runs, without a server and without Python."""
+"""The command ``lab``: an HTML page in which a scene runs, without a server and without Python."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command ``list``: which scenes there are."""
+"""The command ``list``: list the scenes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command ``live``: let a box run, and serve the page on which a class plays with it."""
+"""The command ``live``: run a box, and serve the page on which a class can change it."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def _place(out: str | None, scene: str, *, force: bool) -> tuple[Path, str | Non
 
 
 def _display() -> bool:
-    """Return whether there is a screen on which a browser could open; in a terminal none should."""
+    """Return whether there is a screen on which a browser can open; a browser inside the terminal is not wanted."""
     if sys.platform in ("darwin", "win32"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

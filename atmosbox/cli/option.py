@@ -60,7 +60,7 @@ class Colours(StrEnum):
 
 
 def _completed(incomplete: str) -> list[str]:
-    """Return the scenes whose names begin like what is typed."""
+    """Return the scenes whose names begin with the letters typed so far."""
     from atmosbox import scenarios
 
     return [name for name in scenarios.names() if name.startswith(incomplete.replace("_", "-"))]

@@ -1,4 +1,4 @@
-"""The file that a command writes where no name was given, and names that cannot be meant."""
+"""Default names of output files, and names that a command refuses."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from atmosbox.errors import FileError
 __all__ = ["FIGURES", "beside", "for_scene", "netcdf_name"]
 
 FIGURES = (".png", ".svg", ".pdf")
-_LONGEST = 100  # characters of a name that is made of those of all files
+_LONGEST = 100  # characters of a name that is made of the names of all files
 
 
 def for_scene(scene: str, ending: str = ".nc") -> Path:
-    """Return the file, in this folder, of what is made of a scene.
+    """Return the default path, in this folder, of an output file of a scene.
 
     Examples
     --------
@@ -27,12 +27,12 @@ def for_scene(scene: str, ending: str = ".nc") -> Path:
 
 
 def beside(files: Sequence[str], kind: str) -> Path:
-    """Return the file of a kind beside the first file, named after all of them.
+    """Return the path of an output file of this kind, beside the first file and named after all files.
 
     Raises
     ------
     FileError
-        If one of them is a folder, which has no name to take.
+        If one of the files is a folder.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def beside(files: Sequence[str], kind: str) -> Path:
 
 
 def netcdf_name(out: str | None, default: Path) -> Path:
-    """Return the netCDF file that is to be written, or refuse a name that is that of a figure."""
+    """Return the path of the netCDF file to write; refuse the name of a figure."""
     path = default if out is None else Path(out)
     if path.suffix.lower() in FIGURES:
         data = shlex.quote(str(path.with_suffix(".nc")))

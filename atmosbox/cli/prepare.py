@@ -1,4 +1,4 @@
-"""The command ``prepare``: compile in advance what the first run of a scene would wait for."""
+"""The command ``prepare``: compile the engine in advance, so that the first run of a scene need not wait."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def prepare(
 
 
 def _find_pace(names: list[str]) -> None:
-    """Run a small box, from which it is known how fast this computer is, unless one has been run."""
+    """Measure how fast this computer is with a small run, unless that has been measured already."""
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time
 
@@ -82,7 +82,7 @@ def _find_pace(names: list[str]) -> None:
 
 
 def _engines(scene: str, every: bool) -> list[str]:
-    """Return the engines to compile for: that of the scene, and the exact one, on which it runs with few molecules."""
+    """Return the engines to compile: the scene's own, and the exact one, on which it runs with few molecules."""
     from atmosbox.simulation.preparation import prepare as prepared
 
     own = prepared(scene, {}).engine.name
@@ -90,12 +90,12 @@ def _engines(scene: str, every: bool) -> list[str]:
 
 
 def _compiled(asked: list[Work]) -> Iterator[tuple[Work, float | None]]:
-    """Compile on all cores; yield each scene and engine with its seconds, None where they do not go together."""
+    """Compile on all cores; yield each scene and engine with the time [s], None if the scene cannot use the engine."""
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, as_completed
 
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    # processes of their own, since a compiler holds the lock of its interpreter
+    # separate processes, since the compiler holds the lock of the Python interpreter (GIL)
     with ProcessPoolExecutor(min(cores, len(asked)), multiprocessing.get_context("spawn")) as pool:
         running = {pool.submit(_compile, *each): each for each in asked}
         try:

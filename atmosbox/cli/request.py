@@ -24,14 +24,14 @@ def gather(
     engine: str | None = None,
     accuracy: str | None = None,
 ) -> Asked:
-    """Return a run as all of the command line asks for it, before anything of it is checked.
+    """Return the request for a run that the whole command line makes; its settings are not yet checked.
 
-    Of two values for one setting that of the later counts: ``--from``, ``--config``, ``--set``, ``--seed``.
+    If a setting has two values, the later in this list counts: ``--from``, ``--config``, ``--set``, ``--seed``.
 
     Parameters
     ----------
     scene
-        The name of a scene, or the path of one; None where a file names it.
+        The name of a scene, or the path of its file; None if the file after ``--config`` or ``--from`` names it.
     values
         The texts after each ``--set``.
     config, source
@@ -44,8 +44,8 @@ def gather(
     Raises
     ------
     AtmosboxError
-        If a file or a text cannot be understood, two of them name different scenes, or an accuracy is wished of
-        a run whose engine is given.
+        If a file or a text cannot be understood, if two of them name different scenes, or if both an accuracy and an
+        engine are asked for.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def is_path(scene: str) -> bool:
 
 
 def _earlier(path: str) -> Asked:
-    """Return the run in a file."""
+    """Return the request that made the run in a file."""
     from atmosbox.cli.config import Asked
     from atmosbox.file.netcdf import read
     from atmosbox.file.provenance import parameters
@@ -102,9 +102,9 @@ def _earlier(path: str) -> Asked:
 
 
 def _agreed(scene: str, named: str, option: str, path: str, error: type[AtmosboxError]) -> str:
-    """Return the scene that the command line and a file agree on.
+    """Return the scene, which the command line and a file must not name differently.
 
-    A file never makes atmosbox run a program: the path of a scene must be typed.
+    A file never makes atmosbox run code: the path of a user's own scene must be typed.
     """
     if not named:
         return scene
@@ -119,7 +119,7 @@ def _agreed(scene: str, named: str, option: str, path: str, error: type[Atmosbox
 
 
 def _over(settings: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return settings with those replaced that have a new value, however their names are spelled."""
+    """Return the settings with new values in place of old ones; names may be spelled with - or _."""
     from atmosbox.scene.spelling import field_name
 
     new = {field_name(name) for name in values}

@@ -1,4 +1,4 @@
-"""The command ``run``: run a scene, save it, and say what came out."""
+"""The command ``run``: run a scene, save the run, and print its results."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def run(
 
 
 def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: bool, as_json: bool) -> None:
-    """Say what came out of a run that is complete."""
+    """Print the results of a complete run."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
     from atmosbox.simulation.runner import LEDGER_LIMIT
     from atmosbox.text.report import outcome_json, outcome_lines
@@ -168,7 +168,7 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: boo
 
 
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:
-    """Say what is about to be run, as the result of a dry run, else on stderr."""
+    """Print what is going to run: on stdout for a dry run, otherwise on stderr."""
     from atmosbox.cli.expectation import expectation_json, expectation_lines
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time
@@ -206,7 +206,7 @@ def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry
 def _say_interrupted(
     stop: Interrupted, prepared: Prepared, checkpoint: Checkpoint, *, quiet: bool, as_json: bool
 ) -> None:
-    """Say what is left of a run that was stopped, and how to look at it."""
+    """Print what has been saved of a run that was stopped, and how to look at it."""
     from atmosbox.simulation.runner import LEDGER_LIMIT
     from atmosbox.text.report import next_command, outcome_json
 
@@ -225,5 +225,5 @@ def _say_interrupted(
 
 
 def _stamp(path: Path) -> int | None:
-    """Return when a file was last written; None if there is none."""
+    """Return the time at which a file was last written; None if there is no file."""
     return path.stat().st_mtime_ns if path.exists() else None

@@ -27,7 +27,7 @@ class SheetFormat(StrEnum):
 
 
 class Paper(StrEnum):
-    """The papers of a sheet."""
+    """The paper sizes of a sheet."""
 
     a4 = "a4"
     letter = "letter"
@@ -92,7 +92,7 @@ def sheet(
 
 
 def _pages(made: Worksheet, folder: Path, force: bool) -> list[Path]:
-    """Write the page of each run beside the sheet; all are refused before the first is written."""
+    """Write the page of each run beside the sheet; all paths are checked before the first page is written."""
     from atmosbox.file.output_path import check_writable, write_whole
     from atmosbox.lab.lab_file import lab_text
 

@@ -1,4 +1,4 @@
-"""The command ``sweep``: run a scene with many settings, save it, and say what came out."""
+"""The command ``sweep``: run a scene with many settings, save the runs, and print the results."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from atmosbox.sweep import Plan, SweepInterrupted, Swept
 
 _MOST_NAMED = 5
-"""So many failures are told one by one."""
+"""Largest number of failures that are printed one by one."""
 
 
 @app.command(
@@ -122,7 +122,7 @@ def sweep(
 
 
 def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
-    """Return a whole number that stood behind an option."""
+    """Return the whole number that was given for an option."""
     from atmosbox.scene.parameter import Parameter
 
     try:
@@ -133,7 +133,7 @@ def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
 
 
 def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
-    """Say what would run."""
+    """Print which runs the sweep would make."""
     names = [axis.name for axis in grid.axes]
     if as_json:
         points = [dict(grid.values(point)) for point in range(1, grid.points + 1)]
@@ -156,7 +156,7 @@ def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
 
 
 def _say(grid: Plan, swept: Swept, path: Path, *, as_json: bool, quiet: bool) -> None:
-    """Say what came out."""
+    """Print the results."""
     from atmosbox.simulation.runner import LEDGER_LIMIT
     from atmosbox.text.report import ledger_line, next_command
 
@@ -188,7 +188,7 @@ def records(grid: Plan, dataset: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
-    """Return a table of the points: the mean of the members with its error, and theory beside it."""
+    """Return a table of the points: the mean of the members with its standard error, and theory beside it."""
     from atmosbox.scene.conversion import from_si
     from atmosbox.sweep import FEWEST
 
@@ -225,7 +225,7 @@ def _headlines(dataset: xr.Dataset) -> list[str]:
 
 
 def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
-    """Say what is kept of a sweep that was stopped, and how to go on."""
+    """Print what has been saved of a sweep that was stopped, and how to continue it."""
     from atmosbox.file.output_path import part_path
     from atmosbox.text.report import next_command
 
@@ -240,7 +240,7 @@ def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
 
 
 def _judge(grid: Plan, swept: Swept, path: Path) -> None:
-    """Raise the error that the sweep ends with, if any run has failed."""
+    """Raise the error of the sweep, if any run has failed."""
     from atmosbox.simulation.runner import LEDGER_LIMIT
 
     failed: AtmosboxError | None = None

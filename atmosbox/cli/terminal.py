@@ -1,4 +1,4 @@
-"""What goes to which stream, and how an error ends a command: with one sentence and a status."""
+"""How an error ends a command: with one sentence on stderr and an exit status."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from atmosbox.text.stream import say, say_json, tell
 
 __all__ = ["guarded", "prints_to_stderr", "say", "say_json", "stoppable", "tell", "width"]
 
-INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
-TERMINATED = 143  # what a shell reports of a program that was asked to end
-HUNG_UP = 129  # what a shell reports of a program whose terminal was closed
-ENDLESS = 1_000_000  # columns of what is no terminal
+INTERRUPTED = 130  # exit status, as shells report it, of a program that Ctrl-C ended
+TERMINATED = 143  # exit status of a program that was asked to end (SIGTERM)
+HUNG_UP = 129  # exit status of a program whose terminal was closed (SIGHUP)
+ENDLESS = 1_000_000  # columns if the output is not a terminal
 LONGEST_SENTENCE = 20_000  # characters; paths may have 4096
 
 P = ParamSpec("P")
@@ -31,12 +31,12 @@ R = TypeVar("R")
 
 
 def prints_to_stderr() -> contextlib.AbstractContextManager[object]:
-    """Keep what a scene of a user's own prints out of the result."""
+    """Send what a user's own scene prints to stderr, so that it does not get into the result."""
     return contextlib.redirect_stdout(sys.stderr)
 
 
 def width() -> int:
-    """Return how many columns the result may take: those of the terminal, or of COLUMNS if that is set."""
+    """Return the number of columns that the result may take: those of the terminal, or COLUMNS if that is set."""
     tty = sys.stdout is not None and sys.stdout.isatty()
     return shutil.get_terminal_size().columns if tty or os.environ.get("COLUMNS", "").isdecimal() else ENDLESS
 
@@ -46,7 +46,7 @@ def _listed(given: object) -> list[object]:
 
 
 def _reason(error: Exception) -> str:
-    """Return what went wrong on one short line."""
+    """Return the reason of an error in one short line."""
     reason = " ".join(str(error).split())
     return type(error).__name__ + (f": {shown(reason, longest=200)}" if reason else "")
 
@@ -61,14 +61,14 @@ class Stopped(KeyboardInterrupt):
 
 @contextlib.contextmanager
 def stoppable() -> Iterator[None]:
-    """Let a request to end (SIGTERM), or a terminal that is closed (SIGHUP), stop a command as Ctrl-C does.
+    """Make a request to end (SIGTERM) or the closing of the terminal (SIGHUP) stop a command as Ctrl-C does.
 
-    So it removes what it has half written, and keeps what is complete.
+    The command then removes files that are half written, and keeps what is complete.
 
     Raises
     ------
     Stopped
-        When the signal comes.
+        When such a signal arrives.
     """
     status = {signal.SIGTERM: TERMINATED}
     if hasattr(signal, "SIGHUP"):
@@ -89,12 +89,12 @@ def stoppable() -> Iterator[None]:
 
 
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
-    """Return a command that ends with one sentence and a status, whatever goes wrong in it.
+    """Return a command that ends with one sentence and an exit status, whatever goes wrong in it.
 
     Parameters
     ----------
     command
-        The function; its option ``verbose``, if it has one, asks for the traceback of a bug.
+        The function; its option ``verbose``, if it has one, shows the traceback of a bug.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except (typer.Exit, typer.Abort, typer.BadParameter):
             raise
         except AtmosboxError as error:
-            # The name of a file may hold anything, but a sentence stands on one line.
+            # A file name may contain anything, even a new line, but the message must be one line.
             tell(f"error: {shown(str(error), longest=LONGEST_SENTENCE)}")
             raise typer.Exit(error.exit_code) from error
         except KeyboardInterrupt as error:
@@ -124,7 +124,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
                 tell(traceback.format_exc())
             again = "" if kwargs.get("verbose") else "; --verbose shows where"
             read = [str(file) for name in ("file", "files") for file in _listed(kwargs.get(name))]
-            if read:  # anybody can write a file with the names of atmosbox and numbers that it never would
+            if read:  # the file may have the names that atmosbox writes, but values that it never writes
                 named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
                 what = f"it is not as atmosbox has written it, or this is a bug{again}"
                 tell(f"error: {named} cannot be used ({_reason(error)}): {what}.")

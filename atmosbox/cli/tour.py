@@ -1,4 +1,4 @@
-"""The command ``tour``: through the program in ten minutes, each step with the command that does it."""
+"""The command ``tour``: a tour of the program in ten minutes, each step with its command."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FOLDER = "atmosbox-tour"
 
 
 class Step(NamedTuple):
-    """A step of the tour: what it shows, and the commands that do it, without the name of the program."""
+    """A step of the tour: its title, what it shows, and its commands without the name of the program."""
 
     title: str
     words: str
@@ -134,7 +134,7 @@ def tour(
 
 
 def _folder(wanted: Path | None) -> Path:
-    """Return a new folder for the files: the one that was asked for, or the first that is free."""
+    """Make and return a new folder for the files: the one that was asked for, or the first default name not in use."""
     tried = [wanted] if wanted is not None else [Path(FOLDER + end) for end in ("", *(f"-{k}" for k in range(2, 1000)))]
     folder = next((each for each in tried if each is not None and not each.exists()), None)
     if folder is None:
@@ -147,7 +147,7 @@ def _folder(wanted: Path | None) -> Path:
 
 
 def _show(step: Step, number: int) -> None:
-    """Say what a step is about, in lines that fit."""
+    """Print the explanation of a step, in lines that fit the terminal."""
     import textwrap
 
     columns = min(shutil.get_terminal_size().columns, 100)
@@ -156,7 +156,7 @@ def _show(step: Step, number: int) -> None:
 
 
 def _run(command: str, folder: Path, *, wait: bool) -> None:
-    """Say a command, wait for Enter, and run it as if it had been typed."""
+    """Print a command, wait for Enter, and run the command as if it had been typed."""
     say(f"\n$ atmosbox {command}")
     sys.stdout.flush()
     if wait:
@@ -174,14 +174,14 @@ def _run(command: str, folder: Path, *, wait: bool) -> None:
 
 
 def _status(words: Sequence[str], folder: Path) -> int:
-    """Return with which status a command has ended; Ctrl-C goes to it too, and it tidies up before the tour ends."""
+    """Run a command and return its exit status; after Ctrl-C, wait until the command has cleaned up."""
     with subprocess.Popen(words, cwd=folder) as running:
         try:
             return running.wait()
         except KeyboardInterrupt:
             running.wait()
             raise
-        except BaseException:  # a request to end comes to this program alone
+        except BaseException:  # SIGTERM reaches only this process
             running.terminate()
             running.wait()
             raise

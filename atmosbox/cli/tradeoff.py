@@ -1,4 +1,4 @@
-"""The command ``tradeoff``: measure speed against accuracy, and say, save and draw it."""
+"""The command ``tradeoff``: measure speed against accuracy, and print, save and draw the results."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def tradeoff(
 
 
 def rows(found: xr.Dataset) -> list[dict[str, object]]:
-    """Return the measurement as one record for each way of running, for JSON and CSV."""
+    """Return the measurement as records for JSON and CSV, one for each engine with its settings."""
     made = []
     for k, label in enumerate(found.rung.values):
         record: dict[str, object] = {"run": str(label), "engine": str(found.engine.values[k])}
@@ -113,7 +113,7 @@ def rows(found: xr.Dataset) -> list[dict[str, object]]:
 
 
 def _plain(value: float) -> float | int | None:
-    """Return a number as JSON has it."""
+    """Return a number as JSON can hold it."""
     if not math.isfinite(value):
         return None
     return int(value) if float(value).is_integer() and abs(value) < 1e9 else float(value)
@@ -130,7 +130,7 @@ def as_csv(found: xr.Dataset) -> str:
 
 
 def lines(found: xr.Dataset, columns: int) -> list[str]:
-    """Return the measurement as text: bias with its error, and in brackets the noise of a single run."""
+    """Return the measurement as text: bias with its standard error, and in brackets the noise of a single run."""
     from atmosbox.plot.tradeoff_choice import WANTED, foremost, recommended
 
     chosen = foremost(found)

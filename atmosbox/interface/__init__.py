@@ -1,9 +1,9 @@
-"""What a script or a notebook calls: the functions of `atmosbox` itself.
+"""The public functions of `atmosbox`, which scripts and notebooks call.
 
-Read in this order: `wording` (refusals in the words of Python), `notebook` (whether there is one, and how it shows
-progress), `run_dataset` (a dataset that begins with its numbers), `measurement` (`run`, `resume`, `open`), `grid`
-(`sweep`), `drawing` (`plot`, `compare`), `inline_page` (`show`), `catalogue` (`scenes`). Whatever is heavy is imported
-when a function needs it.
+Read in this order: `wording` (error messages with Python arguments), `notebook` (detects a notebook, and shows
+progress in it), `run_dataset` (a dataset that prints its results first), `measurement` (`run`, `resume`, `open`),
+`grid` (`sweep`), `drawing` (`plot`, `compare`), `inline_page` (`show`), `catalogue` (`scenes`). Large libraries are
+imported when a function needs them.
 """
 
 from atmosbox.interface.catalogue import Printed, scenes

@@ -1,4 +1,4 @@
-"""Which scenes there are, and what may be set in one."""
+"""The list of scenes, and the settings of a scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Printed(tuple[str, ...]):
     lines: Sequence[str]
 
     def __new__(cls, names: Sequence[str], lines: Sequence[str]) -> Printed:
-        """Return the names with the lines that show them."""
+        """Make the tuple of names, with the lines that print them."""
         made = super().__new__(cls, names)
         made.lines = lines
         return made
@@ -48,12 +48,12 @@ def scenes(scene: str | os.PathLike[str]) -> Printed: ...
 
 
 def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:
-    """Return the names of all scenes, or the settings of one; printed, each has a line that says what it is.
+    """Return the names of all scenes, or of the settings of one scene; printed, each has a line that explains it.
 
     Parameters
     ----------
     scene
-        Name of a scene, or the path of your own, whose settings are wanted.
+        Name of the scene whose settings to return, or the path of your own; by default the scenes are returned.
 
     Returns
     -------

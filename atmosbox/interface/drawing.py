@@ -1,4 +1,4 @@
-"""The figure of a run, and that of several runs with their numbers side by side."""
+"""The figure of a run, and the comparison of several runs with their results side by side."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Comparison", "compare", "plot"]
 
-_DPI = 110  # of a picture in a notebook
+_DPI = 110  # dots per inch of a picture in a notebook
 _WIDTH = 120
 
 
 def opened(run: xr.Dataset | str | os.PathLike[str]) -> xr.Dataset:
-    """Return a run, read from its file if that is what is given."""
+    """Return a run; if a path is given, read the run from its file."""
     if isinstance(run, str | os.PathLike):
         from atmosbox.file.netcdf import read
 
@@ -31,7 +31,7 @@ def opened(run: xr.Dataset | str | os.PathLike[str]) -> xr.Dataset:
 
 
 def _shown(drawing: Figure, theme: str) -> Figure:
-    """Return a figure that a notebook shows as it would be saved."""
+    """Make a notebook show the figure as it would be saved, and return the figure."""
     from atmosbox.plot.figure_file import render
 
     def picture() -> bytes:
@@ -50,21 +50,21 @@ def plot(
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
 ) -> Figure:
-    """Draw the figure of a run, of a sweep or of a measured trade.
+    """Draw the figure of a run, of a sweep or of a measured tradeoff.
 
     Parameters
     ----------
     run
         The dataset, or the path of its file.
     theme
-        A figure for a page, or one for a screen of 16:9 with large type.
+        ``"notes"``: a figure for a page; ``"slides"``: one for a screen of 16:9 with large type.
     with_box
-        Whether the molecules are drawn at the start, half-way and at the end, over the graphs; the run must have been
+        Whether to draw the molecules at the start, half-way and at the end, above the graphs; the run must have been
         made with ``save_molecules=True``.
     all_panels
-        Whether a measured trade is drawn with all its quantities, and not the foremost alone.
+        Whether to draw all quantities of a measured tradeoff, and not only the most important one.
     out
-        A file to write as well: PNG, SVG or PDF, as its name says.
+        A file to write as well: PNG, SVG or PDF, as its suffix says.
     force
         Whether a file of that name may be replaced.
 
@@ -99,7 +99,7 @@ def plot(
 
 
 class Comparison:
-    """Several runs laid over each other: a table of their numbers, and one figure.
+    """The comparison of several runs: a table of their results, and one figure with all of them.
 
     A notebook shows both; ``print`` shows the table.
 
@@ -108,7 +108,7 @@ class Comparison:
     figure : matplotlib.figure.Figure
         The figure.
     table : str
-        The headline numbers of all runs, with the difference of each from the first and its standard error.
+        The headlines of all runs, with the difference of each run from the first and its standard error.
     """
 
     def __init__(self, figure: Figure, table: str) -> None:
@@ -134,23 +134,23 @@ def compare(
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
 ) -> Comparison:
-    """Lay runs over each other: one figure, and by how much their numbers differ.
+    """Compare runs: draw them in one figure, and tabulate by how much their results differ.
 
     Parameters
     ----------
     *runs
         Two to six runs: datasets, or paths of files.
     theme
-        A figure for a page, or one for a screen.
+        ``"notes"``: a figure for a page; ``"slides"``: one for a screen.
     out
-        A file for the figure: PNG, SVG or PDF, as its name says.
+        A file for the figure: PNG, SVG or PDF, as its suffix says.
     force
         Whether a file of that name may be replaced.
 
     Returns
     -------
     Comparison
-        Its ``figure`` and its ``table``; what is not the same in all runs is named.
+        Its ``figure`` and its ``table``; the table also lists what differs between the runs, such as settings.
 
     Raises
     ------

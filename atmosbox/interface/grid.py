@@ -1,4 +1,4 @@
-"""A scene over a grid of settings."""
+"""Run a scene over a grid of settings."""
 
 from __future__ import annotations
 
@@ -30,31 +30,31 @@ def sweep(
     progress: Show | bool | None = None,
     **settings: Any,
 ) -> xr.Dataset:
-    """Run a scene with many settings, and return how its numbers depend on them.
+    """Run a scene with many settings, and return how its results depend on them.
 
     Parameters
     ----------
     scene
         Name of a scene, or the path of your own.
     vary
-        The values of each setting that varies: a list, or a text such as ``"0degC:40degC:5"``, five values from the
-        one to the other, ``"50:5000:5log"`` at even ratios.
+        The values of each setting that varies: a list, or a text such as ``"0degC:40degC:5"`` for five evenly spaced
+        values, or ``"50:5000:5log"`` for values in even ratios.
     members
         Number of runs at each point, each with a seed of its own.
     seed
-        The seed from which those of the runs are made.
+        The seed from which the seeds of all runs are made.
     engine, accuracy
         As for `atmosbox.run`.
     out
-        File to write, as CF netCDF. With it, runs are saved as they end, and the same call goes on where it was
-        stopped.
+        File to write, as CF netCDF. With it, each run is saved as it ends, and the same call continues a sweep that
+        was stopped.
     force
         Whether a file of that name may be replaced.
     jobs
-        Number of processes; one for each core by default. With 1 the runs are made in this very process. A script
-        that starts more has to do so below ``if __name__ == "__main__":``.
+        Number of processes; one for each core by default. With 1 the runs are made in this process. A script that
+        uses more must call `sweep` below ``if __name__ == "__main__":``.
     scheduler
-        The address of a Dask scheduler, whose workers run the members instead.
+        The address of a Dask scheduler whose workers make the runs instead.
     progress
         As for `atmosbox.run`.
     **settings
@@ -63,12 +63,12 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        Mean, standard error and theory of each headline number on the settings that vary, in SI units.
+        Mean, standard error and theory of each headline as functions of the settings that vary, in SI units.
 
     Raises
     ------
     SettingError
-        If a setting is unknown or a value is not allowed, or if no point at all can run.
+        If a setting is unknown or a value is not allowed, or if no point can run.
     FileError
         If the file cannot be written.
 
@@ -98,10 +98,10 @@ def sweep(
 
 
 def _typed(values: str | Iterable[Any]) -> str:
-    """Return values as they are typed behind ``--vary name=``."""
+    """Return values as text, as typed after ``--vary name=``."""
     return values if isinstance(values, str) else ",".join(_word(value) for value in values)
 
 
 def _word(value: Any) -> str:
-    """Return one value as it is typed."""
+    """Return one value as text, as typed on the command line."""
     return {True: "on", False: "off"}[value] if isinstance(value, bool) else str(value)

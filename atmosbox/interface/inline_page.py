@@ -1,4 +1,4 @@
-"""The page of a run where a notebook is read: the molecules in their box, in three dimensions, below the cell."""
+"""The page of a run in a notebook: the molecules in their box, in three dimensions, below the cell."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ __all__ = ["InlinePage", "show"]
 
 
 class InlinePage:
-    """A page as a notebook shows it, in a frame of its own that needs no network.
+    """A page that a notebook shows in a frame of its own; it needs no network.
 
     Attributes
     ----------
     text : str
-        The HTML of the page, complete.
+        The complete HTML of the page.
     height : int
-        How high the frame is, in pixels.
+        Height of the frame in pixels.
     """
 
     def __init__(self, text: str, height: int) -> None:
@@ -33,18 +33,18 @@ class InlinePage:
         self.height = height
 
     def __repr__(self) -> str:
-        """Say how large the page is and how to keep it."""
+        """Return a line that says how large the page is and how to save it."""
         return f'page of {len(self.text) / 1e6:.1f} MB; page.save("page.html") keeps it'
 
     def _repr_html_(self) -> str:
-        """Return the frame that shows it."""
+        """Return the frame that shows the page."""
         return (
             f'<iframe srcdoc="{html.escape(self.text)}" title="The molecules of the run in their box, and its graphs"'
             f' style="width:100%;height:{self.height}px;border:0" allow="fullscreen" loading="lazy"></iframe>'
         )
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write the page to a file of its own, which opens from disk.
+        """Write the page to a file, which a browser can open from the disk.
 
         Parameters
         ----------
@@ -74,19 +74,19 @@ def show(
 ) -> InlinePage:
     """Show the molecules of a run in three dimensions, with its graphs on the same clock.
 
-    In a notebook the page stands below the cell; elsewhere it opens in the browser.
+    In a notebook the page is shown below the cell; elsewhere it opens in the browser.
 
     Parameters
     ----------
     *runs
-        One run, or two that stand side by side and share the clock: datasets or paths of files, made with
+        One run, or two to be shown side by side with one clock: datasets or paths of files, made with
         ``save_molecules=True``.
     height
-        How high the page is in a notebook, in pixels.
+        Height of the page in a notebook, in pixels.
     theme
-        Its colours; ``"auto"`` takes those that the reader's computer prefers.
+        Colours of the page; ``"auto"`` takes those that the reader's computer prefers.
     language
-        Its words; ``"auto"`` takes the first language of the reader's browser that there is.
+        Language of the page; ``"auto"`` takes the first language of the reader's browser that the page has.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def show(
     FileError
         If a run holds no molecules.
     SettingError
-        If there are none or more than two runs, or the theme or the language is unknown.
+        If there is no run or more than two, or the theme or the language is unknown.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Run a scene, and open what was saved of a run."""
+"""Run a scene, resume a run, and open a saved run."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def run(
     save_molecules: bool = False,
     **settings: Any,
 ) -> RunDataset:
-    """Run a scene and return what was measured, with the answer of theory beside it.
+    """Run a scene and return the measurements, with the predictions of theory beside them.
 
-    The molecules of the scene's box fly and collide for the scene's time; temperature and pressure are
-    measured on the way, with error bars, and the energy ledger is closed. Printed, what is returned begins with the
-    headline table of the run.
+    The molecules of the scene's box fly and collide for the scene's time. Temperature and pressure are measured
+    meanwhile, with error bars, and the energy ledger is checked. The returned dataset prints the headline table of the
+    run first.
 
     Parameters
     ----------
@@ -40,13 +40,14 @@ def run(
     force
         Whether a file of that name may be replaced.
     progress
-        By default a bar is shown in a notebook and on a terminal; False shows none. A function is called in its
-        place, with the share that is done and a word on what is being done.
+        By default a bar is shown in a notebook and on a terminal; False shows none. A function given here is called
+        instead, with the share of the run that is done and the name of the present step.
     engine
-        What lets time pass, with its options: ``"stepped:delta=0.02"``; ``"exact"`` if nothing is said.
+        The engine, which moves the molecules, with its options, such as ``"stepped:delta=0.02"``; by default
+        the scene's own, mostly ``"exact"``.
     accuracy
-        How accurate the run shall be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
-        or ``"2%"``. Picks the engine, and the settings that are not given.
+        The accuracy of the run: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, such as ``"0.5K"``
+        or ``"2%"``. It picks the engine, and the settings that are not given.
     save_molecules
         Whether to keep the position and velocity of every molecule in every frame, as `atmosbox.show` needs them.
     **settings
@@ -64,7 +65,7 @@ def run(
     UnknownSceneError
         If there is no scene of this name.
     SettingError
-        If a setting is unknown, of a wrong dimension or out of its range.
+        If a setting is unknown, has the wrong dimension or is out of its range.
     FileError
         If your own scene cannot be read, or ``out`` cannot be written.
     EngineError
@@ -79,7 +80,7 @@ def run(
     >>> bool(dataset.air_temperature[-1] < dataset.air_temperature[0])
     True
 
-    A refusal names the argument to give:
+    An error message names the argument to give:
 
     >>> ab.run("lifting-dry", molecules=0.5)
     Traceback (most recent call last):
@@ -113,18 +114,19 @@ def resume(
     force: bool = False,
     progress: Show | bool | None = None,
 ) -> RunDataset:
-    """Go on with a run that was stopped or killed, bit for bit as if it never had been.
+    """Continue a run that was stopped or killed; the result is bit for bit the same as without the stop.
 
     Parameters
     ----------
     path
-        What it left: ``NAME.part.nc``. Or the file of a finished run, made with ``atmosbox run --keep-state``.
+        The file that the run has left, ``NAME.part.nc``, or the file of a finished run that was made with
+        ``atmosbox run --keep-state``.
     scene
-        The path of the scene, if it is one of your own: no file makes atmosbox run a program.
+        The path of the scene, if it is one of your own: atmosbox never runs code that only a data file names.
     out
-        File of the finished run; by default the one that it would have had.
+        File of the finished run; by default the one that the run would have had.
     extend
-        How many times as long as its scene says the run shall last, in frames of the same length.
+        Factor by which the run lasts longer than its scene says, with frames of the same length.
     force
         Whether a file of that name may be replaced.
     progress
@@ -133,12 +135,13 @@ def resume(
     Returns
     -------
     xarray.Dataset
-        All that was measured since the run began.
+        All measurements since the start of the run.
 
     Raises
     ------
     FileError
-        If the file holds no state, or version, sources of the engine, scene or processor are others than then.
+        If the file holds no state, or if the version, the sources of the engine, the scene or the processor are not
+        the same as when the state was saved.
 
     Examples
     --------
@@ -170,7 +173,7 @@ def open(path: str | os.PathLike[str]) -> RunDataset:
     Raises
     ------
     FileError
-        If the file is missing, damaged, of another program or of a later atmosbox.
+        If the file is missing, damaged, of another program or of another file format than this atmosbox reads.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A notebook: whether this is one, and a bar in it that shows how far a run is."""
+"""Notebooks: detect one, and show the progress of a run in it."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ def in_notebook() -> bool:
     >>> in_notebook()
     False
     """
-    ipython = sys.modules.get("IPython")  # a notebook has imported it
+    ipython = sys.modules.get("IPython")  # a notebook has imported IPython
     shell = ipython.get_ipython() if ipython is not None else None
     return getattr(shell, "kernel", None) is not None
 
 
 @contextlib.contextmanager
 def progress_bar(name: str, progress: Show | bool | None = None) -> Iterator[Show | None]:
-    """Show how far a run is, in a notebook below its cell, on a terminal in its last line, elsewhere not at all.
+    """Show the progress of a run: in a notebook below its cell, on a terminal in the last line, elsewhere not at all.
 
     Parameters
     ----------
     name
-        What runs.
+        The name of what runs.
     progress
-        A function to call with the share that is done and a word on what is being done, in place of a bar; False
-        for neither.
+        A function to call instead of showing a bar, with the share that is done and the name of the present step;
+        False to show nothing; True to show progress elsewhere too.
 
     Yields
     ------
     callable or None
-        What the run calls.
+        The function that the run calls; None if nothing is shown.
     """
     if callable(progress):
         yield progress
@@ -61,7 +61,7 @@ def progress_bar(name: str, progress: Show | bool | None = None) -> Iterator[Sho
 
 @contextlib.contextmanager
 def _notebook_bar(name: str) -> Iterator[Show]:
-    """Show a bar below the cell, which goes when the run has ended."""
+    """Show a bar below the cell until the run ends."""
     from IPython.display import HTML, display
 
     began = time.monotonic()
@@ -78,7 +78,7 @@ def _notebook_bar(name: str) -> Iterator[Show]:
 
 
 def _bar(name: str, share: float, doing: str, seconds: float) -> str:
-    """Return the bar as HTML: its name, its length, and for how long it will still move."""
+    """Return the bar as HTML: its name, the share that is done, and the remaining time."""
     said = html.escape(f"{name}: {doing}" if doing else name)
     left = f"{seconds * (1.0 - share) / share:.0f} s to go" if share > 0.02 and seconds > 1.0 else ""
     return f'<label>{said} <progress max="1" value="{share:.3f}"></progress> {100.0 * share:.0f} % {left}</label>'

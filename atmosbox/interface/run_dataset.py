@@ -1,4 +1,4 @@
-"""A run as Python shows it: first what came out, with theory beside it, then the variables of its dataset."""
+"""A run as Python prints it: first its results with theory beside them, then the variables of its dataset."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
     __slots__ = ()
 
     def __repr__(self) -> str:
-        """Return the headline table, then what xarray says of the dataset."""
+        """Return the headline table, followed by the text of xarray for the dataset."""
         from atmosbox.text.report import headline_lines
 
         dataset = xr.Dataset.__repr__(self).replace("<xarray.RunDataset>", "<xarray.Dataset>", 1)
@@ -59,7 +59,7 @@ class RunDataset(xr.Dataset):  # type: ignore[no-untyped-call]
 
 
 class _Said(NamedTuple):
-    """What a run says of itself."""
+    """The texts that are shown above the variables of a run."""
 
     head: str
     headlines: tuple[Headline, ...]
@@ -67,14 +67,14 @@ class _Said(NamedTuple):
 
 
 def as_run(dataset: xr.Dataset) -> RunDataset:
-    """Return a dataset that begins with its headline table; variables and attributes are the same."""
+    """Return the dataset as a `RunDataset`, with the same variables and attributes."""
     made = dataset.copy()
     made.__class__ = RunDataset
     return made  # type: ignore[return-value]
 
 
 def _row(tag: str, cells: list[str]) -> str:
-    """Return a row of a table as HTML; only its first column is broken into lines."""
+    """Return a row of a table as HTML; only the first column may be broken into lines."""
     made = []
     for number, cell in enumerate(cells):
         style = "text-align:left" + (";white-space:nowrap" if number else "")
@@ -83,7 +83,7 @@ def _row(tag: str, cells: list[str]) -> str:
 
 
 def _said(dataset: xr.Dataset) -> _Said | None:
-    """Return what a run says of itself; None for what is not a single run."""
+    """Return the texts to show above the variables of a run; None if the dataset is not a single run."""
     from atmosbox.errors import AtmosboxError
     from atmosbox.file.provenance import parameters
     from atmosbox.simulation.verification import LEDGER_LIMIT, headlines_of

@@ -1,4 +1,4 @@
-"""Refusals in the words of Python: what the command line calls ``--set molecules=200`` is ``molecules=200`` here."""
+"""Error messages with Python arguments: ``--set molecules=200`` of the command line becomes ``molecules=200``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["in_python", "python_words"]
 
 _FLAGS = ("force", "save-molecules", "with-box", "graphs")
 
-# A value in a sentence: in quotes, or a word without the sign that ends a clause.
+# A value in a sentence: in quotes, or a word without the punctuation mark after it.
 _VALUE = r"""(?:'[^']*'|"[^"]*"|[^\s'"]*[^\s'",;:.)])"""
 _RUN = re.compile(rf"atmosbox run (?P<scene>{_VALUE}) --save-molecules")
 _OPTION = re.compile(
@@ -26,17 +26,17 @@ _NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?", re.IGNORECASE)
 
 
 def python_words(sentence: str) -> str:
-    """Return a sentence with every option of the command line as the argument that it is in Python.
+    """Return a sentence in which each option of the command line is replaced by the Python argument.
 
     Parameters
     ----------
     sentence
-        What an error says, or a part of it.
+        An error message, or a part of it.
 
     Returns
     -------
     str
-        The same for somebody who called a function of `atmosbox`.
+        The message for the caller of a function of `atmosbox`.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def python_words(sentence: str) -> str:
 
 
 def _argument(found: re.Match[str]) -> str:
-    """Return an option as an argument."""
+    """Return an option of the command line as a Python argument."""
     option, before = found["option"], found["before"] or ""
     if found["name"] is not None:
         name, value = found["name"].replace("-", "_"), found["set"] or ""
@@ -70,14 +70,14 @@ def _argument(found: re.Match[str]) -> str:
 
 
 def _literal(value: str) -> str:
-    """Return a value that was typed as Python writes it."""
+    """Return a value of the command line as a Python literal."""
     if value in ("on", "off"):
         return str(value == "on")
     return value if _NUMBER.fullmatch(value) else _text(value)
 
 
 def _text(value: str) -> str:
-    """Return a text in quotation marks, without those of a shell."""
+    """Return a text in Python's quotation marks, without those of the shell."""
     with contextlib.suppress(ValueError):
         value = "".join(shlex.split(value))
     return json.dumps(value, ensure_ascii=False)
@@ -85,7 +85,7 @@ def _text(value: str) -> str:
 
 @contextlib.contextmanager
 def in_python() -> Iterator[None]:
-    """Let what is refused in this block be said in the words of Python.
+    """Change the messages of errors that are raised in this block, so that they name Python arguments.
 
     Examples
     --------

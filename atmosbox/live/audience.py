@@ -1,4 +1,4 @@
-"""The pages that are open, and the messages that wait for each of them, never more than a few."""
+"""The open pages, and a short queue of messages for each."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _LATEST = ('{"type": "state"', '{"type": "arrays"')
 
 
 class Mailbox:
-    """The messages that wait for one page.
+    """The queue of messages for one page.
 
-    Of pictures, states and arrays only the latest waits. What must not be missed waits in order; a page that is so
-    slow that too many wait gets everything anew instead.
+    Of pictures, states and arrays only the latest is kept. Messages that must not be missed are kept in order; if too
+    many of them wait, because the page is slow, they are dropped and the page gets everything anew.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class Mailbox:
         self.waiting.set()
 
     def take(self) -> list[str | bytes]:
-        """Return what waits, and empty the mailbox."""
+        """Return the waiting messages, and empty the mailbox."""
         found: list[str | bytes] = [*self._texts, *self._latest.values()]
         if self._picture is not None:
             found.append(self._picture)
@@ -65,7 +65,7 @@ class Mailbox:
 
 
 class Audience:
-    """All pages that are open.
+    """All open pages.
 
     Examples
     --------
@@ -84,16 +84,16 @@ class Audience:
         return len(self._boxes)
 
     def join(self) -> Mailbox:
-        """Return the mailbox of a page that has come."""
+        """Return the mailbox of a page that has just connected."""
         self._count += 1
         box = self._boxes[self._count] = Mailbox(self._count)
         return box
 
     def leave(self, box: Mailbox) -> None:
-        """Remove a page that has gone."""
+        """Remove a page that has disconnected."""
         self._boxes.pop(box.number, None)
 
     def put(self, page: int | None, message: str | bytes) -> None:
-        """Add a message for one page, or for all."""
+        """Add a message for one page; for all if `page` is None."""
         for box in list(self._boxes.values()) if page is None else [self._boxes[page]] if page in self._boxes else []:
             box.put(message)

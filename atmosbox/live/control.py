@@ -1,4 +1,4 @@
-"""What the page offers to be changed: the knobs of a box that runs, and the settings with which it begins anew."""
+"""The controls on the page: knobs that change the running box, and settings that restart it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from atmosbox.scene.parameter import Parameter, Value
 __all__ = ["COLLISIONS", "Control", "controls", "in_words", "number_between"]
 
 COLLISIONS = "collisions"
-"""The switch that every engine has."""
+"""Name of the switch for collisions, which every engine has."""
 
 _MOST_MOLECULES = 50_000
 _STEPS = 200
@@ -24,16 +24,16 @@ _WIDE = 1000.0
 
 @dataclass(frozen=True)
 class Control:
-    """One thing that can be changed.
+    """A knob, setting or switch that the page can change.
 
     Parameters
     ----------
     parameter
-        Its name, unit, range and words.
+        Its name, unit, range and description.
     value
-        What it is now.
+        Its present value.
     restarts
-        Whether the box begins anew with it.
+        Whether a change restarts the box.
     """
 
     parameter: Parameter
@@ -42,16 +42,16 @@ class Control:
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the control."""
         return self.parameter.name
 
     def parse(self, value: object) -> Value:
-        """Return what was asked for, in the unit of the control.
+        """Return the requested value, in the unit of the control.
 
         Raises
         ------
         SettingError
-            If the value is not allowed; the sentence says what is.
+            If the value is not allowed; the message says which values are.
 
         Examples
         --------
@@ -64,7 +64,7 @@ class Control:
         return self.parameter.parse(value)
 
     def record(self) -> dict[str, Any]:
-        """Return it as data for the page.
+        """Return the control as data for the page.
 
         Examples
         --------
@@ -94,7 +94,7 @@ class Control:
 
 
 def _step(parameter: Parameter) -> float:
-    """Return a round step, some hundreds of which make the range, and which meets the default."""
+    """Return a round step for a slider: some hundreds of steps make the range, and one of them meets the default."""
     if parameter.kind == "int":
         return 1
     if parameter.low is None or parameter.high is None or parameter.high <= parameter.low:
@@ -114,23 +114,23 @@ def controls(
     *,
     collisions: bool | None,
 ) -> tuple[Control, ...]:
-    """Return all that can be changed: first what acts at once.
+    """Return all controls: first those that act at once.
 
     Parameters
     ----------
     knobs
-        Those of the box.
+        The knobs of the box.
     parameters
-        The settings of the scene; the seed and free texts are left out, and what a knob stands for.
+        The settings of the scene; the seed, free texts and settings that have a knob are left out.
     values
-        The settings as they are, and where the knobs stand.
+        The present values of settings and knobs.
     collisions
-        Whether molecules meet; None where they must.
+        Whether molecules collide; None if that cannot be switched.
 
     Returns
     -------
     tuple of Control
-        In the order in which the page shows them.
+        The controls in the order in which the page shows them.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def number_between(value: object, name: str, low: float, high: float) -> float:
     Raises
     ------
     SettingError
-        If it is none, or lies outside.
+        If the value is not a number, or is below `low` or above `high`.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def number_between(value: object, name: str, low: float, high: float) -> float:
 
 
 def in_words(value: object) -> str:
-    """Return what a page has sent, for a sentence.
+    """Return a value that a page has sent as text for a message.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One box with its instruments, whose time is cut into small pieces."""
+"""One box with its instruments, advanced in small steps of time."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ _WINDOW = 6000
 
 
 class Experiment:
-    """A box at its start, with its instruments.
+    """A box with its instruments, from its start on.
 
-    However its time is cut into pieces, a box that is not changed does the same as in ``atmosbox run``. What the
-    graphs show is measured by instruments that begin anew after each change and, in a box that could go on for ever,
-    now and then: of an ascent, they watch the whole way.
+    However its time is divided into steps, a box that is not changed does the same as in ``atmosbox run``. The graphs
+    show the measurements of instruments that start anew after each change and, in a box without a planned end, from
+    time to time; in an ascent they measure from its start to its end.
 
     Parameters
     ----------
     prepared
         The scene.
     clock
-        What tells the time [s].
+        Function that returns the time [s].
 
     Attributes
     ----------
@@ -53,10 +53,10 @@ class Experiment:
     now
         Time of the box [reduced time].
     frame
-        How many frames are complete.
+        Number of complete frames.
     rate
-        How much time of the box passes in a second at the usual pace [reduced time]: a molecule crosses the box four
-        times, but the whole run lasts a minute at least; an ascent, just that.
+        Time of the box that passes in a second at the usual pace [reduced time]: a molecule crosses the box about four
+        times in a second, but the whole run lasts at least a minute; an ascent lasts exactly a minute.
 
     Raises
     ------
@@ -104,11 +104,11 @@ class Experiment:
         side = float(np.exp(np.log(sides).mean()))
         return min(whole, _CROSSINGS * side / speed) if speed > 0.0 else whole
 
-    # ------------------------------------------------------------------ what watches it
+    # ------------------------------------------------------------------ instruments
 
     @property
     def between_frames(self) -> bool:
-        """Whether a frame has just been completed, so that a recording could begin."""
+        """Whether a frame has just been completed, so that a recording can begin."""
         return self._look == 1 and self.now == self.frame * self.setup.frame
 
     def recording(self, attributes: dict[str, Any] | None = None) -> Recording:
@@ -117,7 +117,7 @@ class Experiment:
         Parameters
         ----------
         attributes
-            Those of the file that it becomes; None if it is for the graphs alone.
+            The global attributes of the file, for a recording; None for the instruments of the graphs.
         """
         prepared = self.prepared
         about = {"atmosbox_parameters": json.dumps(prepared.parameters)} if attributes is None else attributes
@@ -127,18 +127,18 @@ class Experiment:
         return Recording(prepared, self.setup, about, first=self.frame, instruments=fresh)
 
     def _fitting(self, instrument: Instrument) -> Instrument:
-        """Return an instrument that has seen nothing; one of speeds reaches as far as heated walls need."""
+        """Return an instrument without samples; a histogram of speeds has the range that heated walls need."""
         warmest = np.nan_to_num(self.setup.parcel.wall_kT()).max()
         if isinstance(instrument, Speeds) and warmest > self._warmest > 0.0:
             return instrument.wider(math.sqrt(warmest / self._warmest))
         return _copied(instrument)
 
     def begin_averages_anew(self) -> None:
-        """Let the graphs average over what comes from the next frame on: something has been changed."""
+        """Begin the averages of the graphs anew at the next frame, because something has been changed."""
         self._stale = True
 
     def measured(self, changed: int) -> xr.Dataset | None:
-        """Return what the graphs show, averaged over what came after a frame; None if that is too little."""
+        """Return the data of the graphs, averaged over the frames after frame `changed`; None if they are too few."""
         gauge = self.gauges[0]
         if gauge.frames < 2:
             return None
@@ -155,18 +155,18 @@ class Experiment:
         also: Callable[[], Sequence[Recording]],
         closed: Callable[[], bool],
     ) -> None:
-        """Let time pass.
+        """Advance the box.
 
         Parameters
         ----------
         goal
-            Until when [reduced time].
+            The time of the box at which to stop [reduced time].
         budget
-            After how many seconds to come back in any case [s].
+            Computing time after which to return in any case [s].
         also
-            What watches the box besides the graphs.
+            Function that returns recordings of the box besides those of the graphs.
         closed
-            Called when a frame is complete; tells whether to go on.
+            Function that is called when a frame is complete; it returns whether to go on.
 
         Raises
         ------
@@ -212,7 +212,7 @@ class Experiment:
         return True
 
     def _renew_gauges(self) -> None:
-        """Begin new instruments where that is due; two take turns, so that there always is one that has seen enough."""
+        """Start new instruments when it is time; two sets overlap, so that one always has enough frames."""
         if self._stale:
             self.gauges = [self.recording()]
         elif len(self.gauges) == 1 and self.gauges[0].frames >= _WINDOW // 2:
@@ -222,7 +222,7 @@ class Experiment:
 
 
 def _copied(instrument: Instrument) -> Instrument:
-    """Return an instrument that has seen as little as this one, and measures the same box."""
+    """Return a copy of an instrument, for the same box but with samples of its own."""
     twin = copy.copy(instrument)
     for name, value in vars(instrument).items():
         if isinstance(value, list | dict | set | np.ndarray):

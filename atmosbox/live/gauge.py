@@ -1,4 +1,4 @@
-"""Thermometer, barometer and hygrometer of a box that runs: what was measured last, as numbers to read."""
+"""Thermometer, barometer and hygrometer of a running box: the latest measurements as numbers."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ __all__ = ["FEW", "GAUGES", "gauges_of", "readings"]
 
 _FRAMES = 20
 FEW = 50
-"""With fewer molecules that would saturate the air, a hygrometer scatters by more than a seventh."""
+"""Smallest number of molecules of saturated vapour for a hygrometer; with fewer it scatters by more than a seventh."""
 GAUGES = (
     ("thermometer", ("air_temperature", "parcel_temperature", "gas_temperature"), "°C", 1.0, -273.15),
     ("barometer", ("air_pressure", "parcel_pressure"), "hPa", 0.01, 0.0),
     ("hygrometer", ("relative_humidity",), "%", 100.0, 0.0),
 )
-"""Of each gauge its name, the variables that it may show, and how it shows them: unit, factor and offset from SI."""
+"""For each gauge its name, the variables that it can show, and their unit, factor and offset from SI."""
 
 
 def gauges_of(settings: SceneSettings) -> tuple[tuple[str, tuple[str, ...], str, float, float], ...]:
@@ -42,22 +42,22 @@ def gauges_of(settings: SceneSettings) -> tuple[tuple[str, tuple[str, ...], str,
 def readings(
     found: xr.Dataset, *, moving: bool, gauges: tuple[tuple[str, tuple[str, ...], str, float, float], ...] = GAUGES
 ) -> list[dict[str, Any]]:
-    """Return what the gauges of a box say.
+    """Return the readings of the gauges of a box.
 
     Parameters
     ----------
     found
-        What has been measured since the last change.
+        The measurements since the last change.
     moving
-        Whether the box is on a way, so that only its last frame tells how it is now; else up to 20 frames are averaged,
-        because so few molecules scatter.
+        Whether the box changes on a planned ascent, so that only the last frame is used; otherwise up to 20 frames are
+        averaged, to reduce the scatter of few molecules.
     gauges
-        Those of the scene: see `gauges_of`.
+        The gauges of the scene: see `gauges_of`.
 
     Returns
     -------
     list of dict
-        Of each gauge that the box has: its ``name``, ``value`` and ``unit``. Discs on a table have none.
+        The ``name``, ``value`` and ``unit`` of each gauge that the box has. Discs on a table have no gauges.
 
     Examples
     --------
@@ -66,13 +66,13 @@ def readings(
     >>> readings(found, moving=False)
     [{'name': 'thermometer', 'value': 25.0, 'unit': '°C'}]
 
-    Cold air would be saturated by a molecule or two, and has no hygrometer:
+    In cold air so few molecules are enough for saturation that it gets no hygrometer:
 
     >>> share, number = ("elapsed_time", [3.7]), ("elapsed_time", [2])
     >>> readings(xr.Dataset({"relative_humidity": share, "vapor_molecule_count": number}), moving=True)
     []
     """
-    if "disc_mass" in found:  # discs of a table, whose energy no thermometer shows
+    if "disc_mass" in found:  # discs on a table: their energy is not shown as a temperature
         return []
     made = []
     for name, variables, unit, factor, offset in gauges:

@@ -1,4 +1,4 @@
-"""What a class changes by hand: knobs while a box runs, and settings and engine with which it begins anew."""
+"""Changes by hand: knobs of the running box, and settings and engine with which the box is restarted."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from atmosbox.simulation.preparation import Prepared, usual_engine
 __all__ = ["MOST_CHANGES", "Hand", "begun_anew", "meeting", "with_collisions"]
 
 MOST_CHANGES = 5000
-"""How many changes are kept: as many as a file can hold."""
+"""Largest number of changes that are kept: as many as a file can hold."""
 
 
 class Hand:
@@ -34,9 +34,9 @@ class Hand:
     Attributes
     ----------
     changes
-        What was done, in order; a knob turned twice within a frame stands there once.
+        The changes in order; a knob that is turned twice within a frame is listed once.
     turned
-        What each knob that was turned says now.
+        The present value of each knob that was turned.
 
     Examples
     --------
@@ -62,22 +62,22 @@ class Hand:
         return len(self.changes) > MOST_CHANGES
 
     def settings(self, prepared: Prepared) -> dict[str, Value]:
-        """Return the settings with which a box would begin anew: what the knobs say, and the rest as it was."""
+        """Return the settings for a restart: the present values of the knobs, and the other settings unchanged."""
         return {name: self.turned.get(name, value) for name, value in prepared.settings.as_dict().items()}
 
     def controls(self, prepared: Prepared, setup: Setup) -> tuple[Control, ...]:
-        """Return all that can be changed, as it is now."""
+        """Return all controls with their present values."""
         values = prepared.settings.as_dict() | self.turned
         collide = meeting(prepared, setup)
         return controls(setup.knobs, prepared.settings.describe(), values, collisions=collide)
 
     def turn(self, control: Control, value: Value, experiment: Experiment) -> None:
-        """Turn a knob, and note it.
+        """Turn a knob, and record the change.
 
         Raises
         ------
         SettingError
-            If the box cannot do it; nothing has changed then.
+            If the box refuses the value; nothing has changed then.
         """
         try:
             self._knobs[control.name].set(float(value))
@@ -88,11 +88,11 @@ class Hand:
         self._note(control, value, experiment)
 
     def changes_more(self, control: Control) -> bool:
-        """Return whether the first turn of a knob changes more than a value, as one that makes heat baths does."""
+        """Return whether the first turn of a knob changes more than a value, for example makes walls heat baths."""
         return self._knobs[control.name].leave is not None
 
     def leave(self, control: Control, experiment: Experiment) -> None:
-        """Make the box as it was before a knob was first turned, and note it."""
+        """Restore the state before a knob was first turned, and record the change."""
         self._knobs[control.name].reset()
         del self.turned[control.name]
         self._note(control, None, experiment)
@@ -102,13 +102,13 @@ class Hand:
         change = Change(experiment.now, experiment.frame, control.name, value, control.parameter.unit)
         last = self.changes[-1] if self.changes else None
         if last is not None and (last.name, last.frame) == (change.name, change.frame):
-            self.changes[-1] = change  # a slider on its way
+            self.changes[-1] = change  # a slider that is being moved
         else:
             self.changes.append(change)
 
 
 def meeting(prepared: Prepared, setup: Setup) -> bool | None:
-    """Return whether molecules meet; None where that cannot be chosen, for they hit drops, or never meet.
+    """Return whether molecules collide; None if that cannot be switched, for they hit drops, or never collide.
 
     Examples
     --------
@@ -124,7 +124,7 @@ def meeting(prepared: Prepared, setup: Setup) -> bool | None:
 
 
 def with_collisions(engine: EngineChoice, wanted: bool) -> str:
-    """Return the words that ask for an engine with collisions, or without.
+    """Return the text that requests an engine with collisions, or without.
 
     Examples
     --------
@@ -139,12 +139,14 @@ def with_collisions(engine: EngineChoice, wanted: bool) -> str:
 
 
 def begun_anew(prepared: Prepared, values: Mapping[str, Any], engine: str) -> Prepared:
-    """Return a scene with other settings and another engine; if that is its usual one, the usual one of these settings.
+    """Return a scene with other settings and another engine.
+
+    If the engine is the default of the scene, the default engine for the new settings is used.
 
     Raises
     ------
     AtmosboxError
-        If one of them is not allowed.
+        If a setting or the engine is not allowed.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""What a scene offers a class beside its knobs: named settings to try, a pump, and challenges.
+"""What a scene offers a class besides its knobs: named settings to try, a pump, and challenges.
 
-It stands beside the scene, in ``my_scene.live.toml``, and is data: nothing in it runs. ::
+They are read from a file beside the scene, ``my_scene.live.toml``, which contains data only and no code. ::
 
     [[preset]]
     title = "Polar night"
@@ -14,8 +14,8 @@ It stands beside the scene, in ``my_scene.live.toml``, and is data: nothing in i
     hint = "A dry parcel cools as T ~ p^(2/7)."
     reach = {parcel_pressure = ["300 hPa", "3 hPa"], parcel_temperature = ["-60 degC", "1 K"]}
 
-A preset begins the box anew with these settings, and the scene's own for the rest. Settings that a pump names grow
-together with the number of molecules. A challenge is met when each variable comes as near to its value as is said.
+A preset restarts the box with its settings, and the scene's defaults for the rest. The settings that a pump names grow
+together. A challenge is met when each variable is within the given distance of its value.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ class Preset:
     Parameters
     ----------
     title
-        What a class calls them.
+        Their name.
     values
-        The settings that differ from those of the scene.
+        The settings that differ from the defaults of the scene.
     """
 
     title: str
@@ -63,9 +63,9 @@ class Lesson:
     presets
         Settings to try.
     pump
-        Settings that grow together when molecules are pumped in; none where that has no meaning.
+        Settings that grow together when molecules are pumped in; empty if the scene has no pump.
     challenges
-        As the page is told: what is asked, a hint, and how near to which values.
+        As data for the page: the question, a hint, and the values to reach with their tolerances.
     """
 
     presets: tuple[Preset, ...] = ()
@@ -73,7 +73,7 @@ class Lesson:
     challenges: tuple[dict[str, Any], ...] = ()
 
     def record(self) -> dict[str, Any]:
-        """Return it as data for the page.
+        """Return the lesson as data for the page.
 
         Examples
         --------
@@ -88,7 +88,7 @@ class Lesson:
 
 
 def lesson_of(module: ModuleType) -> Lesson:
-    """Return what a scene offers; nothing if no file stands beside it.
+    """Return the lesson of a scene; an empty one if there is no such file beside the scene.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def lesson_of(module: ModuleType) -> Lesson:
     FileError
         If the file cannot be read.
     ConfigError
-        If it is not TOML, or says what a lesson does not know.
+        If it is not TOML, or contains something that a lesson must not.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def lesson_of(module: ModuleType) -> Lesson:
 
 
 def _entries(path: Path, told: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
-    """Return the entries of a kind, refused unless each has all that it needs and no more."""
+    """Return the entries of a kind; refuse one that lacks something or has something else."""
     entries = told.get(kind, [])
     for number, entry in enumerate(entries if isinstance(entries, list) else [None], 1):
         if not isinstance(entry, dict) or set(entry) != _KNOWN[kind]:
@@ -140,7 +140,7 @@ def _entries(path: Path, told: Mapping[str, Any], kind: str) -> list[dict[str, A
 
 
 def _challenge(path: Path, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a challenge, its values in SI and with the way into the units in which they were given."""
+    """Return a challenge, with its values in SI and the conversion to the units in which they were given."""
     goals = []
     for name, wanted in entry["reach"].items():
         try:

@@ -1,4 +1,4 @@
-"""What is known of an ascent before it begins: the way through its environment, so that axes hold it from the start."""
+"""The planned ascent through the environment, known in advance, so that the axes of graphs fit it from the start."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 
 
 def outlook(setup: Setup) -> dict[str, Array]:
-    """Return the way of a parcel as it is planned, by the names of variables [SI]; nothing of another box.
+    """Return the planned ascent of a parcel, as arrays by the names of variables [SI]; empty for another box.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def outlook(setup: Setup) -> dict[str, Array]:
     Returns
     -------
     dict of str to (place,)
-        Height, pressure and temperature of the environment, and the dry adiabat where there is one.
+        Height, pressure and temperature of the environment, and the dry adiabat if there is one.
 
     Examples
     --------
@@ -57,14 +57,14 @@ def outlook(setup: Setup) -> dict[str, Array]:
 
 
 def planned(panels: Iterable[Mapping[str, Any]], way: Mapping[str, Array]) -> list[dict[str, list[float]]]:
-    """Return the points that the axes of each panel must hold, in the units that it shows.
+    """Return the points that the axes of each panel must include, in the units of the panel.
 
     Parameters
     ----------
     panels
         Records of panels, as `atmosbox.page.page_panel.panel_record` makes them.
     way
-        From `outlook`.
+        The planned ascent, from `outlook`.
 
     Examples
     --------

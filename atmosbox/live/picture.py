@@ -1,4 +1,4 @@
-"""What the page sees of a box: said once, and then where everything is."""
+"""The picture of a box for the page: data that are sent once, and then the positions in each frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["Picture"]
 
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _FASTEST = 3.0
-_COLDER = 0.5  # of the scale of speeds, below which it is drawn anew
+_COLDER = 0.5  # share of the scale of speeds: if the speeds reach less of it, a new scale is chosen
 
 
 class Picture:
@@ -39,7 +39,7 @@ class Picture:
     Attributes
     ----------
     stage
-        What the page is told once.
+        The data that the page gets once.
     """
 
     def __init__(self, prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> None:
@@ -53,13 +53,13 @@ class Picture:
         diameter[present] = parcel.diameter * scale.length
         water = None
         if hasattr(parcel, "vapour"):
-            mass[~present] = WATER.molecule_mass  # only water is ever out of the gas
+            mass[~present] = WATER.molecule_mass  # only molecules of water ever leave the gas
             diameter[~present] = float(np.nanmax(diameter)) if present.any() else DRY_AIR.diameter
             water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
         self._lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
         module, settings = prepared.module, prepared.settings
         self._highest = 0.0
-        self._counted = hasattr(parcel, "neighbours")  # what a drop is, colours of speeds do not show
+        self._counted = hasattr(parcel, "neighbours")  # colours show neighbours, because speeds do not show drops
         self.stage: Stage = stage(
             scene=prepared.scene,
             title=str(getattr(module, "title", prepared.scene)),
@@ -96,19 +96,19 @@ class Picture:
             record["planned"] = points
 
     def _fastest(self) -> float:
-        """Return a speed that hardly any molecule has, as warm as gas and walls are now [m/s]."""
+        """Return a speed that hardly any molecule exceeds at the present temperatures of gas and walls [m/s]."""
         kT = np.array([*self._setup.parcel.wall_kT(), self._kT()])
         return _FASTEST * math.sqrt(float(np.nanmax(kT)) / self._lightest) * self._setup.scale.velocity
 
     def _scale(self) -> float:
-        """Return where the scale of speeds ends: where it did, unless the box is too warm or too cold for it."""
+        """Return the end of the scale of speeds; it changes only if the box is too warm or too cold for it."""
         wanted = self._fastest()
         if not _COLDER * self._highest <= wanted <= self._highest:
             self._highest = round_up(wanted)
         return self._highest
 
     def walls(self) -> list[float | None]:
-        """Return the temperatures of the six walls now [K], None of one that has none."""
+        """Return the present temperatures of the six walls [K], None for a wall without a temperature."""
         kelvin = self._setup.parcel.wall_kT() * self._setup.scale.temperature
         return [float(f"{each:.6g}") if math.isfinite(each) else None for each in kelvin]
 
@@ -122,7 +122,7 @@ class Picture:
         return self._setup.parcel.time * self._setup.scale.time / _SECONDS[self._setup.time_unit]
 
     def frame(self, sequence: int) -> bytes:
-        """Return where everything is now, as one message to the page."""
+        """Return the present positions of everything that is drawn, as one message to the page."""
         parcel: Any = self._setup.parcel
         scale = self._setup.scale
         snapshot = parcel.snapshot()
@@ -152,7 +152,7 @@ class Picture:
 
 
 def _said(value: object, unit: str) -> str:
-    """Return a setting as the caption says it."""
+    """Return the value of a setting as text for the caption."""
     if isinstance(value, bool):
         return "on" if value else "off"
     return str(value) if isinstance(value, str) else phrase(value, unit)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""The record button: which file is being written, and from when on."""
+"""The record button: starts and stops recordings, and names their files."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from atmosbox.simulation.recording import Recording
 __all__ = ["Recorder"]
 
 _LONGEST = 30_000
-_MOLECULE = 16.0  # bytes of a molecule in a frame
+_MOLECULE = 16.0  # bytes for each molecule in a frame
 _MEMORY = 1e9
 
 
 class Recorder:
-    """Records a box into one file after the other.
+    """Records a box into one file after another.
 
     Parameters
     ----------
     folder
-        Where files go.
+        Folder of the files.
     out
-        The name of the first, if it has one.
+        Name of the first file, if one was given.
     force
-        Whether they may replace others.
+        Whether the files may replace others.
     command
-        What the user typed, for the history of a file.
+        The command that the user typed, for the history of a file.
     note
-        Told a level and a sentence for the page.
+        Function that is called with a level and a sentence for the page.
 
     Examples
     --------
@@ -54,13 +54,13 @@ class Recorder:
 
     @property
     def name(self) -> str | None:
-        """Name of the file that is being recorded."""
+        """Name of the file that is being recorded; None if there is none."""
         if self._wanted is not None:
             return self._wanted.name
         return None if self._tape is None else self._tape.path.name
 
     def watching(self) -> list[Recording]:
-        """Return the instruments whose readings are recorded."""
+        """Return the instruments of the recording, in a list that is empty if nothing is being recorded."""
         return [] if self._tape is None else [self._tape.recording]
 
     def start(self, name: object, box: Experiment, changes: Sequence[Change]) -> None:
@@ -69,14 +69,14 @@ class Recorder:
         Parameters
         ----------
         name
-            What the page gave as the name of the file; None or empty for one that is free.
+            The name of the file that the page asks for; None or empty for a default name that is not in use.
         box, changes
-            The box, and all that has been changed in it; the list grows.
+            The box, and the list of all changes in it, which grows.
 
         Raises
         ------
         AtmosboxError
-            If something is being recorded already, or the file is refused.
+            If a recording is going on already, or the file is refused.
         """
         if self.name is not None:
             raise SettingError("record", self.name, "is recording already", "stop that first")
@@ -105,7 +105,7 @@ class Recorder:
             panels=to_json(box.panels),
             status="partial",
         )
-        if box.setup.ends:  # the whole way
+        if box.setup.ends:  # an ascent is recorded from its start on
             recording = box.gauges[0]
             recording.attributes = about
         else:
@@ -116,7 +116,7 @@ class Recorder:
             self._note("error", str(error))
 
     def closed(self, box: Experiment, changes: Sequence[Change]) -> None:
-        """Take note that a frame is complete."""
+        """Handle the completion of a frame: begin, save or stop the recording."""
         if self._wanted is not None:
             self._begin(box, changes)
         elif self._tape is not None:
@@ -135,7 +135,7 @@ class Recorder:
         Parameters
         ----------
         why
-            What is said if something is being recorded, where the end was not asked for.
+            The message to show if the recording is ended by the program and not by the user.
         """
         if why is not None and self.name is not None:
             self._note("warning", why)
@@ -156,7 +156,7 @@ class Recorder:
 
 
 def longest(box: Experiment) -> int:
-    """Return how many frames of a box are kept at most.
+    """Return the largest number of frames of a box that are kept.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The local page: one port that serves the document and its socket, to this computer alone unless told otherwise."""
+"""The server of the local page: one port for the document and its socket, open to this computer only by default."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from atmosbox.live.worker import GREET, JOIN, LEAVE, Worker
 __all__ = ["PORT", "allowed", "loopback", "run", "serve_session"]
 
 PORT = 8642
-"""The port that is tried first."""
+"""The first port that is tried."""
 
 _TRIES = 20
 _LARGEST = 65_536
@@ -37,7 +37,7 @@ _BUSY = (errno.EADDRINUSE, errno.EACCES)
 
 
 def loopback(host: str) -> bool:
-    """Return whether only this computer can reach a host.
+    """Return whether an address can be reached from this computer only.
 
     Examples
     --------
@@ -55,15 +55,16 @@ def loopback(host: str) -> bool:
 def allowed(host: str | None, origin: str | None, *, names: frozenset[str] = frozenset()) -> bool:
     """Return whether a request comes from our own page.
 
-    A page of another site may ask a browser for anything on this computer; it then says where it comes from. And a
-    name of another site may be made to point to this computer; so only addresses and our own names are ours.
+    A page of another site can make the browser send requests to this computer; such a request has the other site in
+    its header Origin. A domain name of another site can also be made to point to this computer; therefore only numeric
+    addresses and the names of this computer are accepted.
 
     Parameters
     ----------
     host, origin
-        What the request says in these headers.
+        The headers Host and Origin of the request.
     names
-        The names of this computer, beside localhost and all addresses.
+        The names of this computer, besides localhost and all numeric addresses.
 
     Examples
     --------
@@ -85,7 +86,7 @@ def allowed(host: str | None, origin: str | None, *, names: frozenset[str] = fro
 
 
 class _Service:
-    """The pages, and the thread that the box runs in."""
+    """The open pages, and the thread in which the box runs."""
 
     def __init__(self, session: Session, document: str, names: frozenset[str], token: str | None) -> None:
         self._loop = asyncio.get_running_loop()
@@ -96,11 +97,11 @@ class _Service:
         self.worker = Worker(session, self._publish)
 
     def _publish(self, page: int | None, message: str | bytes) -> None:
-        with contextlib.suppress(RuntimeError):  # the loop has ended
+        with contextlib.suppress(RuntimeError):  # the event loop has ended
             self._loop.call_soon_threadsafe(self._audience.put, page, message)
 
     def request(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Answer a request: with the document, or with none if the socket is asked for."""
+        """Answer a request with the document; return None if the request is for the socket."""
         headers = request.headers
         hosts, origins = headers.get_all("Host"), headers.get_all("Origin")
         if len(hosts) > 1 or len(origins) > 1:
@@ -132,14 +133,14 @@ class _Service:
         return answer
 
     def _knows(self, address: str) -> bool:
-        """Tell whether a request has the token that the address of the page has."""
+        """Return whether the address of a request contains the token of the page."""
         if self._token is None:
             return True
         said = parse_qs(urlsplit(address).query).get("token", [""])
         return len(said) == 1 and secrets.compare_digest(said[0].encode(), self._token.encode())
 
     async def attend(self, connection: ServerConnection) -> None:
-        """Serve one page until it is gone."""
+        """Serve one page until it disconnects."""
         box = self._audience.join()
         await asyncio.to_thread(self.worker.ask, box.number, JOIN)
         speaking = asyncio.create_task(self._speak(connection, box))
@@ -166,7 +167,7 @@ class _Service:
                     await connection.send(message)
 
     def _hear(self, box: Mailbox, message: str | bytes) -> None:
-        """Pass on what a page says, or tell it that it makes no sense."""
+        """Pass on a message of a page, or answer that it cannot be understood."""
         try:
             asked = json.loads(message) if isinstance(message, str) else None
         except (ValueError, RecursionError):
@@ -182,7 +183,7 @@ class _Service:
 
 
 async def _listen(service: _Service, host: str, port: int | None) -> SocketServer:
-    """Open the port that was asked for, or the first that is free."""
+    """Open the requested port, or the first free one."""
     ports = [PORT + k for k in range(_TRIES)] if port is None else [port]
     for number in ports:
         try:
@@ -223,26 +224,26 @@ def run(
     Parameters
     ----------
     session
-        What is played with.
+        The session to serve.
     document
         The HTML of the page.
     host, port
-        Where; of the ports from `PORT` on the first that is free, if none is given.
+        Address and port; if no port is given, the first free one from `PORT` on.
     token
-        What a browser must have in the address of the page, ``?token=...``, so that another account of the same
-        computer cannot steer the box; None lets everybody in who reaches the port.
+        Text that the address of the page must contain, ``?token=...``, so that another account of the same
+        computer cannot control the box; with None everybody who can reach the port is let in.
     opened
-        Told the address of the page and the port, once it is there.
+        Function that is called with the address of the page and the port when the page can be opened.
 
     Returns
     -------
     (int, list of str)
-        The signal that ended it, and what is left to say.
+        The signal that ended the server, and the remaining messages to print.
 
     Raises
     ------
     SettingError
-        If the port is in use, or the host none of this computer.
+        If the port is in use, or the host is not an address of this computer.
     EngineError
         If the engine cannot go on.
     """
@@ -259,14 +260,14 @@ async def serve_session(
     token: str | None = None,
     opened: Callable[[str, int], None],
 ) -> tuple[int, list[str]]:
-    """Serve a session until something says that it ends; see `run`.
+    """Serve a session until `ending` returns; see `run`.
 
     Parameters
     ----------
     session, document, host, port, token, opened
         See `run`.
     ending
-        Waits for the end, and returns what it was.
+        Function that waits for the end, and returns the signal that ended the server.
     """
     names = frozenset({host.casefold(), socket.gethostname().casefold()}) - {""}
     service = _Service(session, document, names, token)
@@ -294,7 +295,7 @@ async def serve_session(
 
 
 async def _signal() -> int:
-    """Wait for Ctrl-C or a request to end, and return which it was."""
+    """Wait for Ctrl-C or a request to end, and return the signal."""
     loop = asyncio.get_running_loop()
     ended: asyncio.Future[int] = loop.create_future()
 

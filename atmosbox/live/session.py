@@ -1,4 +1,4 @@
-"""A box for a class: it runs, is changed by hand, measured and recorded; no socket is needed."""
+"""A box for a class: it runs, is changed by hand, measured and recorded. No socket is needed."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ __all__ = ["Session"]
 
 SLOWEST, FASTEST = 0.25, 16.0
 _STEP = 0.04
-_DRAG = 1.5  # s within which a slider that moves is one change
+_DRAG = 1.5  # s; moves of one slider within this time count as one change
 _MOST_PAST = 200
-_PUMP = 4.0  # times as many molecules, or as few, at one stroke
+_PUMP = 4.0  # largest factor by which one stroke of the pump changes the number of molecules, up or down
 
 
 @dataclass(frozen=True)
 class _Past:
-    """How it was before a change: where a knob stood, or with which settings and engine the box had begun.
+    """The state before a change, for undo: the value of a knob, or the settings and engine of the box.
 
-    ``first`` if the knob had not been turned before in the box, whose number is ``box``.
+    ``first`` says whether the knob had not been turned before in the box with the number ``box``.
     """
 
     knob: str | None
@@ -51,33 +51,33 @@ class _Past:
 
 
 class Session:
-    """A box with its instruments, advanced in small pieces, that obeys what the page asks for.
+    """A box with its instruments, advanced in small steps, that carries out the requests of the page.
 
-    However its time is cut into pieces, a box that is not changed does the same as in ``atmosbox run``.
+    However its time is divided into steps, a box that is not changed does the same as in ``atmosbox run``.
 
     Parameters
     ----------
     prepared
         The scene.
     folder
-        Where recordings go.
+        Folder of the recordings.
     out
-        The name of the first recording, if it has one.
+        Name of the first recording, if one was given.
     force
         Whether recordings may replace files.
     command
-        What the user typed, for the history of the file.
+        The command that the user typed, for the history of the file.
     clock
-        What tells the time [s].
+        Function that returns the time [s].
 
     Attributes
     ----------
     playing
-        Whether time passes.
+        Whether the box runs.
     pace
-        How much faster than usual.
+        Factor by which the box runs faster than usual.
     finished
-        Whether the box has come to the end of its planned way, and rests there.
+        Whether the box is paused at the end of its planned ascent.
 
     Raises
     ------
@@ -118,7 +118,7 @@ class Session:
     # ------------------------------------------------------------------ a box
 
     def _begin(self, prepared: Prepared) -> None:
-        """Build a box, and put it in the place of the one before."""
+        """Build a box, which replaces the one before."""
         experiment = Experiment(prepared, self._clock)
         shown = tuple(panel for panel in map(while_it_runs, experiment.panels) if panel is not None)
         picture = Picture(prepared, experiment.setup, shown)
@@ -134,7 +134,7 @@ class Session:
 
     @property
     def prepared(self) -> Prepared:
-        """The scene, with the settings with which the box has begun."""
+        """The scene, with the settings with which the box was started."""
         return self.experiment.prepared
 
     @property
@@ -144,20 +144,20 @@ class Session:
 
     @property
     def changes(self) -> list[Change]:
-        """What was changed by knobs, in order."""
+        """The changes made with knobs, in order."""
         return self._hand.changes
 
     # ------------------------------------------------------------------ time
 
     def run(self, seconds: float, budget: float | None = None) -> None:
-        """Advance the box by what belongs to so many seconds, if it is playing.
+        """Advance the box, if it is playing.
 
         Parameters
         ----------
         seconds
-            Time of the class [s].
+            Time that passes for the class [s]; the time of the box follows from its rate and pace.
         budget
-            After how many seconds to come back in any case [s].
+            Computing time after which to return in any case [s].
         """
         if self.playing:
             self._go_on(seconds, math.inf if budget is None else budget)
@@ -171,12 +171,12 @@ class Session:
             self.note("error", f"The box cannot go on: {error}. Begin anew.")
 
     def _closed(self) -> bool:
-        """Take note that a frame is complete; return whether to go on."""
+        """Handle the completion of a frame; return whether to go on."""
         self._recorder.closed(self.experiment, self.changes)
         return not self.setup.ends or self._goes_on_beyond()
 
     def _goes_on_beyond(self) -> bool:
-        """Pause at the end of an ascent; return whether to go on."""
+        """Pause at the end of an ascent, or when no more frames can be kept; return whether to go on."""
         frame = self.experiment.frame
         if frame == self.setup.frames:
             self.finished = True
@@ -191,10 +191,10 @@ class Session:
             return False
         return True
 
-    # ------------------------------------------------------------------ what the page asks for
+    # ------------------------------------------------------------------ requests of the page
 
     def obey(self, message: Mapping[str, Any]) -> None:
-        """Do what a message of the page asks for.
+        """Carry out a request of the page.
 
         Parameters
         ----------
@@ -204,7 +204,7 @@ class Session:
         Raises
         ------
         AtmosboxError
-            If it asks for what is not possible; nothing has changed then.
+            If the request is not possible; nothing has changed then.
         """
         try:
             self._obey(message.get("type"), message)
@@ -247,7 +247,7 @@ class Session:
         self._anew(values, str(self.prepared.engine))
 
     def _anew(self, values: Mapping[str, Any], engine: str) -> None:
-        """Begin a box with these settings, and remember how it was."""
+        """Restart the box with these settings, and remember the state before."""
         before = _Past(None, 0.0, self._hand.settings(self.prepared), str(self.prepared.engine), self._clock())
         self._begin(begun_anew(self.prepared, values, engine))
         self._remember(before)
@@ -256,7 +256,7 @@ class Session:
         self._past = [*self._past[1 - _MOST_PAST :], before]
 
     def _preset(self, number: object) -> None:
-        """Begin a box with settings that have a name, and the scene's own for the rest; the seed stays."""
+        """Restart the box with the settings of a preset, and the scene's defaults for the rest; the seed stays."""
         presets = self.lesson.presets
         if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(presets):
             raise SettingError("number", in_words(number), "is no set of settings", f"give 0 to {len(presets) - 1}")
@@ -264,7 +264,7 @@ class Session:
         self._anew(values, str(self.prepared.engine))
 
     def _pump(self, factor: object) -> None:
-        """Begin a box of the same volume with more molecules, or fewer."""
+        """Restart the box with more or fewer molecules in the same volume."""
         if not self.lesson.pump:
             raise SettingError("type", "pump", "is nothing that this scene offers", "change the number of molecules")
         by = number_between(factor, "factor", 1.0 / _PUMP, _PUMP)
@@ -282,7 +282,7 @@ class Session:
         )
 
     def _undo(self) -> None:
-        """Take back the last change."""
+        """Undo the last change."""
         if not self._past:
             self.note("info", "There is nothing to take back.")
             return
@@ -315,7 +315,7 @@ class Session:
             self._turn(control, wanted)
             last = self._past[-1] if self._past else None
             if last is not None and last.knob == control.name and before.when - last.when < _DRAG:
-                self._past[-1] = replace(last, when=before.when)  # a slider on its way
+                self._past[-1] = replace(last, when=before.when)  # a slider that is being moved
             else:
                 self._remember(before)
             return
@@ -327,12 +327,12 @@ class Session:
         self._anew(values, engine)
 
     def _turn(self, control: Control, value: Value, *, back: bool = False) -> None:
-        """Turn a knob; with ``back``, make the box as it was before the knob was first turned."""
+        """Turn a knob; with ``back``, restore the state before the knob was first turned."""
         if back:
             self._hand.leave(control, self.experiment)
         else:
             self._hand.turn(control, value, self.experiment)
-        if self.finished:  # it rests only because its way was at an end
+        if self.finished:  # the box was paused only because its ascent had ended
             self.playing, self.finished = True, False
         if self._hand.overflows:
             self._recorder.stop(f"The recording tells of {hand.MOST_CHANGES} changes, which is all it can.")
@@ -347,23 +347,23 @@ class Session:
         """Name of the file that is being recorded."""
         return self._recorder.name
 
-    # ------------------------------------------------------------------ what the page is told
+    # ------------------------------------------------------------------ data for the page
 
     def controls(self) -> tuple[Control, ...]:
-        """Return all that can be changed, as it is now."""
+        """Return all controls with their present values."""
         return self._hand.controls(self.prepared, self.setup)
 
     def note(self, level: str, text: str) -> None:
-        """Leave a sentence for the page."""
+        """Add a message for the page."""
         self._notes.append({"type": "note", "level": level, "text": text})
 
     def notes(self) -> list[dict[str, str]]:
-        """Return the sentences that have been left, once."""
+        """Return the messages for the page, and forget them."""
         told, self._notes = self._notes, []
         return told
 
     def state(self) -> dict[str, Any]:
-        """Return where things stand, as the page is told."""
+        """Return the state of the session, as data for the page."""
         return {
             "type": "state",
             "playing": self.playing,
@@ -381,7 +381,7 @@ class Session:
         }
 
     def stage(self) -> dict[str, Any]:
-        """Return what a page is told first."""
+        """Return the data that a page gets first."""
         state = {name: value for name, value in self.state().items() if name != "type"}
         told = [control.record() for control in self.controls()]
         return {
@@ -393,12 +393,12 @@ class Session:
         }
 
     def frame(self) -> bytes:
-        """Return where everything is now."""
+        """Return the present positions of everything that is drawn."""
         self._sequence += 1
         return self.picture.frame(self._sequence)
 
     def measured(self) -> list[dict[str, Any]]:
-        """Return what has been measured since the last call, as messages to the page."""
+        """Return the measurements since the last call, as messages to the page."""
         found = self.experiment.measured(self.changes[-1].frame + 1 if self.changes else 0)
         if found is None:
             return []

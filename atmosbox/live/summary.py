@@ -1,4 +1,4 @@
-"""What the graphs of the page are told: points that join a series, and arrays that replace the ones before."""
+"""The data for the graphs of the page: points to append to a series, and arrays that replace the ones before."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ _MOST = 1500
 
 
 class Report:
-    """The graphs of a scene, sent bit by bit.
+    """The data for the graphs of a scene, sent in parts.
 
-    Where all that changes with time is drawn against time, only what is new is told. A scene that draws one series
-    against another, as a parcel against its pressure, has all its values told whole, each time.
+    If all series are drawn against time, only their new points are sent. A scene that draws one series against
+    another, for example the temperature of a parcel against its pressure, sends all values each time.
 
     Parameters
     ----------
     panels
         The graphs.
     names
-        The variables that they need; "heat_from_wall[z_low]" is a part of one.
+        The variables that the graphs need; "heat_from_wall[z_low]" is a part of one.
     """
 
     def __init__(self, panels: Iterable[Panel], names: Sequence[str]) -> None:
@@ -43,7 +43,7 @@ class Report:
         self._arrays: dict[str, Any] | None = None
 
     def messages(self, found: xr.Dataset) -> list[dict[str, Any]]:
-        """Return what is new in a dataset."""
+        """Return the messages with the new data of a dataset."""
         whole = self._against_each_other(found)
         series: dict[str, list[float | None]] = {}
         arrays: dict[str, list[float | None]] = {}
@@ -73,7 +73,7 @@ class Report:
         return made
 
     def everything(self) -> list[dict[str, Any]]:
-        """Return all that has been told so far, for a page that has just come."""
+        """Return messages with all data so far, for a page that has just connected."""
         arrays = [] if self._arrays is None else [self._arrays]
         return [self._trace.message(reset=True), *arrays]
 
@@ -87,7 +87,7 @@ class Report:
 
 
 def _part(found: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return a variable, or the part of one at a label; None if there is none."""
+    """Return a variable, or the part of it at a label; None if there is none."""
     variable, _, label = name.removesuffix("]").partition("[")
     if variable not in found:
         return None
@@ -99,7 +99,7 @@ def _part(found: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def _warm_walls(found: xr.Dataset) -> list[str]:
-    """Return the names of the temperatures of walls that have one."""
+    """Return the names of the wall temperatures, for walls that have a temperature."""
     if "wall_temperature" not in found:
         return []
     known = np.isfinite(found["wall_temperature"].values).any(axis=0)
@@ -107,15 +107,15 @@ def _warm_walls(found: xr.Dataset) -> list[str]:
 
 
 def _thinned(values: Any, thin: bool) -> Any:
-    """Return so many values as a graph can show, the last among them."""
+    """Return at most as many values as a graph can show, including the last one."""
     every = -(-len(values) // _MOST) if thin and len(values) else 1
     return values[::-1][::every][::-1] if every > 1 else values
 
 
 def while_it_runs(panel: Panel) -> Panel | None:
-    """Return a panel without what is known only of a whole run, as a headline is; None if nothing is left.
+    """Return a panel without what is known only after a whole run, such as headlines; None if nothing is left.
 
-    Time is drawn evenly: what is changed late must be seen as well as the start.
+    The time axis is made linear, so that late changes can be seen as well as the start.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def while_it_runs(panel: Panel) -> Panel | None:
 
 
 def without_headlines(panel: Panel) -> Panel | None:
-    """Return a panel without what only the headlines of a whole run know; None if nothing is left.
+    """Return a panel without curves that come from the headlines of a whole run; None if nothing is left.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What the record button makes: the file that ``atmosbox run`` would have written, and what was changed meanwhile."""
+"""A recording: a file as ``atmosbox run`` writes it, with the changes that were made by hand."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class Change:
     Parameters
     ----------
     time
-        When, by the clock of the box [its unit of time].
+        Time of the box [reduced time].
     frame
-        How many frames were complete.
+        Number of frames that were complete.
     name, value, unit
-        What it was set to; None if the box was made as it was before the knob was first turned.
+        Name, new value and unit of the knob; the value is None if the state before its first turn was restored.
     """
 
     time: float
@@ -53,7 +53,7 @@ class Change:
 
     @property
     def words(self) -> str:
-        """What was done, as a sentence goes on.
+        """The change in words, as part of a sentence.
 
         Examples
         --------
@@ -68,16 +68,16 @@ class Change:
 
 
 def file_for(name: str | None, scene: str, folder: Path, *, force: bool) -> Path:
-    """Return the file that a recording goes to.
+    """Return the path of the file for a recording.
 
     Parameters
     ----------
     name
-        What was asked for: the name of a file in the folder, nothing else; None for one that is free.
+        The requested name of a file in the folder, without a path; None for a default name that is not in use.
     scene
-        The name of the scene, for a recording without one.
+        Name of the scene, for the default name.
     folder
-        Where files go.
+        Folder of the recordings.
     force
         Whether a file may be replaced.
 
@@ -114,18 +114,18 @@ def file_for(name: str | None, scene: str, folder: Path, *, force: bool) -> Path
 
 
 class Tape:
-    """A recording of a box that runs, on its way into a file.
+    """A recording of a running box, which becomes a file.
 
     Parameters
     ----------
     path
-        The file, which `file_for` has let through.
+        The file, which `file_for` has checked.
     prepared, setup
         The scene and its box.
     recording
         The instruments whose readings go into the file.
     changes
-        All that has been changed in this box, in order; grows while it runs.
+        All changes in this box, in order; the list grows while the box runs.
     panels
         The graphs of the scene.
     force
@@ -153,14 +153,14 @@ class Tape:
 
     @property
     def frames(self) -> int:
-        """How many frames it holds."""
+        """Number of frames in the recording."""
         return self.recording.frames
 
     def dataset(self, status: str) -> xr.Dataset:
         """Return what has been recorded so far.
 
-        Averages begin when the box has settled after the last change. The headlines of a scene are about the whole
-        run as it was set, so that only a recording from the start, with nothing changed, has any.
+        Averages begin when the box has settled after the last change. The headlines of a scene are about the whole,
+        unchanged run, so only a recording that begins at the start and has no changes has headlines.
         """
         whole = not self.recording.first and not self._changes and self.frames <= self._setup.frames
         last = self._changes[-1].frame + 1 if self._changes else 0
@@ -200,7 +200,7 @@ class Tape:
         found.attrs["history"] += "\n" + history_line(f"atmosbox live, by hand: {words}")
 
     def save(self) -> None:
-        """Keep what there is so far on disk, now and then."""
+        """Write the recording so far to the disk, if it is time to."""
         try:
             self._checkpoint(lambda: self.dataset("partial"))
         except BaseException:
@@ -208,12 +208,12 @@ class Tape:
             raise
 
     def finish(self) -> Path | None:
-        """Write the file, and return it; None if no frame is complete, and nothing is written.
+        """Write the file, and return its path; if no frame is complete, write nothing and return None.
 
         Raises
         ------
         FileError
-            If it cannot be written.
+            If the file cannot be written.
         """
         if not self.frames:
             self._checkpoint.abandon()

@@ -1,4 +1,4 @@
-"""Series of a long session, kept in so many points as a graph can show."""
+"""Time series of a long session, kept to a number of points that a graph can show."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 __all__ = ["Trace", "plain"]
 
 MOST = 4000
-"""How many points of a series are kept."""
+"""Largest number of points of a series that are kept."""
 
 
 def plain(values: ArrayLike) -> list[float | None]:
-    """Return numbers as JSON has them: what is not finite becomes null, and seven figures are enough for a graph.
+    """Return numbers as JSON can hold them, with seven digits; numbers that are not finite become null.
 
     Examples
     --------
@@ -28,7 +28,7 @@ def plain(values: ArrayLike) -> list[float | None]:
 
 
 class Trace:
-    """Values against time, of which every second one is dropped whenever there are too many.
+    """Values against time; whenever there are too many, every second one is dropped.
 
     Examples
     --------
@@ -69,6 +69,6 @@ class Trace:
         return thinned
 
     def message(self, *, reset: bool, since: int = 0) -> dict[str, Any]:
-        """Return the points from one on as a message to the page."""
+        """Return the points from number `since` on as a message to the page."""
         values = {name: column[since:] for name, column in self._values.items()}
         return {"type": "series", "reset": reset, "time": self._time[since:], "values": values}

@@ -1,4 +1,4 @@
-"""The thread in which the box runs: it takes what the pages ask for, and gives what they are shown."""
+"""The thread in which the box runs: it takes the requests of the pages, and publishes messages to them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from atmosbox.simulation.compilation import told
 __all__ = ["GREET", "JOIN", "LEAVE", "Publish", "Worker"]
 
 Publish = Callable[[int | None, str | bytes], None]
-"""Called with the number of a page, or None for all of them, and a message."""
+"""Function that is called with the number of a page, or None for all pages, and a message."""
 
 JOIN, LEAVE, GREET = "join", "leave", "greet"
-"""What the server asks for itself: a page has come, has gone, or must be told everything anew."""
+"""Requests of the server itself: a page has connected, has disconnected, or must get everything anew."""
 PICTURES = 30.0
-"""How many pictures there are in a second."""
+"""Number of pictures per second."""
 _BUDGET = 0.75
 _MEASURE_EVERY, _MEASURE_SHARE, _MEASURE_LATEST = 0.25, 0.1, 2.0
 _STATE_EVERY = 0.5
@@ -33,19 +33,19 @@ _BUILDING = ("reset", "preset", "pump", "undo")
 class Worker:
     """Runs a session, 30 pictures a second.
 
-    While no page is open the box rests, unless it is being recorded.
+    While no page is open the box is paused, unless it is being recorded.
 
     Parameters
     ----------
     session
-        What runs; from now on no other thread may use it.
+        The session to run; from now on no other thread may use it.
     publish
-        What takes the messages for the pages; called from this thread.
+        Function that takes the messages for the pages; called from this thread.
 
     Attributes
     ----------
     failure
-        What ended the thread, if that was no request.
+        The exception that ended the thread; None if there was none.
     """
 
     def __init__(self, session: Session, publish: Publish) -> None:
@@ -61,11 +61,11 @@ class Worker:
         self.failure: BaseException | None = None
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def ask(self, page: int, message: dict[str, Any] | str) -> bool:
-        """Take what a page, as a dict, or the server asks for; return whether there was room for it."""
+        """Queue a request, a dict of a page or a text of the server; return whether the queue had room for it."""
         try:
             self._requests.put((page, message), block=isinstance(message, str), timeout=5.0)
         except queue.Full:
@@ -73,7 +73,7 @@ class Worker:
         return True
 
     def stop(self) -> list[str]:
-        """End: what is recorded is saved. Return the sentences that are left to say."""
+        """Stop the thread and save the recording; return the remaining messages."""
         self._stopping.set()
         self._thread.join()
         self._session.stop_recording()
@@ -81,10 +81,10 @@ class Worker:
 
     @property
     def alive(self) -> bool:
-        """Whether the thread is there."""
+        """Whether the thread is running."""
         return self._thread.is_alive()
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ in the thread
 
     def _live(self) -> None:
         try:
@@ -111,7 +111,7 @@ class Worker:
                 pictures = [t for t in pictures if t > now() - 2.0] + [now()]
             due = max(due + period, now())
             unmeasured = unmeasured or running or touched
-            if unmeasured and now() - measured > pause:  # also what came last before it stopped
+            if unmeasured and now() - measured > pause:  # also once after the box has stopped
                 unmeasured = False
                 begun = now()
                 for message in session.measured():
@@ -127,7 +127,7 @@ class Worker:
                 told = now()
 
     def _obey(self, patience: float) -> bool:
-        """Do what was asked for, after waiting for it at most so long; return whether the box was touched."""
+        """Carry out the requests, after waiting at most `patience` [s]; return whether a page has sent one."""
         touched = False
         stage = self._session.picture
         while True:
@@ -152,7 +152,7 @@ class Worker:
         return touched
 
     def _tell_controls(self) -> None:
-        """Tell all pages what one of them has set."""
+        """Send the controls to all pages, if a value has changed."""
         found = self._session.controls()
         values = {control.name: control.value for control in found}
         if values != self._last_values:
@@ -173,7 +173,7 @@ class Worker:
             self._tell(page, {"type": "note", "level": "error", "text": str(error)})
 
     def _say_busy(self, words: str) -> None:
-        """Tell all pages what they wait for; the next state, whatever it says, takes it back."""
+        """Tell all pages why they wait; the next state message removes this."""
         self._tell(None, {"type": "state", "busy": words})
         self._last_state = {}
 
@@ -181,7 +181,7 @@ class Worker:
         self._say_busy(f"The box is being built: {words}.")
 
     def _greet(self, page: int) -> None:
-        """Tell a page all there is."""
+        """Send all present data to a page."""
         session = self._session
         stage = session.stage()
         stage["state"] |= {"rate": self._rate, "busy": None}
@@ -205,7 +205,7 @@ class Worker:
 
 
 def _finite(told: Any) -> Any:
-    """Return a message as JSON can hold it: what is not finite is null."""
+    """Return a message as JSON can hold it: numbers that are not finite become null."""
     if isinstance(told, dict):
         return {name: _finite(value) for name, value in told.items()}
     if isinstance(told, list | tuple):

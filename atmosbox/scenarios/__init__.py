@@ -1,9 +1,9 @@
-"""The one door to the scenarios: which there are, and how to open one.
+"""List and load the scenarios.
 
-A scenario is a page of facts about one experiment: what a user may set, how its box is built, what theory
-says and what its figure shows. The scenarios of atmosbox stand in the folder ``scenarios/`` at the top of
-the checkout and are imported as ``atmosbox.scenarios.<module>``. A lecturer's own scenario is a module like
-them, opened by its path.
+A scenario is a module that describes one experiment: its settings, how its box is built, what theory
+predicts and what its figure shows. The scenarios of atmosbox are in the folder ``scenarios/`` at the top of
+the checkout and are imported as ``atmosbox.scenarios.<module>``. A lecturer's own scenario is a module of the same
+form, loaded by its path.
 
 An installed atmosbox has the modules of that folder here, beside this file. A checkout has them two folders
 up, so a checkout, installed or not, adds that folder to ``__path__``.
@@ -31,11 +31,11 @@ REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
 
 
 def _checkout_scenarios(here: Path) -> Path | None:
-    """Return the top-level ``scenarios/`` if ``here`` stands in a checkout of atmosbox."""
+    """Return the top-level folder ``scenarios/`` if ``here`` is in a checkout of atmosbox."""
     root = here.parent.parent
     project = root / "pyproject.toml"
     folder = root / "scenarios"
-    # Other people's pyproject.toml and scenarios/ may stand there after `pip install --target`.
+    # After `pip install --target`, a pyproject.toml and scenarios/ of another project may be there.
     if project.is_file() and folder.is_dir() and 'name = "atmosbox"' in project.read_text(encoding="utf-8"):
         return folder
     return None
@@ -49,7 +49,7 @@ if _checkout is not None:
 def names() -> tuple[str, ...]:
     """Return the names of all scenarios that come with atmosbox.
 
-    They are found by looking into the folder; none is imported.
+    The folder is listed; no scenario is imported.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def names() -> tuple[str, ...]:
 
 
 def summaries() -> dict[str, str]:
-    """Return the first line of each scene's story by its name; no scene is imported for it.
+    """Return the first sentence of each scenario's docstring by name; no scenario is imported.
 
     Examples
     --------
@@ -85,14 +85,14 @@ def summaries() -> dict[str, str]:
 
 
 def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
-    """Open a scenario: one of atmosbox by its name, or your own by the path of its file.
+    """Load a scenario: one of atmosbox by its name, or your own by the path of its file.
 
     Parameters
     ----------
     name_or_path
         A name from `names`, such as ``"lifting-dry"`` (``"lifting_dry"`` is the same), or the path of a
         Python file: anything that ends in ``.py`` or contains a separator, such as ``"./my_scene.py"``. The
-        file is read anew at each call, and may run any code, as every Python program may.
+        file is run anew at each call; like every Python program, it can run any code.
 
     Returns
     -------
@@ -103,10 +103,9 @@ def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
     Raises
     ------
     UnknownSceneError
-        If no scenario has this name; the sentence offers the nearest ones.
+        If no scenario has this name; the message offers the nearest names.
     FileError
-        If the file is missing or unreadable, fails on import, or is no scenario because it lacks a required
-        attribute.
+        If the file is missing or unreadable, fails on import, or lacks a required attribute.
 
     Examples
     --------
@@ -124,10 +123,10 @@ def load(name_or_path: str | os.PathLike[str]) -> ModuleType:
 
 
 def _complete(module: ModuleType) -> ModuleType:
-    """Give a variant of another scenario what it takes over.
+    """Copy into a variant of another scenario the attributes that it does not define itself.
 
-    A variant says whose it is, ``variant_of = "temperature"``, and which settings start from another value,
-    ``defaults = {"molecules": 800}``; all that it does not define itself is the other's.
+    A variant names the other scenario, ``variant_of = "temperature"``, and may give other default values of
+    settings, ``defaults = {"molecules": 800}``.
     """
     base = getattr(module, "variant_of", None)
     if base is not None and not hasattr(module, "Settings"):
@@ -162,14 +161,14 @@ def _load_file(path: Path) -> ModuleType:
     except OSError as error:
         raise FileError(f"{path} cannot be read ({error.strerror}): check its permissions.") from error
 
-    # A name of its own, so that no user's file can stand in for a module of Python or of another library; in
+    # A unique name, so that a user's file cannot replace a module of Python or of another library; in
     # sys.modules, because pydantic and dataclasses look a module up by its name.
     location = str(path.resolve())
     module = ModuleType(f"_atmosbox_scene_{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
     module.__file__ = location
     sys.modules[module.__name__] = module
     try:
-        # Compiled from the text at hand: bytecode kept beside the file may be older than an edit just made.
+        # Compiled from the source: bytecode in a cache beside the file may be older than the source.
         exec(compile(source, location, "exec", dont_inherit=True), module.__dict__)
     except (Exception, SystemExit) as error:
         del sys.modules[module.__name__]

@@ -1,4 +1,4 @@
-"""What a scene is written with.
+"""The parts from which a scene is written.
 
 A scene of your own needs little more than the names below, ``from atmosbox.scene import Setup, Panel, ...``; each is
 imported when it is first used.
@@ -9,14 +9,14 @@ imported when it is first used.
 `engines`      the engines a scene may use, and their options
 `instruments`  what is measured, one class each
 `statistics`   means with their standard errors
-`wish`         how accurate a run shall be, in words
-`headline`     the numbers that a run is about, beside theory
+`wish`         how accurate a run is to be, as a user says it
+`headline`     the main results of a run, compared with theory
 `panels`       the graphs of its figure, declared
-`knob`         what a class may change while the box runs
+`knob`         what may be changed while the box runs
 `moisture`     water for a scene
 `piston`       a parcel under a piston
-`ascent`       what the scenes of lifted air share
-`exchange`     what the scenes of vapour over liquid share
+`ascent`       the common parts of the scenes of lifted air
+`exchange`     the common parts of the scenes of vapour over liquid
 `sounding`     measured profiles of the atmosphere, read and checked
 """
 

@@ -1,4 +1,4 @@
-"""The few numbers that a run is about, each beside the answer of the textbook."""
+"""The few main results of a run, each beside the answer of the textbook."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ CHANCE_ALONE = "none: the model has no other error than chance"
 ENGINE_IS_OFF = "so far off was this engine measured to be"
 """Reason of a bias of the engine."""
 CHANCE_LIMIT = 4.0
-"""How many standard errors chance may make of a misfit: it makes more once in 16,000 times."""
+"""Largest misfit, in standard errors, that counts as chance: chance exceeds it once in 16,000 times."""
 YES, AS_STATED, NO = "yes", "as stated", "no"
-"""What may be said of a misfit: chance alone explains it; with the known error of the model; nothing does."""
+"""The verdicts on a misfit: explained by chance alone; only with the known error of the model; not explained."""
 
 
 @dataclass(frozen=True)
 class Headline:
-    """One number that a run is about, with its error bar and the answer of the textbook.
+    """One main result of a run, with its error bar and the answer of the textbook.
 
     Parameters
     ----------
@@ -28,19 +28,19 @@ class Headline:
     value, standard_error
         The measurement and its statistical error [unit].
     theory
-        The closed-form answer [unit]; None where there is none.
+        The closed-form answer [unit]; None if there is none.
     tolerance
-        How far the model itself may be from the textbook, beyond the statistical error [unit].
+        How far the model itself may be from the textbook, in addition to the statistical error [unit].
     reason
-        Why the tolerance is what it is.
+        Why the tolerance has this size.
     unit
         The SI unit of the numbers here.
     display_unit
         The unit in which a table shows them.
     label
-        What a table calls it.
+        Its name in a table.
     bias, bias_se
-        By how much runs of this approximate engine were measured to be off, and its standard error [unit].
+        The measured error of runs with this approximate engine, and its standard error [unit].
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Headline:
     >>> warm.misfit, warm.chance, warm.verdict
     (3.0, 8.0, 'yes')
 
-    An engine that is known to be 5 K too warm may be that, but not as much too cold:
+    An engine that is known to be 5 K too warm explains 5 K too warm, but not 5 K too cold:
 
     >>> from dataclasses import replace
     >>> sharp = replace(warm, standard_error=0.5, bias=5.0)
@@ -82,30 +82,31 @@ class Headline:
 
     @property
     def chance(self) -> float:
-        """How large a misfit chance alone may make [unit]: four standard errors."""
+        """Largest misfit that chance alone may cause [unit]: four standard errors."""
         return CHANCE_LIMIT * self.standard_error
 
     @property
     def known(self) -> float:
-        """By how much more the model, or its engine, is known to be off [unit].
+        """Known error of the model and its engine, in addition to chance [unit].
 
-        The tolerance to either side, and the measured bias of the engine to its own, with four standard errors of it.
+        The sum of the tolerance, to either side, and of the measured bias of the engine, to its own side; with four
+        standard errors of the bias.
         """
         return self._allowed(self.bias, self.bias_se) - self.chance
 
     @property
     def allowed(self) -> float:
-        """How large the misfit may be [unit]: by `chance`, and by the `known` error."""
+        """Largest misfit allowed [unit]: by `chance` and by the `known` error together."""
         return self._allowed(self.bias, self.bias_se)
 
     def _allowed(self, bias: float, bias_se: float) -> float:
-        """Return how large the misfit may be with such a bias of the engine [unit]."""
+        """Return the largest misfit allowed for this bias of the engine [unit]."""
         aside = max(math.copysign(1.0, self.misfit or 0.0) * bias, 0.0)
         return CHANCE_LIMIT * math.hypot(self.standard_error, bias_se) + self.tolerance + aside
 
     @property
     def verdict(self) -> str | None:
-        """Whether chance alone explains the misfit, only with the known error, or nothing; None without a theory.
+        """Whether chance alone explains the misfit, or only with the known error, or neither; None without a theory.
 
         A measurement or an error bar that is not a finite number agrees with nothing.
         """
@@ -122,5 +123,5 @@ class Headline:
 
     @property
     def excuse(self) -> str:
-        """Why the misfit may be larger than by chance: the reason of the tolerance, or that the engine is off."""
+        """Why the misfit may exceed chance: the reason of the tolerance, or that the engine is known to be off."""
         return self.reason if abs(self.misfit or 0.0) <= self._allowed(0.0, 0.0) else ENGINE_IS_OFF

@@ -1,8 +1,8 @@
 """What may be changed while a box runs: its name, its range, and what changes in the box.
 
 A scene lists its knobs in its `Setup`, beside its instruments; ``atmosbox live`` makes a slider of each. Every other
-setting of the scene has a slider too, but the box starts again when it is moved. A knob of your own is a `Knob` with a
-function; the functions below make those that most boxes need.
+setting of the scene has a slider, too, but moving it starts the box again. A knob of your own is a `Knob` with a
+function; the functions below make the knobs that most boxes need.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ __all__ = ["Knob", "altitude", "gravity", "open_pool", "wall_temperature", "warm
 
 @dataclass(frozen=True)
 class Knob:
-    """Something of a box that may be changed while it runs.
+    """A property of a box that may be changed while the box runs.
 
     Parameters
     ----------
     name
-        Its name; that of a setting if it stands for one, which is then changed without a new start.
+        Its name; if it is the name of a setting, that setting is changed without a new start.
     help
         What it is, in one line.
     unit
@@ -42,9 +42,9 @@ class Knob:
     value
         Its value at the start, in `unit`.
     turn
-        Called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
+        Function that is called with the new value in SI units; may raise `atmosbox.engine.RefusedError`.
     leave
-        Makes the box as it was before the knob was first turned; None if turning it to `value` does.
+        Function that restores the box as it was before the knob was first turned; None if turning it to `value` does.
 
     Raises
     ------
@@ -73,11 +73,11 @@ class Knob:
             raise ValueError(f"the knob {self.name} stands at {self.value}, outside {self.low} to {self.high}")
 
     def set(self, value: float) -> None:
-        """Set it to a value in its unit."""
+        """Set the knob to a value in its unit."""
         self.turn(value if self.unit in ("", "1") else to_si(value, self.unit))
 
     def reset(self) -> None:
-        """Make the box as it was before the knob was first turned; what has happened since stays."""
+        """Restore the property as it was before the knob was first turned; what has happened since stays."""
         if self.leave is None:
             self.set(self.value)
         else:
@@ -103,7 +103,7 @@ def wall_temperature(
     low, high
         The range, in the unit of the setting; widened to include the value at the start.
     name
-        The setting that is the value at the start.
+        The setting whose value is the value at the start.
     wall
         The number of the wall, in the order of `atmosbox.engine.core.walls.WALL_NAMES`; all heat baths if None.
 
@@ -132,16 +132,16 @@ def warmed_walls(
     low: float,
     high: float,
 ) -> Knob:
-    """Return the knob that makes heat baths of smooth walls, at its first turn, and sets their temperature.
+    """Return the knob that turns smooth walls into heat baths at its first turn, and sets their temperature.
 
-    Until then the walls are as the scene has them, so that a box that is left alone is the one of ``atmosbox run``.
+    Until then the walls are those of the scene, so that a box that nobody touches is the one of ``atmosbox run``.
 
     Parameters
     ----------
     parcel, settings
         The box and its settings.
     name
-        The setting that is the value at the start.
+        The setting whose value is the value at the start.
     help
         What it is, in one line.
     walls
@@ -179,7 +179,7 @@ def warmed_walls(
 
 
 def open_pool(parcel: Any) -> Knob:
-    """Return the knob that covers a part of a pool with a foil, or all of it: see `set_open_pool` of the box.
+    """Return the knob that covers a part of a pool, or all of it, with a foil; see `set_open_pool` of the box.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def open_pool(parcel: Any) -> Knob:
 def gravity(
     parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float, name: str = "gravity"
 ) -> Knob:
-    """Return the knob that makes gravity stronger or weaker; see `wall_temperature` for the parameters.
+    """Return the knob that sets the strength of gravity; see `wall_temperature` for the parameters.
 
     Examples
     --------
@@ -230,11 +230,11 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
     parcel, driver
         The box, and the driver of its piston.
     height
-        Height [m] after a fraction of the way, 0 to 1; increasing.
+        Height [m] after a share of the ascent, 0 to 1; increasing.
 
     Examples
     --------
-    Left alone the parcel rises to the top:
+    If the knob is not turned, the parcel rises to the top:
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> setup = build(prepare("lifting-dry", {"molecules": 100}))
@@ -252,7 +252,7 @@ def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], f
 
 
 def way(parcel: Parcel, driver: FollowPressure) -> Knob:
-    """Return the knob that moves a parcel back and forth along a way that goes up and down.
+    """Return the knob that moves a parcel back and forth along a path that goes up and down.
 
     Examples
     --------
@@ -268,13 +268,13 @@ def way(parcel: Parcel, driver: FollowPressure) -> Knob:
 
 
 def _lead(parcel: Parcel, driver: FollowPressure, share: float) -> None:
-    """Make a parcel move to a place of its way."""
+    """Make a parcel move to a place on its path, given as a share of the path."""
     course = driver.course
     course.lead(parcel.time, min(max(share, 0.0), 1.0) * course.end)
 
 
 def _of_setting(settings: SceneSettings, name: str, low: float, high: float, turn: Callable[[float], None]) -> Knob:
-    """Return the knob that stands for a setting, with a range that fits a slider."""
+    """Return the knob of a setting, with a range that fits a slider."""
     declared = {parameter.name: parameter for parameter in settings.describe()}[name]
     value = float(getattr(settings, name))
     least = max(min(low, value), -math.inf if declared.low is None else declared.low)

@@ -19,14 +19,14 @@ __all__ = ["MoistAir", "moist_air", "nuclei_heat_capacity", "vapour_molecules", 
 
 Array = NDArray[np.float64]
 NUCLEI = 100.0
-"""Heat capacity of the nuclei that droplets form on, in k, where there is air enough."""
+"""Heat capacity of the nuclei on which droplets form, in k, where there is enough air."""
 
 
 def water(scale: Scale, diameter: float = 1.0) -> Substance:
     """Return water in the units of a scene whose unit of mass is a molecule of air.
 
-    Its binding energy and its heat capacity are those of `atmosbox.theory.saturation_vapor_pressure`, which it then
-    obeys at every temperature.
+    Its binding energy and its heat capacity are those of `atmosbox.theory.saturation_vapor_pressure`; so its saturation
+    vapour pressure follows that formula at every temperature.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def water(scale: Scale, diameter: float = 1.0) -> Substance:
 
 
 def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) -> int:
-    """Return how many of some molecules are vapour at a partial pressure.
+    """Return the number of molecules that are vapour at a partial pressure, out of a number of molecules.
 
     Examples
     --------
@@ -66,10 +66,10 @@ def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) ->
 
 
 def nuclei_heat_capacity(air: int) -> float:
-    """Return the heat capacity of the nuclei that droplets form on, in k.
+    """Return the heat capacity of the nuclei on which droplets form, in k.
 
-    It steadies the temperature of the first molecules that condense. It is at most half a percent of the heat
-    capacity at constant pressure of the air, 7/2 k per molecule, and so changes an adiabat little.
+    It keeps the temperature steady when the first molecules condense. It is at most half a percent of the heat capacity
+    of the air at constant pressure, 7/2 k per molecule, and so changes an adiabat little.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class MoistAir:
 
 
 def moist_air(molecules: int, vapour: int, rng: Source) -> MoistAir:
-    """Return so many molecules, so many of them vapour, at kT = 1 to rounding and without momentum.
+    """Return molecules of moist air, some of them vapour, at kT = 1 to rounding and without total momentum.
 
     Examples
     --------

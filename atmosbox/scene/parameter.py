@@ -1,4 +1,4 @@
-"""One setting as a scene declared it: which values it allows, and how it reads the one that a user gave."""
+"""One setting as a scene declares it: the values it allows, and how the value that a user gives is read."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Parameter:
     choices
         The words allowed; None for numbers, switches and free text.
     help
-        What it is, in one line.
+        What the setting is, in one line.
     kind
         The type of its value: "int", "float", "bool" or "str".
     """
@@ -71,7 +71,7 @@ class Parameter:
         return number if self.unit == "1" else f"{number} ({self.unit})"
 
     def typed(self, value: Value | None = None) -> str:
-        """Return a value, or else the default, as it is typed after ``--set name=``."""
+        """Return a value, or else the default, in the form in which it is typed after ``--set name=``."""
         value = self.default if value is None else value
         if isinstance(value, bool):
             return "on" if value else "off"
@@ -113,7 +113,7 @@ class Parameter:
         return self._word(value) if self.kind == "str" else self._number(value)
 
     def takes(self, value: object) -> bool:
-        """Whether a value can be of the kind that is set here, be it out of range or several of them.
+        """Whether a value is of the kind of this setting, even if it is out of range or a row of several values.
 
         Examples
         --------
@@ -169,7 +169,7 @@ class Parameter:
 
     @property
     def _wanted(self) -> str:
-        """What would be right: "a temperature from -100 degC to 500 degC"."""
+        """Return what is allowed, with its kind: "a temperature from -100 degC to 500 degC"."""
         kind = "a percentage" if self.unit == "%" else MEASURES.get(declared_unit(self.unit).si, "a quantity")
         if self.kind == "int":
             kind = "a whole number" + ("" if self.unit == "1" else f" of {self.unit}")
@@ -186,7 +186,7 @@ class Parameter:
 def by_name(
     given: Mapping[str, T], parameters: Mapping[str, Parameter], whose: str = "a setting of this scene"
 ) -> dict[str, T]:
-    """Return values by the names of the settings they are for, however a user spelled these.
+    """Return values by the names of their settings, however a user spelled these names.
 
     Parameters
     ----------
@@ -195,14 +195,14 @@ def by_name(
     parameters
         The settings by name.
     whose
-        What these are, for the sentence of a refusal.
+        What the settings belong to, for the sentence of a refusal.
 
     Raises
     ------
     UnknownSettingError
-        If there is no setting of a name; the sentence has the nearest.
+        If there is no setting of a name; the sentence suggests the nearest name.
     SettingError
-        If one is given twice.
+        If a setting is given twice.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A parcel under a piston: how large its box is, how its piston follows, and moist air in it."""
+"""A parcel under a piston: the size of its box, how fast its piston follows, and moist air in it."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ if TYPE_CHECKING:
 __all__ = ["CLOSING", "FLATNESS", "moist_parcel", "size_of_parcel"]
 
 FLATNESS = 0.4
-"""Height of the box over its width: it rises to be nearly as high as it is wide, and a slow piston works with less
+"""Height of the box over its width: the box rises to be nearly as high as it is wide, and a slow piston makes less
 noise."""
 CLOSING = 20.0
-"""Within how many mean free times the piston of a parcel that rises closes a gap of pressure."""
+"""Time in which the piston of a parcel that rises closes a gap in pressure [mean free times]."""
 
 
 def size_of_parcel(
     scale: Scale, molecules: int, pressure: float, *, ideal: bool, flatness: float = FLATNESS
 ) -> tuple[float, NDArray[np.float64], float]:
-    """Return density, sides that centres can reach, and (Z - 1) / n, in diameters, at a pressure [Pa] and kT = 1.
+    """Return density, sides within reach of the centres, and (Z - 1) / n, in diameters, at a pressure [Pa] and kT = 1.
 
     Parameters
     ----------
     scale
         The units of the box.
     molecules
-        How many there are.
+        Number of molecules.
     pressure
-        That of the gas [Pa].
+        Pressure of the gas [Pa].
     ideal
-        Whether molecules have no volume, and Z is 1.
+        Whether molecules have no volume, so that Z is 1.
     flatness
         Height of the box over its width [1].
 
@@ -52,11 +52,11 @@ def size_of_parcel(
     sides : (axis,)
         Sides of the space that centres can reach [diameter].
     excess
-        What contacts add to the pressure, (Z - 1) / n [diameter^3].
+        What collisions add to the pressure, (Z - 1) / n [diameter^3].
 
     Examples
     --------
-    Points at 1000 hPa and 0 degC are Loschmidt's number, 2.65e25 in a cubic metre; molecules push each other apart:
+    Points at 1000 hPa and 0 degC have Loschmidt's number, 2.65e25 in a cubic metre; spheres push each other apart:
 
     >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 273.15)
@@ -96,17 +96,17 @@ def moist_parcel(
     engine
         The engine with its options.
     molecules, vapour
-        How many there are, and how many of them are vapour.
+        Number of molecules, and number of them that are vapour.
     sides : (axis,)
         Sides of the space that centres can reach [diameter].
     driver
-        What moves the piston.
+        The driver of the piston.
     liquid
-        The water that vapour meets.
+        The liquid water that the vapour can meet.
     rng
-        What places and velocities at the start are drawn from.
+        Source of the random positions and velocities at the start.
     seed
-        Seed of what chance does later.
+        Seed of the random numbers of the run.
     """
     gas = moist_air(molecules, vapour, rng)
     length = tuple(sides + 1.0)

@@ -1,4 +1,4 @@
-r"""What a user may set: declared once, checked once, with a sentence for every refusal.
+r"""What a user may set: declared once and checked once; each refusal is a full sentence.
 
 A scene declares its settings as the fields of a class, and the command line, the settings file, the tables of
 ``atmosbox info`` and the attributes of the output are all made from that declaration::

@@ -1,4 +1,4 @@
-"""What a scenario builds: a box at its start, its scale, what is measured, and which runs are compared."""
+"""What a scenario builds: a box at its start, its scale, its instruments, and the runs to be compared."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ __all__ = ["Series", "Setup"]
 
 @dataclass(frozen=True)
 class Setup:
-    """A box at its start, its scale, and what is measured how often.
+    """A box at its start, its scale, its instruments, and how often they measure.
 
     Parameters
     ----------
     parcel
         The molecules in their box, in the engine's reduced units.
     scale
-        What one unit of these is in SI.
+        The SI values of these units.
     duration
         How long the run lasts [reduced time].
     frames
@@ -47,9 +47,9 @@ class Setup:
     knobs
         What may be changed while the box runs, in ``atmosbox live``.
     ends
-        Whether the run has an end of its own, as an ascent at its top; others could go on for ever.
+        Whether the run has an end of its own, as an ascent has at its top; other runs could continue for ever.
     doubts
-        What is doubtful about what was given, a sentence each: said when the run begins, and in its file.
+        Doubts about the given values, one sentence each; they are printed when the run begins, and stored in its file.
 
     right : (molecule,), optional
         Which molecules belong to the second of two gases, where there are two; pictures give them another colour.
@@ -57,7 +57,7 @@ class Setup:
     Raises
     ------
     ValueError
-        If the frames are not in order.
+        If duration, frames, samples or settling frames are out of range.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class Setup:
 
 @dataclass(frozen=True)
 class Series:
-    """Runs that differ in one thing, for the measurement of speed against accuracy.
+    """Runs that differ in one value, for the measurement of speed against accuracy.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ class Series:
     settings
         The settings of all runs that differ from the scene's defaults.
     order
-        The power of the varied value with which the error of a headline grows, by the name of the headline, where a
-        law is known.
+        The power of the varied value with which the error of a headline grows, by the name of the headline, where
+        theory gives it.
 
     Raises
     ------

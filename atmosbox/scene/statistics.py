@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class BlockAverage(NamedTuple):
-    """A mean and how far it may be off."""
+    """A mean and its standard error."""
 
     mean: NDArray[np.float64]
     """Mean of the values."""
@@ -18,12 +18,12 @@ class BlockAverage(NamedTuple):
 def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> BlockAverage:
     r"""Return the mean of a series and its standard error, from the means of blocks.
 
-    Values that follow each other closely in time are not independent, and taking them for such makes an error
-    bar too small. The means of blocks much longer than the correlation time of the gas, ten mean free times, are: the
-    standard error is their standard deviation over the square root of their number. Where a correlation decays as
-    :math:`e^{-t/\tau}`, blocks of a length L not much longer show too little. The variance of a mean over a time
-    t is :math:`f(t) / t`, :math:`f = 1 - (1 - e^{-t/\tau}) \tau / t`, and so of n blocks the square of the error is
-    divided by :math:`[n f(L) / f(nL) - 1] / (n - 1)`.
+    Values that follow each other closely in time are not independent, and an error bar that takes them as independent
+    is too small. The means of blocks much longer than the correlation time of the gas, ten mean free times, are
+    independent: the standard error is their standard deviation over the square root of their number. Where a
+    correlation decays as :math:`e^{-t/\tau}`, the means of blocks of a length L not much longer than that scatter too
+    little. The variance of a mean over a time t is :math:`f(t) / t`, :math:`f = 1 - (1 - e^{-t/\tau}) \tau / t`, and so
+    the square of the error of n blocks is divided by :math:`[n f(L) / f(nL) - 1] / (n - 1)`.
 
     Parameters
     ----------
@@ -67,17 +67,17 @@ def block_average(values: ArrayLike, blocks: int = 20, memory: float = 0.0) -> B
     means = series[-blocks * length :].reshape(blocks, length, *series.shape[1:]).mean(axis=1)
     error = means.std(axis=0, ddof=1) / np.sqrt(blocks)
     if memory > 0.0:
-        # the blocks scatter about the mean of this run, not about the true one
+        # the blocks scatter about the mean of this run, not about the true mean
         lengths = length / memory * np.array([1.0, blocks])
         one, all_of_them = 1.0 + np.expm1(-lengths) / lengths
-        # of a run much shorter than its memory the digits of this would cancel
+        # in a run much shorter than the correlation time the digits of this difference would cancel
         shown = (blocks * one / all_of_them - 1.0) / (blocks - 1.0) if lengths[1] > 1e-4 else lengths[0] / 3.0
         error = error / np.sqrt(shown)
     return BlockAverage(means.mean(axis=0), error)
 
 
 def _divisible(values: ArrayLike, blocks: int) -> NDArray[np.float64]:
-    """Return a series as an array, or raise ``ValueError`` unless it can be divided into so many blocks."""
+    """Return a series as an array, or raise ``ValueError`` unless it can be divided into ``blocks`` blocks."""
     series = np.asarray(values, dtype=np.float64)
     if blocks < 2:
         raise ValueError(f"blocks = {blocks} must be at least 2: the error is read from their scatter.")
@@ -88,27 +88,27 @@ def _divisible(values: ArrayLike, blocks: int) -> NDArray[np.float64]:
 
 
 LONG = 5.0
-"""How many correlation times a block lasts where these are known."""
+"""Least length of a block in correlation times, where these are known."""
 MOST_BLOCKS = 100
 
 
 def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | None = None) -> BlockAverage:
     r"""Return the mean of a series and its standard error, from blocks of two lengths.
 
-    The variance of the mean that blocks of a length L show is too small by a share that goes as 1/L [1]_. That of
-    half as long blocks is too small by twice as much, and so :math:`2 V(L) - V(L/2)` is free of that error. All
-    overlapping blocks count, not only those that lie side by side.
+    The variance of the mean that blocks of a length L show is too small by a share that is proportional to 1/L [1]_.
+    That of blocks of half the length is too small by twice as much, and so :math:`2 V(L) - V(L/2)` is free of that
+    error. All overlapping blocks count, not only those that lie side by side.
 
     Parameters
     ----------
     values : (time, ...)
         Series along the first axis, at least twice as many values as blocks; further axes are kept.
     blocks
-        How many of the longer blocks fill the series [1].
+        Number of the longer blocks that fill the series [1].
     memory
-        Correlation time in values, where theory gives it: up to 100 blocks, five of it long, are then made if they are
-        more. The more blocks there are the less the error itself scatters, and the more seldom is a run that is right
-        told to be four standard errors off.
+        Correlation time in values, where theory gives it: then as many blocks are made as have five correlation times
+        each, at most 100, if these are more than ``blocks``. With more blocks the error itself scatters less, and a
+        correct run appears four standard errors off less often.
 
     Returns
     -------
@@ -122,8 +122,9 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
 
     Notes
     -----
-    The error is itself uncertain by 20 % for 20 blocks. Where chance makes the difference small, a quarter of V(L) is
-    the least. Blocks of five correlation times or more make the error right within 2 %, plain blocks within 11 %.
+    The error is itself uncertain by 20 % for 20 blocks. If the difference happens to be small, a quarter of V(L) is
+    taken instead. With blocks of five correlation times or more the error is right within 2 %, with plain blocks within
+    11 %.
 
     References
     ----------
@@ -131,7 +132,7 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
 
     Examples
     --------
-    A series of which each value keeps 0.9 of the one before has a mean that scatters by 10 / sqrt(n):
+    A series in which each value is 0.9 of the one before plus noise has a mean that scatters by 10 / sqrt(n):
 
     >>> noise = np.random.default_rng(1).normal(size=4001)
     >>> series = [0.0]
@@ -149,7 +150,8 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
     sums = np.concatenate([np.zeros((1, *series.shape[1:])), np.cumsum(series - mean, axis=0)])
 
     def variance(length: int) -> NDArray[np.float64]:
-        # of the mean of all: a block counts by its length, and its own share in that mean is made good
+        # variance of the mean of all values: blocks are weighted by length, corrected for each block's part in that
+        # mean
         squares = np.sum((sums[length:] - sums[:-length]) ** 2, axis=0) / length
         found: NDArray[np.float64] = squares / ((n - length) * (n - length + 1))
         return found
@@ -160,20 +162,20 @@ def overlapping_average(values: ArrayLike, blocks: int = 20, memory: float | Non
 
 
 def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: int = 20) -> BlockAverage:
-    r"""Return the mean of a series, part of which follows something slow, and its standard error.
+    r"""Return the mean of a series, part of which follows a slow variable, and its standard error.
 
-    The energy of a column, say, changes only as heat passes through the floor, and the temperature of each layer
-    follows it besides its own quick noise. So a value is :math:`b E + r`, with b from the regression; the error of
-    the mean of E is that of its known correlation time, and r is not correlated from block to block.
+    For example, the energy E of a column changes only as heat passes through the floor; the temperature of each layer
+    follows E and has fast noise of its own. So a value is :math:`b E + r`, with b from the regression; the error of the
+    mean of E follows from its known correlation time, and r is not correlated from block to block.
 
     Parameters
     ----------
     values : (time, ...)
         Series along the first axis, at least twice as many values as blocks; further axes are kept.
     slow : (time,)
-        What changes slowly.
+        The slow variable.
     memory
-        Its correlation time, in values [1].
+        Correlation time of the slow variable, in values [1].
     blocks
         As in `overlapping_average`.
 
@@ -193,7 +195,7 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
     series, changing = np.asarray(values, np.float64), np.asarray(slow, np.float64)
     apart = changing - changing.mean()
     size = float(apart @ apart)
-    if not size > 1e-20 * float(changing @ changing):  # it does not change at all
+    if not size > 1e-20 * float(changing @ changing):  # it is constant
         return overlapping_average(series, blocks)
     slope = np.tensordot(apart, series, axes=(0, 0)) / size
     quick = overlapping_average(series - np.multiply.outer(apart, slope), blocks)
@@ -202,7 +204,7 @@ def average_beside(values: ArrayLike, slow: ArrayLike, memory: float, blocks: in
 
 
 def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> NDArray[np.float64]:
-    r"""Return how far a measured distribution may stray from the true one by chance.
+    r"""Return the largest distance between a measured distribution and the true one that is likely by chance.
 
     The greatest distance between the two cumulative distributions exceeds this value with a probability of
     ``level``: 1.358, 1.628 and 1.949 over :math:`\sqrt{n}` at 5 %, 1 % and 0.1 %.
@@ -221,7 +223,7 @@ def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> 
 
     Notes
     -----
-    The limit of large n, a little too large, and so on the safe side, for small n.
+    This is the limit of large n; for small n it is a little too large, that is on the safe side.
 
     References
     ----------
@@ -241,7 +243,7 @@ def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> 
 
 
 def running_mean(values: ArrayLike, block: int) -> NDArray[np.float64]:
-    """Return the mean of each value and its neighbours, as many on either side as there are up to half a block.
+    """Return the mean of each value and its neighbours, the same number on either side, up to half a block.
 
     Examples
     --------

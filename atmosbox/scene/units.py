@@ -1,8 +1,8 @@
-r"""The units of the engine's reduced numbers, in the SI: the scale of a scene.
+r"""The scale of a scene: what the engine's reduced numbers are in SI units.
 
-The engine knows no kilogram and no kelvin: it moves molecules whose length, mass and energy are measured in a
-:class:`Scale` of the scene's choice. Between the units that people use and the SI it is
-:mod:`atmosbox.scene.conversion` that converts.
+The engine has no kilogram and no kelvin: it moves molecules whose length, mass and energy are measured in units of a
+:class:`Scale` that the scene chooses. :mod:`atmosbox.scene.conversion` converts between the units that people use and
+SI units.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ __all__ = ["Scale"]
 
 @dataclass(frozen=True)
 class Scale:
-    r"""What one unit of the engine's numbers is in SI units.
+    r"""The value in SI units of each unit of the engine.
 
-    Three are free, the others follow: time = length sqrt(mass / energy), temperature = energy / k_B. A
-    simulated molecule moves as a single real one does, but stands for `weight` of them in all that counts
+    Three units are free, the others follow: time = length sqrt(mass / energy), temperature = energy / k_B. A simulated
+    molecule moves as a single real molecule does, but stands for `weight` of them in all quantities that count
     molecules: density, pressure, and the energy and momentum of the body of air.
 
     Parameters
@@ -30,7 +30,7 @@ class Scale:
     mass
         Usually the mass of a molecule [kg].
     energy
-        Usually k_B times a temperature of the scene, of one molecule [J].
+        Usually k_B times a temperature of the scene, for one molecule [J].
     weight
         Number of real molecules for which a simulated one stands.
 

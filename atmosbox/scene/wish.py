@@ -1,4 +1,4 @@
-"""How large the error of a run may be, as a user wishes it."""
+"""The accuracy that a user asks for: how large the error of a run may be."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ class Wish(NamedTuple):
     share
         The largest error of everything else, as a share of the theory; ``inf`` where there is no limit.
     absolute
-        Whether `share` holds for temperatures, too, as a share of the absolute temperature.
+        Whether `share` also limits the error of temperatures, as a share of the absolute temperature.
     best
-        Whether the most accurate run is wanted, in units of the two limits, and not the cheapest within them.
+        Whether to choose the most accurate run, with errors in units of the two limits, and not the cheapest run within
+        the limits.
     """
 
     text: str
@@ -48,9 +49,9 @@ TARGETS: Mapping[str, Wish] = MappingProxyType(
     {
         wish.text: wish
         for wish in (
-            Wish("sketch", 3.0, 0.05),  # on a figure it lies beside the theory
+            Wish("sketch", 3.0, 0.05),  # in a figure the result lies near the theory
             Wish("lecture", 0.5, 0.01),  # numbers that may be written on a blackboard
-            Wish("reference", 0.5, 0.01, best=True),  # whatever it costs, of all that was measured
+            Wish("reference", 0.5, 0.01, best=True),  # the best of all measured runs, at any cost
         )
     }
 )

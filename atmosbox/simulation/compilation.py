@@ -1,4 +1,4 @@
-"""What a first run waits for: kernels that are compiled, told as it goes on, and compiled in advance."""
+"""Compilation of the kernels before a first run: its progress, its expected time, and compilation in advance."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from atmosbox.simulation.preparation import Prepared, build
 
 __all__ = ["cache_home", "compile_kernels", "compiled_here", "expected_seconds", "told"]
 
-_USUAL = 15.0  # seconds, where this machine has not compiled a scene yet
+_USUAL = 15.0  # seconds, if this machine has not compiled the scene yet
 _BREATH = 0.2
 _NEVER_DONE = 0.97
 
 
 @contextlib.contextmanager
 def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[None]:
-    """Tell how far compilation is while a block runs, if anything is compiled in it at all.
+    """Report the progress of compilation while a block runs, if anything is compiled in the block.
 
-    How long it takes is known from the last time that this machine compiled the scene.
+    The expected time is that of the last compilation of the scene on this machine.
 
     Parameters
     ----------
     prepared
-        What is run.
+        The scene that is run.
     tell
-        Called with the share that is done and a sentence, from a thread of its own while the compiler works.
+        Called with the completed share and a sentence, from a separate thread while the compiler works.
 
     Examples
     --------
@@ -74,14 +74,14 @@ def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Non
 
 
 def expected_seconds(prepared: Prepared) -> float:
-    """Return how long the kernels of a scene take to compile on this computer [s], as far as is known."""
+    """Return the expected time to compile the kernels of a scene on this computer [s]."""
     return float(_known().get(_name(prepared), _USUAL))
 
 
 def compile_kernels(prepared: Prepared) -> float:
-    """Compile what a scene needs, unless it is kept already; return the processor time that it took [s].
+    """Compile the kernels of a scene unless they are stored already; return the processor time that it took [s].
 
-    The box is built as for a run, since what is compiled depends on it, and advanced by next to nothing.
+    The box is built as for a run, since the kernels depend on it, and advanced by a very short time.
     """
     spent, began = 0.0, 0.0
 
@@ -101,13 +101,13 @@ def compile_kernels(prepared: Prepared) -> float:
 
 
 def cache_home() -> Path | None:
-    """Return the folder in which machine code is kept, None if there is none."""
+    """Return the folder in which machine code is stored, None if there is none."""
     folder = cache_folder()
     return None if folder is None else folder.parent
 
 
 def compiled_here() -> int:
-    """Return how many bytes of machine code are kept for the engine as it is."""
+    """Return the number of bytes of machine code that are stored for the present engine."""
     folder = cache_folder()
     return 0 if folder is None else sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
 
@@ -127,7 +127,7 @@ def _known() -> dict[str, float]:
 
 
 def _remember(prepared: Prepared, seconds: float) -> None:
-    """Write down how long a compilation took; nothing depends on it, so a folder that is full is no error."""
+    """Store how long a compilation took; an error in writing is ignored, because nothing depends on this file."""
     home = cache_home()
     if home is None or not seconds > 1.0:
         return

@@ -1,4 +1,4 @@
-"""One run among many that goes on where an earlier call of the same, which was killed, has left it."""
+"""One run among many that continues from where an earlier process, which was killed, has left it."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ if TYPE_CHECKING:
 __all__ = ["execute_from"]
 
 _PATIENCE = 10.0
-"""For how long the process that was at the run before may take to end [s]: it does, once the engine lets it."""
+"""Longest time to wait until the process that had the run before ends [s]: it ends when the engine allows it."""
 
 
 def execute_from(
     prepared: Prepared, path: str | os.PathLike[str] | None, progress: Callable[[float, str], None] | None = None
 ) -> Outcome:
-    """Run a prepared scenario, from where its state stands if there is one; its state is kept as it goes on.
+    """Run a prepared scenario, from its stored state if there is one, and store its state on the way.
 
-    A state that is damaged, or of another version or other settings, counts for nothing: the run begins anew. So it
-    does without keeping any where no file can be written, or where another process is at the same run.
+    A state that is damaged, or of another version or other settings, is ignored: the run begins anew. If no file can be
+    written, or another process has the same run, the run begins anew, too, and stores no state.
 
     Parameters
     ----------
     prepared
         From `atmosbox.simulation.preparation.prepare`.
     path
-        What its file would be if it had one, see `atmosbox.file.run_states.StateCheckpoint`; None keeps no state.
+        Path that its file would have, see `atmosbox.file.run_states.StateCheckpoint`; None stores no state.
     progress
+        Called with the completed share and a word on the present activity.
         Called with the share that is done and a word on what is being done.
 
     Raises
@@ -43,7 +44,7 @@ def execute_from(
     Interrupted
         After Ctrl-C.
     EngineError
-        If the engine cannot go on.
+        If the engine cannot continue.
     """
     from atmosbox.file.run_states import StateCheckpoint
 
@@ -63,12 +64,12 @@ def execute_from(
 
 
 def _take(checkpoint: StateCheckpoint) -> None:
-    """Take a state for this process alone, as soon as a process that is about to end lets it go.
+    """Take a state for this process alone; wait for a process that is about to end.
 
     Raises
     ------
     FileError
-        If the other process goes on.
+        If the other process does not end in time.
     """
     until = time.monotonic() + _PATIENCE
     while True:

@@ -1,4 +1,4 @@
-"""How long a run will take on this computer: what was measured where atmosbox was made, times the pace of this one."""
+"""Expected time of a run on this computer: the time measured where atmosbox was made, times the pace of this one."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from atmosbox.simulation.preparation import Prepared
 
 __all__ = ["ExpectedTime", "expected_time", "remember_pace"]
 
-_ENOUGH = 0.2  # seconds of the engine's processor time, from which on a run tells the pace of a computer
+_ENOUGH = 0.2  # seconds of the engine's processor time; shorter runs do not tell the pace of a computer
 _KEPT = 9
-_WIDEST = 30.0  # by such a ratio a setting may lie beyond those that were measured
+_WIDEST = 30.0  # largest ratio of a setting to the nearest one that was measured
 _FILE = "pace.json"
 
 
 class ExpectedTime(NamedTuple):
-    """How long the engine will take for a run.
+    """Expected time that the engine needs for a run.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class ExpectedTime(NamedTuple):
 
 
 def expected_time(prepared: Prepared) -> ExpectedTime | None:
-    """Return how long a run will take; None where nothing like it was measured.
+    """Return the expected time of a run; None if no similar run was measured.
 
     Parameters
     ----------
@@ -75,9 +75,9 @@ def expected_time(prepared: Prepared) -> ExpectedTime | None:
 
 
 def remember_pace(prepared: Prepared, seconds: float) -> None:
-    """Write down how long the engine took for a run [s], from which the next will be known better.
+    """Store how long the engine took for a run [s], which improves the next expected time.
 
-    Nothing depends on it, so a folder that is full, or that cannot be written, is no error.
+    An error in writing is ignored, because nothing depends on this file.
     """
     expected = _measured_seconds(prepared)
     home = cache_home() if expected is not None and seconds > _ENOUGH else None
@@ -90,7 +90,7 @@ def remember_pace(prepared: Prepared, seconds: float) -> None:
 
 
 def _paces() -> list[float]:
-    """Return how much longer than expected the last runs on this computer took."""
+    """Return the ratios of measured to expected time of the last runs on this computer."""
     home = cache_home()
     try:
         held = json.loads((home / _FILE).read_text(encoding="ascii")) if home else []
@@ -101,7 +101,7 @@ def _paces() -> list[float]:
 
 
 def _measured_seconds(prepared: Prepared) -> float | None:
-    """Return how long a run took where the table was measured [s]."""
+    """Return the time of a run on the computer where the table was measured [s]; None if it is not known."""
     table = load().get(prepared.scene)
     if table is None or "seconds" not in table.how:
         return None
@@ -131,16 +131,16 @@ def _measured_seconds(prepared: Prepared) -> float | None:
 
 
 def _ratio(one: float, other: float) -> float:
-    """Return how far apart two sizes are, as the logarithm of their ratio."""
+    """Return the distance of two sizes, the absolute logarithm of their ratio."""
     if one == other:
         return 0.0
     return abs(math.log(one / other)) if one > 0.0 < other else math.inf
 
 
 def _slope(name: str, here: float, places: Sequence[Mapping[str, float]], costs: Sequence[float]) -> float:
-    """Return the power with which the cost grows with a setting: between the two runs that lie nearest to it.
+    """Return the power of a setting with which the cost grows, from the two runs nearest to its value.
 
-    Where no two runs differ in this setting alone, the cost is taken to grow as the setting does.
+    If no two runs differ in this setting alone, the cost is taken as proportional to it.
     """
     pairs = [
         (_ratio(one[name], here) + _ratio(other[name], here), j, k)

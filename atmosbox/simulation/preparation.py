@@ -39,11 +39,11 @@ class Prepared:
     engine: EngineChoice = EXACT
     expectation: Expectation | None = None
     stated: Mapping[str, Any] | None = None
-    """The errors that were expected when it began, of a run that goes on."""
+    """For a resumed run, the errors that were expected when it began."""
 
     @property
     def unusual_engine(self) -> str:
-        """The engine with its options, empty if it is that on which the scene runs without being asked.
+        """The engine with its options; empty if it is the one on which the scene runs by default.
 
         Examples
         --------
@@ -54,7 +54,7 @@ class Prepared:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Everything that makes the run, and the errors that are expected of it, as JSON can hold it."""
+        """All values that determine the run, and its expected errors, as JSON can hold them."""
         expected = self.stated if self.expectation is None else self.expectation.as_dict()
         known = {} if expected is None else {"accuracy": expected}
         return {
@@ -85,7 +85,7 @@ def prepare(
     accuracy: str | None = None,
     save_molecules: bool = False,
 ) -> Prepared:
-    """Load a scenario and check its settings; nothing is computed yet.
+    """Load a scenario and check its settings; nothing is simulated yet.
 
     Parameters
     ----------
@@ -94,17 +94,17 @@ def prepare(
     settings
         Values by name, numbers in the documented unit or texts with a unit.
     engine
-        The engine with its options: ``stepped:delta=0.02``; if None that of the scene, see `usual_engine`.
+        The engine with its options, such as ``stepped:delta=0.02``; None for that of the scene, see `usual_engine`.
     accuracy
-        A wish that picks the engine and the settings that trade accuracy for time, as
-        `atmosbox.simulation.accuracy.parse` reads it; what is in `settings` stays as it is.
+        A wish, as `atmosbox.simulation.accuracy.parse` reads it. It chooses the engine and the settings that trade
+        accuracy for time; values in `settings` are not changed.
     save_molecules
         Whether position and velocity of all molecules are saved in every frame.
 
     Returns
     -------
     Prepared
-        What `execute` takes.
+        The argument of `execute`.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def prepare(
 
 
 def card(prepared: Prepared) -> Card:
-    """Return the model card: the story, the facts for these settings, the parameters.
+    """Return the model card: the description, the facts for these settings, the parameters.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def card(prepared: Prepared) -> Card:
     '7/5'
     """
     if not prepared.unusual_engine and prepared.scene in scenarios.names():
-        # the start of a scene that is shipped is known to be lawful; that of a user's own is tried out
+        # a scene that comes with atmosbox is known to start in a valid state; one of a user's own is built to check it
         prepared = replace(prepared, engine=replace(prepared.engine, described=True))
     setup = build(prepared)
     story = (prepared.module.__doc__ or "").strip()
@@ -159,7 +159,7 @@ def card(prepared: Prepared) -> Card:
 
 
 def usual_engine(module: ModuleType, settings: SceneSettings) -> EngineChoice:
-    """Return the engine on which a scene runs unless another is asked for.
+    """Return the engine on which a scene runs unless the user names another.
 
     It is the exact one, unless the scene has a function ``usual_engine`` of its settings that names another.
 
@@ -183,7 +183,7 @@ def build(prepared: Prepared) -> Setup:
     Raises
     ------
     AtmosboxError
-        If it cannot be built; the sentence says so in the words of a user.
+        If it cannot be built; the sentence names the setting at fault.
     """
     try:
         engine = [prepared.engine] if _takes_engine(prepared.module) else []
@@ -203,7 +203,7 @@ def build(prepared: Prepared) -> Setup:
         raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
     if prepared.save_molecules:
         molecules = setup.parcel.present.size
-        needed = 28.0 * molecules * setup.frames  # place, velocity and speed in single precision
+        needed = 28.0 * molecules * setup.frames  # position, velocity and speed in single precision
         if needed > _MEMORY:
             raise SettingError(
                 "molecules", molecules, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",

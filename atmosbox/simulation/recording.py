@@ -1,4 +1,4 @@
-"""A run under way: its box advances from frame to frame, and its instruments measure."""
+"""A run in progress: its box advances from frame to frame, and its instruments measure."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = ["Recording", "uninterrupted"]
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C, and a request to end, wait until what stands in this block is complete.
+    """Delay Ctrl-C, and a request to end, until this block is complete.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def uninterrupted() -> Iterator[None]:
     came: list[int] = []
     known = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     numbers = known if threading.current_thread() is threading.main_thread() else []
-    # None is a handler that was not set from Python, and could not be set again.
+    # None is a handler that was not set from Python, and could not be restored
     before = {number: handler for number in numbers if (handler := signal.getsignal(number)) is not None}
     try:
         for number in before:
@@ -59,10 +59,10 @@ def uninterrupted() -> Iterator[None]:
 
 @dataclass
 class Recording:
-    """A run under way: its box, its instruments, and the times of its frames.
+    """A run in progress: its box, its instruments, and the times of its frames.
 
-    A recording may begin when some frames, `first` of them, have passed. Its instruments are read
-    once at that moment, so that they count from there on, and that reading is left out.
+    A recording may begin when some frames, `first` of them, have passed. Its instruments are then read once, so that
+    they count from that moment on, and this first reading is left out of the results.
     """
 
     prepared: Prepared
@@ -84,18 +84,18 @@ class Recording:
 
     @property
     def frames(self) -> int:
-        """How many frames are complete."""
+        """Number of complete frames."""
         return len(self.times) - 1 - bool(self.first)
 
     def sample(self, snapshot: Snapshot) -> None:
-        """Let all instruments sample the molecules as they are now, or none."""
+        """Let all instruments sample the molecules in their present state; an interrupt cannot come in between."""
         with uninterrupted():
             for instrument in self.instruments:
                 instrument.sample(self.setup.parcel, snapshot)
             self.sampled += 1
 
     def end_frame(self, snapshot: Snapshot) -> None:
-        """Let all instruments finish a frame, or none: frames that only some have could not be saved."""
+        """Let all instruments finish a frame without interruption: a frame of some instruments cannot be saved."""
         with uninterrupted():
             for instrument in self.instruments:
                 instrument.end_frame(self.setup.parcel, snapshot)
@@ -103,7 +103,7 @@ class Recording:
             self.sampled = 0
 
     def advance(self, watch: Callable[[float], None]) -> None:
-        """Advance to the end of the frame and measure; what was interrupted goes on with the next sample."""
+        """Advance to the end of the frame and measure; an interrupted frame continues with its next sample."""
         parcel = self.setup.parcel
         frame = self.first + self.frames
         snapshot: Snapshot | None = None
@@ -118,16 +118,16 @@ class Recording:
     def dataset(
         self, status: str, *, settle: int | None = None, judged: bool = True
     ) -> tuple[xr.Dataset, tuple[Headline, ...]]:
-        """Return all that has been measured so far, with theory beside it.
+        """Return all that has been measured so far, with the values of the theory.
 
         Parameters
         ----------
         status
-            How far the run is, for the attribute of that name.
+            State of the run, for the attribute of that name.
         settle
-            How many frames averages leave out; as many as the scene says, if it is not said here.
+            Number of frames that averages leave out; None for the number that the scene sets.
         judged
-            Whether the scene's headlines are drawn from it.
+            Whether to compute the scene's headlines.
         """
         from atmosbox.file.dataset import dataset, extended
 
@@ -158,4 +158,4 @@ class Recording:
         except (ArithmeticError, LookupError, ValueError):
             if status == "complete":
                 raise
-            return measured.isel(seen) if unseen else measured, ()  # too short for its theory, but not to be lost
+            return measured.isel(seen) if unseen else measured, ()  # too short for its theory, but worth keeping

@@ -1,8 +1,8 @@
-"""The state of a run inside its file, from which the run goes on bit for bit.
+"""The state of a run inside its file, from which the run continues bit for bit.
 
-The engine gives the state of its box, see `atmosbox.engine.core.saved_state`. Beside it stands what the instruments
-have kept so far: a tree of plain numbers, and the bytes of all arrays. Neither can run code: nothing is made but
-numbers, texts and lists, and an object that the scene does not build itself is never made at all.
+The engine supplies the state of its box, see `atmosbox.engine.core.saved_state`. With it are stored the values that the
+instruments hold: a tree of plain numbers, and the bytes of all arrays. Reading them cannot run code: it makes only
+numbers, texts and lists, and no object that the scene does not build itself.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Restart", "UnkeptError", "check_alike", "described", "put_back", "read_state", "with_state"]
 
 FORMAT = 1
-"""The version of what is written here."""
+"""Version of the format that is written here."""
 
 _KEPT = {"kept": 0}
 
@@ -43,22 +43,22 @@ Bytes = NDArray[np.uint8]
 
 
 class Restart(NamedTuple):
-    """What a file says of a run that is to go on.
+    """The contents of a file from which a run continues.
 
     Attributes
     ----------
     source
         The file.
     about
-        What made the run: see `described`.
+        What determines the run: see `described`.
     tree
-        The state of box and instruments, and where its arrays lie.
+        The state of box and instruments, with the places of its arrays.
     content
         The bytes of the arrays.
     attributes
         The global attributes of the file.
     longer
-        How many times as long as its scene says the run lasts.
+        Factor by which the run is longer than its scene says.
     """
 
     source: Path
@@ -70,11 +70,11 @@ class Restart(NamedTuple):
 
 
 class UnkeptError(Exception):
-    """An instrument of a user's own keeps something that no file can hold; the text names it."""
+    """An instrument of a user's own holds a value that no file can hold; the text names it."""
 
 
 def described(prepared: Prepared) -> dict[str, Any]:
-    """Return all that must be the same for a run to go on bit for bit, by what a sentence calls it.
+    """Return all that must be the same for a run to continue bit for bit, by its name in messages.
 
     Examples
     --------
@@ -98,29 +98,29 @@ def described(prepared: Prepared) -> dict[str, Any]:
 
 @functools.cache
 def _sources() -> str:
-    """Return the digest of the engine's sources, by which its kernels are kept: to parse them anew takes 0.2 s."""
+    """Return the digest of the engine's sources from the name of the kernel cache: to compute it again takes 0.2 s."""
     folder = cache_folder()
     return source_digest() if folder is None else folder.name
 
 
 def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer: int = 1) -> xr.Dataset:
-    """Return what a run has measured so far, with the state from which it goes on.
+    """Return a dataset with the state from which its run continues.
 
     Parameters
     ----------
     dataset
-        What `recording` has measured.
+        What `recording` has measured so far.
     recording
         The run, between two samples.
     seconds
-        The time that it has taken so far [s].
+        The time that the run has taken so far [s].
     longer
-        How many times as long as its scene says the run lasts.
+        Factor by which the run is longer than its scene says.
 
     Raises
     ------
     UnkeptError
-        If an instrument of a user's own keeps something that no file can hold.
+        If an instrument of a user's own holds a value that no file can hold.
     """
     import xarray as xr
 
@@ -154,7 +154,7 @@ def read_state(path: str | Path) -> Restart:
     Raises
     ------
     FileError
-        If it is no file of a run, or holds no state, or a damaged one.
+        If it is not the file of a run, holds no state, or the state is damaged.
     """
     from atmosbox.file import netcdf
 
@@ -176,12 +176,12 @@ def read_state(path: str | Path) -> Restart:
 
 
 def check_alike(restart: Restart, prepared: Prepared) -> None:
-    """Refuse to go on where anything of what made a run has changed.
+    """Refuse to continue if anything that determines the run has changed.
 
     Raises
     ------
     FileError
-        If so; the sentence says what.
+        If so; the sentence says what has changed.
     """
     now = described(prepared)
     for name, value in now.items():
@@ -195,12 +195,12 @@ def check_alike(restart: Restart, prepared: Prepared) -> None:
 
 
 def put_back(restart: Restart, recording: Recording) -> float:
-    """Put a run that was just built into the state that a file holds, and return the time that it took [s].
+    """Restore the state of a file into a run that was just built, and return the time that the run has taken [s].
 
     Raises
     ------
     FileError
-        If the state is damaged, or that of another run.
+        If the state is damaged, or belongs to another run.
     """
     tree = restart.tree
     try:
@@ -221,13 +221,13 @@ def put_back(restart: Restart, recording: Recording) -> float:
 
 
 def _drivers(recording: Recording) -> list[object]:
-    """Return what the state of the box holds already."""
+    """Return the objects that the state of the box contains already."""
     driver = getattr(recording.setup.parcel, "_driver", None)
     return [] if driver is None else [driver]
 
 
 class _Arrays:
-    """The bytes of arrays, one after the other, and where each lies."""
+    """The bytes of arrays, one after the other, and the place of each."""
 
     def __init__(self) -> None:
         self.pieces: list[bytes] = []
@@ -244,7 +244,7 @@ class _Arrays:
 
 
 def _array(content: Bytes, entry: list[Any]) -> NDArray[Any]:
-    """Return an array of its own from the bytes of a file."""
+    """Return a new array from the bytes of a file."""
     start, kind, shape, order = entry
     dtype = np.dtype(kind)
     if dtype.hasobject:
@@ -255,7 +255,7 @@ def _array(content: Bytes, entry: list[Any]) -> NDArray[Any]:
 
 
 class _Coder:
-    """Plain numbers for what instruments keep."""
+    """Encodes the values that instruments hold as plain numbers."""
 
     def __init__(self, arrays: _Arrays, known: set[int], module: ModuleType) -> None:
         self._arrays = arrays
@@ -267,7 +267,7 @@ class _Coder:
         return {name: self.code(value, f"{path}.{name}") for name, value in vars(thing).items()}
 
     def code(self, value: Any, path: str, *, nested: bool = False) -> Any:
-        """Return the code of a value; nested in a list or dictionary, it must be made of plain numbers alone."""
+        """Return the code of a value; a value nested in a list or dictionary must consist of plain numbers alone."""
         if value is None or type(value) in (bool, int, float, str):
             return value
         if isinstance(value, np.generic):
@@ -299,7 +299,7 @@ class _Coder:
             return {"object": self.attributes(value, path)}
         if module == "builtins":
             raise UnkeptError(path)
-        return _KEPT  # what a library makes is taken for a constant of the scene
+        return _KEPT  # an object of another library is taken for a constant of the scene
 
 
 def _into(held: dict[str, Any], codes: dict[str, Any], arrays: list[NDArray[Any]]) -> None:
@@ -308,7 +308,7 @@ def _into(held: dict[str, Any], codes: dict[str, Any], arrays: list[NDArray[Any]
 
 
 def _value(code: Any, old: Any, arrays: list[NDArray[Any]]) -> Any:
-    """Return what a code stands for, where an object of the new run stood before."""
+    """Return the value that a code stands for; ``old`` is the object of the new run in its place."""
     if isinstance(code, list):
         return [_value(each, None, arrays) for each in code]
     if not isinstance(code, dict):

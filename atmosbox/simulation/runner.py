@@ -51,7 +51,7 @@ Progress = Callable[[float, str], None]
 
 
 class Outcome(NamedTuple):
-    """What a run came to."""
+    """The result of a run, and its cost."""
 
     dataset: xr.Dataset
     headlines: tuple[Headline, ...]
@@ -61,13 +61,13 @@ class Outcome(NamedTuple):
     engine_seconds: float
     """Processor time of the engine alone, without instruments and files."""
     made: float
-    """Energy that the engine's scheme itself has made, in that of the motion; zero for an engine that keeps it."""
+    """Energy that the engine's scheme has produced, over the energy of motion; zero for an engine that conserves it."""
     escaped: int
-    """Number of molecules outside the box or at no finite place: zero, or the engine is wrong."""
+    """Number of molecules outside the box or without a finite position: zero, or the engine is wrong."""
 
 
 class Interrupted(KeyboardInterrupt):
-    """A run was stopped by Ctrl-C; ``outcome`` holds the frames that are complete, None if there is none."""
+    """A run was stopped by Ctrl-C; ``outcome`` holds the complete frames, None if there is none."""
 
     def __init__(self, outcome: Outcome | None, exit_code: int = 130) -> None:
         super().__init__("the run was interrupted")
@@ -93,33 +93,33 @@ def execute(
     prepared
         From `prepare`.
     checkpoint
-        Keeps what is complete on disk while the run goes on, and writes the finished file.
+        Stores on disk what is complete while the run goes on, and writes the finished file.
     progress
-        Called with the share that is done and a word on what is being done.
+        Called with the completed share and a word on the present activity.
     command
         What the user typed, for the file's history.
     restart
-        The state from which it goes on, from `atmosbox.simulation.restart.read_state`; from the start if None.
+        The state from which the run continues, from `atmosbox.simulation.restart.read_state`; None for a new run.
     longer
-        How many times as long as the scene says the run lasts, in frames of the same length.
+        Factor by which the run is longer than the scene says, in frames of the same length.
     keep_state
-        Whether the finished file holds its last state, so that the run can go on for longer.
+        Whether the finished file holds the last state, so that the run can be continued later.
     strict
-        Whether a sounding that is doubtful is refused, not only warned of.
+        Whether a doubtful sounding is refused, and not only reported in a warning.
 
     Returns
     -------
     Outcome
-        The dataset, its headlines, and what it cost.
+        The dataset, its headlines, and its cost.
 
     Raises
     ------
     Interrupted
-        After Ctrl-C, with the frames that are complete.
+        After Ctrl-C, with the complete frames.
     EngineError
-        If the engine cannot go on.
+        If the engine cannot continue.
     FileError
-        If the file is being written by another run, or the state is not one of this run.
+        If another run writes the file, or the state belongs to another run.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def _execute(
     keep_state: bool,
     strict: bool,
 ) -> Outcome:
-    """Run a prepared scenario, whose file no other program writes."""
+    """Run a prepared scenario after its output path has been reserved."""
     tell = progress or (lambda share, word: None)
     with told(prepared, tell):
         setup = build(prepared)
@@ -226,7 +226,7 @@ def _execute(
 
 
 def _attributes(prepared: Prepared, setup: Setup, command: str, restart: Restart | None, longer: int) -> dict[str, Any]:
-    """Return what the file says of the run as a whole; one that goes on says what it said when it began."""
+    """Return the global attributes of the file; a resumed run keeps those of its beginning."""
     from atmosbox.file.provenance import global_attributes, history_line
 
     if restart is not None:
@@ -258,37 +258,37 @@ def run(
     save_molecules: bool = False,
     **settings: Any,
 ) -> xr.Dataset:
-    """Run a scenario and return what it measured.
+    """Run a scenario and return its measurements.
 
     Parameters
     ----------
     scene
         A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
     out
-        Where to write the netCDF file; nothing is written without it.
+        Path of the netCDF file; nothing is written without it.
     force
         Whether a file of that name may be replaced.
     progress
-        Called with the share that is done and a word on what is being done.
+        Called with the completed share and a word on the present activity.
     engine
-        The engine, with its options: ``stepped:delta=0.02``; ``exact`` if nothing is said.
+        The engine, with its options, such as ``stepped:delta=0.02``; None for that of the scene.
     accuracy
-        How accurate the run shall be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
-        or ``"2%"``. Picks the engine, and the settings that are not given.
+        How accurate the run is to be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
+        or ``"2%"``. It chooses the engine, and the settings that are not given.
     save_molecules
-        Whether places and speeds of all molecules are kept in every frame.
+        Whether positions and velocities of all molecules are saved in every frame.
     **settings
         Values by name, numbers in the documented unit or texts with a unit.
 
     Returns
     -------
     xarray.Dataset
-        Everything measured, with theory beside it, in SI units.
+        All measurements, with the values of the theory, in SI units.
 
     Raises
     ------
     AtmosboxError
-        If the scene or a setting is refused, the file cannot be written, or the engine cannot go on.
+        If the scene or a setting is refused, the file cannot be written, or the engine cannot continue.
 
     Examples
     --------
@@ -308,19 +308,19 @@ def run(
 
 
 def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None) -> Prepared:
-    """Return the scenario of a run that is to go on, as it was prepared when it began.
+    """Return the scenario of a run that is to continue, prepared as it was when the run began.
 
     Parameters
     ----------
     restart
         From `atmosbox.simulation.restart.read_state`.
     scene
-        The path of the scene, if it is one of your own: no file makes atmosbox run a program.
+        The path of the scene, if it is one of your own: a file alone never makes atmosbox run a program.
 
     Raises
     ------
     FileError
-        If the file is for another scene, or one of your own whose path is not given.
+        If the file belongs to another scene, or to one of your own whose path is not given.
     """
     made = restart.about["settings"]
     named = str(made["scene"])
@@ -350,32 +350,32 @@ def resume(
     force: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Go on with a run that was stopped or killed, bit for bit as if it never had been.
+    """Continue a run that was stopped or killed; the result is the same, bit for bit, as without the stop.
 
     Parameters
     ----------
     path
-        What it left: ``NAME.part.nc``. Or the file of a finished run, made with ``--keep-state``, to be extended.
+        The file that it left, ``NAME.part.nc``, or the file of a finished run, made with ``--keep-state``, to extend.
     scene
         The path of the scene, if it is one of your own.
     out
-        Where to write the finished run; by default the file that it would have had.
+        Path of the finished run; by default the path that the run was to write.
     extend
-        How many times as long as its scene says the run shall last, in frames of the same length.
+        Factor by which the run is to be longer than its scene says, in frames of the same length.
     force
         Whether a file may be replaced.
     progress
-        Called with the share that is done and a word on what is being done.
+        Called with the completed share and a word on the present activity.
 
     Returns
     -------
     xarray.Dataset
-        Everything measured since the run began.
+        All measurements since the run began.
 
     Raises
     ------
     FileError
-        If the file holds no state, or version, sources of the engine, scene or processor are others than then.
+        If the file holds no state, or the version, the sources of the engine, the scene or the processor have changed.
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.file.output_path import whole_path

@@ -1,4 +1,4 @@
-"""A run checked: whether its energy ledger closes, and whether it agrees with theory."""
+"""Checks of a finished run: whether its energy ledger closes, and whether it agrees with theory."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 __all__ = ["LEDGER_LIMIT", "Check", "headlines_of", "verify", "with_bias"]
 
 LEDGER_LIMIT = 1e-10
-"""By how much, relative to the energy there is or has passed, the ledger of a sound run may fail to close."""
+"""Largest residual of the ledger of a correct run, relative to the energy in the box or exchanged so far."""
 
 
 class Check(NamedTuple):
-    """One thing that was verified of a file."""
+    """One check of a file and its result."""
 
     name: str
     passed: bool
@@ -34,7 +34,7 @@ class Check(NamedTuple):
 
 
 def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> tuple[Headline, ...]:
-    """Return headlines with the measured error of their approximate engine, at the same settings."""
+    """Return headlines with the measured bias of an approximate engine, if it was measured at the same settings."""
     known = parameters.get("accuracy")
     if not known or known["differs"] or known["engine"] == str(EXACT):
         return tuple(headlines)
@@ -50,12 +50,12 @@ def with_bias(headlines: Iterable[Headline], parameters: Mapping[str, Any]) -> t
 
 
 def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
-    """Return the headlines that a dataset carries.
+    """Return the headlines that a dataset holds.
 
     Raises
     ------
     FileError
-        If the file names headlines that it does not hold.
+        If the file names headlines that it does not contain.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def headlines_of(dataset: xr.Dataset) -> tuple[Headline, ...]:
 
 
 def verify(dataset: xr.Dataset) -> list[Check]:
-    """Check a dataset again: that it is complete, its ledger closes, and theory agrees within error.
+    """Check a dataset again: it is complete, its ledger closes, and it agrees with theory within the error.
 
     Examples
     --------
@@ -120,7 +120,7 @@ def verify(dataset: xr.Dataset) -> list[Check]:
 
 
 def _agreement(headline: Headline) -> str:
-    """Return how far a headline is from theory, how far chance may take it, and how far the model is known to be."""
+    """Return a sentence with the misfit of a headline, what chance allows, and the known error of the model."""
     misfit, chance, known = (
         f"{from_si(size, headline.display_unit, difference=True):{form}} {headline.difference_unit}".rstrip()
         for size, form in ((headline.misfit or 0.0, "+.3g"), (headline.chance, ".2g"), (headline.known, ".2g"))
@@ -132,7 +132,7 @@ def _agreement(headline: Headline) -> str:
 
 
 def _balance(dataset: xr.Dataset) -> Check:
-    """Sum the ledger anew from its entries."""
+    """Check the energy balance again from the entries of the ledger."""
     stores = ("kinetic_energy", "rotational_energy", "potential_energy", "condensed_energy")
     total = sum(dataset[name].values for name in stores if name in dataset)
     heat, work = dataset["heat_from_wall"].values, dataset["work_by_piston"].values

@@ -1,4 +1,4 @@
-"""What came out of a run, as text: tables that fit their width, numbers with the digits that they deserve.
+"""The results of a run as text: tables that fit their width, and numbers with as many digits as their error allows.
 
-The command line prints it, and a run in Python shows it above its variables.
+The command line prints this text, and a run in Python shows it above its variables.
 """

@@ -1,4 +1,4 @@
-"""Several runs side by side as a table: what differs between them, and by how much their numbers do."""
+"""Several runs side by side as a table: which settings differ, and by how much the results differ."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["comparison_lines"]
 
 
 def comparison_lines(files: Sequence[str], names: Naming, numbers: Sequence[Compared], columns: int) -> list[str]:
-    """Return the comparison as text: what differs, and the numbers of all runs with their differences."""
+    """Return the comparison as text: the settings that differ, and the results of all runs with their differences."""
     head = f"{' and '.join(dict.fromkeys(names.scenes))}: {names.title}"
     runs = [f"{label}: {file}" for label, file in zip(names.labels, files, strict=True) if label != Path(file).stem]
     made = [*wrapped(head, columns), *(line for run in runs for line in wrapped(run, columns, indent="  ")), ""]
@@ -53,7 +53,7 @@ def _said(each: Compared, run: int) -> str:
 
 
 def _changed(each: Compared, run: int) -> str:
-    """Return the difference from the first run, with its standard error, and how many of these it is."""
+    """Return the difference from the first run with its standard error, and their ratio."""
     difference, error = each.difference(run), each.error(run)
     if not math.isfinite(difference):
         return "-"
@@ -65,7 +65,7 @@ def _changed(each: Compared, run: int) -> str:
 
 
 def _expected(each: Compared, run: int) -> str:
-    """Return the difference that theory expects, in the digits of the measured one."""
+    """Return the difference that theory predicts, with as many digits as the measured difference."""
     expected = each.expected(run)
     if not math.isfinite(expected):
         return "-"

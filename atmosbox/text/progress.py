@@ -1,4 +1,4 @@
-"""The progress of a run: on a terminal a bar with the time that remains, elsewhere a line if need be."""
+"""The progress of a run: on a terminal a bar with the remaining time, elsewhere a line for a step that takes long."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 from atmosbox.text.stream import tell
 
-DELAY = 1.0  # seconds after which it is worth saying what takes so long
+DELAY = 1.0  # seconds after which the name of a step is shown
 SILENT = ("running", "done")
 
 Show = Callable[[float, str], None]
@@ -18,23 +18,23 @@ Show = Callable[[float, str], None]
 
 @contextlib.contextmanager
 def progress(scene: str, *, quiet: bool, expected: str = "") -> Iterator[Show]:
-    """Show on stderr how far a run is.
+    """Show the progress of a run on stderr.
 
     Parameters
     ----------
     scene
         The name of the scene.
     quiet
-        Whether nothing is to be shown.
+        Whether to show nothing.
     expected
-        How long it will take, in words; nothing where that is not known.
+        How long the run will take, in words; empty if that is not known.
 
     Yields
     ------
     callable
-        To be called with the fraction done, 0 to 1, and a word on what goes on. A word such as "compiling the
-        engine, once" is said as soon as that has taken a second, with or without a terminal; an engine that
-        was compiled before is there sooner.
+        Function to call with the fraction done, 0 to 1, and the name of the present step. A name such as "compiling
+        the engine, once" is shown when the step has taken a second, with or without a terminal; an engine that
+        was compiled before is ready sooner.
     """
     if quiet:
         yield lambda fraction, doing: None
@@ -55,7 +55,10 @@ def progress(scene: str, *, quiet: bool, expected: str = "") -> Iterator[Show]:
 
 @contextlib.contextmanager
 def _patient(announce: Callable[[str], None]) -> Iterator[Callable[[str], bool]]:
-    """Hear what goes on and announce it only if it takes long; True where something new has begun."""
+    """Yield a function to call with the name of the present step; it returns whether a new step has begun.
+
+    A step is announced only when it has taken `DELAY`.
+    """
     now: str = ""
     waiting: threading.Timer | None = None
 
@@ -81,7 +84,7 @@ def _patient(announce: Callable[[str], None]) -> Iterator[Callable[[str], bool]]
 
 @contextlib.contextmanager
 def _bar(scene: str) -> Iterator[tuple[Callable[[float], None], Callable[[str], None]]]:
-    """Show a bar that leaves no trace; what is yielded moves it and changes its name."""
+    """Show a progress bar until the block ends; yield a function that moves it and one that changes its name."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -92,7 +95,7 @@ def _bar(scene: str) -> Iterator[tuple[Callable[[float], None], Callable[[str], 
         TimeRemainingColumn(),
         console=Console(stderr=True, markup=False),
         transient=True,
-        auto_refresh=False,  # while the engine is at work, no other thread could draw it
+        auto_refresh=False,  # while the engine computes, no other thread could draw the bar
         expand=True,
     )
     with bar:

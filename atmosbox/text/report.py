@@ -1,4 +1,4 @@
-"""What a run, a file and a scene look like, as lines of text and as JSON."""
+"""A run, a file and a scene as lines of text and as JSON."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ALIKE = {1: "", 2: "both "}
 
 
 def next_command(command: str, path: Path) -> str:
-    """Return what to type next for a file.
+    """Return a command to type next, with the path of a file.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def next_command(command: str, path: Path) -> str:
 
 
 def _shown(headline: Headline) -> dict[str, Any]:
-    """Return the numbers of a headline in the unit in which they are shown."""
+    """Return the numbers of a headline in its display unit."""
     unit = headline.display_unit
 
     def difference(value: float | None) -> float | None:
@@ -54,7 +54,7 @@ def _shown(headline: Headline) -> dict[str, Any]:
 
 
 def headline_json(headline: Headline) -> dict[str, Any]:
-    """Return a headline for JSON, in the unit in which the table shows it."""
+    """Return a headline as a record for JSON, in the unit in which the table shows it."""
     return {
         "name": headline.name,
         "label": headline.label,
@@ -67,7 +67,7 @@ def headline_json(headline: Headline) -> dict[str, Any]:
 
 
 def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
-    r"""Return the table of what was measured and what theory says, what is allowed for, and why a model may be off.
+    r"""Return the table of measured values, theory and allowed differences, and why a model may differ from theory.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def headline_lines(headlines: Sequence[Headline], width: int) -> list[str]:
 
 
 def headline_cells(headlines: Sequence[Headline]) -> tuple[list[str], list[list[str]], list[str]]:
-    """Return the same as cells: the names of the columns, one row for each headline, and the sentences below them.
+    """Return the table of headlines as cells: names of the columns, a row for each headline, and the sentences below.
 
     Examples
     --------
@@ -125,7 +125,7 @@ def headline_cells(headlines: Sequence[Headline]) -> tuple[list[str], list[list[
 
 
 def ledger_line(ledger: float, limit: float) -> str:
-    """Return how well the account of energy closes.
+    """Return a line that says how well the energy ledger closes.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def ledger_line(ledger: float, limit: float) -> str:
 
 
 def made_line(made: float) -> str:
-    """Return how much energy the scheme of an approximate engine has made by itself.
+    """Return a line that says how much energy the scheme of an approximate engine has made by itself.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def made_line(made: float) -> str:
 
 
 def cost_line(collisions: int, seconds: float) -> str:
-    """Return what a run has cost.
+    """Return a line with the number of collisions of a run and the time that it took.
 
     Examples
     --------
@@ -163,7 +163,7 @@ def cost_line(collisions: int, seconds: float) -> str:
 
 
 def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: float) -> dict[str, Any]:
-    """Return a run for JSON."""
+    """Return a run as a record for JSON."""
     rate = outcome.collisions / outcome.seconds if outcome.seconds > 0.0 else None
     return {
         "scene": scene,
@@ -180,7 +180,7 @@ def outcome_json(outcome: Outcome, *, scene: str, path: Path | None, limit: floa
 
 
 def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int, expected: Sequence[str] = ()) -> list[str]:
-    """Return a run as text, with the lines that say which errors were to be expected."""
+    """Return a run as text, with the lines about its expected errors."""
     return [
         *headline_lines(outcome.headlines, width),
         "",
@@ -194,7 +194,7 @@ def outcome_lines(outcome: Outcome, *, path: Path, limit: float, width: int, exp
 
 
 def card_json(card: Card) -> dict[str, Any]:
-    """Return a model card for JSON."""
+    """Return a model card as a record for JSON."""
     return {
         "scene": card.scene,
         "title": card.title,
@@ -217,7 +217,7 @@ def card_json(card: Card) -> dict[str, Any]:
 
 
 def parameter_lines(parameters: Sequence[Parameter], width: int) -> list[str]:
-    """Return the table of what may be set."""
+    """Return the table of the settings of a scene."""
     header = ["setting", "default", "unit", "allowed", "what it is"]
     rows = [
         [p.name, _value(p, p.default).removesuffix(f" {p.unit}"), p.unit or "-", p.allowed, p.help] for p in parameters
@@ -233,6 +233,6 @@ def _value(parameter: Parameter, value: bool | int | float | str) -> str:
 
 
 def setting_lines(settings: Mapping[str, Any], parameters: Sequence[Parameter], width: int) -> list[str]:
-    """Return the values with which a scene runs, those that differ from their defaults marked."""
+    """Return the values with which a scene runs; values that differ from their defaults are marked."""
     rows = [[p.name, _value(p, settings[p.name]), "" if settings[p.name] == p.default else "set"] for p in parameters]
     return table(["setting", "value", ""], rows, width)

@@ -1,4 +1,4 @@
-"""What goes to which stream: the result to stdout, everything else to stderr."""
+"""Output streams: the result goes to stdout, everything else to stderr."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ __all__ = ["say", "say_json", "tell"]
 def say(text: str) -> None:
     r"""Write a line or more of the result to stdout.
 
-    A reader that has seen enough and closed the pipe changes nothing about what the command does.
+    If the reader, for example ``head``, has closed the pipe, the command goes on.
 
     Parameters
     ----------
     text
-        The lines, without the last line's end.
+        The lines, without the end of the last line.
 
     Raises
     ------
@@ -39,21 +39,21 @@ def say(text: str) -> None:
     try:
         _write(sys.stdout, text)
     except BrokenPipeError:
-        # What Python still flushes at its end must go somewhere.
+        # Python flushes stdout when it exits, and that must not fail.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
-        sys.stdout = None  # so that Python's end does not fail once more
+        sys.stdout = None  # so that the flush when Python exits does not fail again
         raise AtmosboxError(f"The result cannot be written to stdout: {error.strerror}.") from error
 
 
 def tell(text: str) -> None:
     """Write a line that is not the result to stderr."""
-    with contextlib.suppress(OSError):  # no reader may be left
+    with contextlib.suppress(OSError):  # the reader may have closed the pipe
         _write(sys.stderr, text)
 
 
 def _write(stream: TextIO | None, text: str) -> None:
-    """Write a line and flush it; what the encoding lacks is spelled out."""
+    """Write a line and flush it; characters that the encoding lacks are replaced."""
     if stream is None:  # the shell closed it
         return
     line = f"{text}\n"
@@ -81,7 +81,7 @@ def say_json(content: Mapping[str, Any]) -> None:
 
 
 def _finite(content: Any) -> Any:
-    """Return what JSON can hold of a value."""
+    """Return a value as JSON can hold it, with None for numbers that are not finite."""
     if isinstance(content, Mapping):
         return {str(name): _finite(value) for name, value in content.items()}
     if isinstance(content, list | tuple):

@@ -1,4 +1,4 @@
-"""Columns and numbers: how a table fits a terminal, and how many digits a measurement deserves."""
+"""Columns and numbers: how a table fits a terminal, and with how many digits a measurement is shown."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ NARROWEST = 20  # columns for a cell that is broken into lines
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
-    r"""Return the lines of a table; nothing in it is ever cut off.
+    r"""Return the lines of a table; no cell is cut off.
 
     Parameters
     ----------
     header
-        The name of each column; empty where a table has none.
+        The name of each column; empty if the columns have no names.
     rows
         The cells.
     width
-        How many columns the lines may take. The last cell and then the first are broken into lines to fit;
-        where even that does not fit, each row becomes a block of lines.
+        Largest number of characters in a line. To fit, the last cell of a row and then the first are broken into
+        lines; if that is not enough, each row becomes a block of lines.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
     sizes = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
     for column in (-1, 0):
         excess = max(sum(sizes) + 2 * len(sizes) - 2 - width, 0)
-        words = [*header[column].split(), *(row[column] for row in rows)]  # the name of a column is broken first
+        words = [*header[column].split(), *(row[column] for row in rows)]  # names of columns are broken before cells
         least = min(max(map(len, words), default=0), NARROWEST)
         sizes[column] = max(sizes[column] - excess, least)
     if sum(sizes) + 2 * len(sizes) - 2 > width:
@@ -53,7 +53,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> l
 
 
 def _filled(text: str, size: int, indent: str = "") -> list[str]:
-    """Return a text in lines of a width; no word is cut."""
+    """Return a text in lines of at most this width; no word is cut."""
     return textwrap.wrap(
         text,
         size,
@@ -65,7 +65,7 @@ def _filled(text: str, size: int, indent: str = "") -> list[str]:
 
 
 def _blocks(header: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
-    """Return the rows of a table below each other."""
+    """Return each row of a table as a block of lines, one cell below the other."""
     made = []
     for row in rows:
         if not any(header):
@@ -84,9 +84,9 @@ def wrapped(text: str, width: int, indent: str = "") -> list[str]:
 
 
 def story(text: str, width: int) -> list[str]:
-    r"""Return a docstring for a terminal: its paragraphs are filled anew, what is indented stays as it is.
+    r"""Return a docstring for a terminal: paragraphs are wrapped anew, indented lines stay as they are.
 
-    The quotation marks of code are left out.
+    The backquotes around code are left out.
 
     Examples
     --------
@@ -109,12 +109,12 @@ def number(value: float, decimals: int | None = None, power: int = 0, sign: str 
     value
         The number.
     decimals
-        How many digits stand behind its point, fewer than none for tens and hundreds; None for what six
-        significant digits need.
+        Number of digits after the decimal point, negative to round to tens or hundreds; None for six significant
+        digits.
     power
-        The power of ten that is taken out.
+        The power of ten that is taken out: 9 shows 1.5e9 as 1.5 and "e9".
     sign
-        "+" to show the sign of a positive number, too.
+        "+" to show the sign of a positive number too.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def number(value: float, decimals: int | None = None, power: int = 0, sign: str 
 
 
 def digits(value: float, error: float) -> tuple[int | None, int]:
-    """Return how many decimals a measurement deserves, and the power of ten to take out of it.
+    """Return the number of decimals to show of a measurement, and the power of ten to take out of it.
 
     Parameters
     ----------
@@ -140,9 +140,9 @@ def digits(value: float, error: float) -> tuple[int | None, int]:
     Returns
     -------
     decimals : int or None
-        None where there is no error bar to judge by.
+        Number of decimals; None if there is no standard error.
     power : int
-        Zero for numbers that are easily read as they are.
+        Power of ten; zero for numbers that are easy to read without it.
 
     Examples
     --------
@@ -158,7 +158,7 @@ def digits(value: float, error: float) -> tuple[int | None, int]:
 
 
 def measurement(value: float, error: float) -> str:
-    """Return a measurement with its standard error.
+    """Return a measurement with its standard error as text.
 
     Examples
     --------
@@ -168,6 +168,6 @@ def measurement(value: float, error: float) -> str:
     decimals, power = digits(value, error)
     if decimals is None:
         return number(value) if error == 0.0 else f"{number(value)} ± {number(error)}"
-    # The power is taken out of both, and said once.
+    # The power of ten is taken out of both numbers, and written once.
     low, high = (number(x / 10.0**power, decimals) for x in (value, error))
     return f"({low} ± {high})e{power}" if power else f"{low} ± {high}"

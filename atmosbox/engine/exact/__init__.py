@@ -1,20 +1,20 @@
-"""The exact engine: from event to event. Read from top to bottom.
+"""The exact, event-driven engine. Read its files from top to bottom.
 
-`row_cells`    how many cells there are, where their rows hold copies of trajectories
+`row_cells`    sizes and numbers of cells whose rows hold copies of trajectories
 `cells`        which molecules can meet
-`calendar`     what happens next
-`encounter`    what a contact or a wall hit does
-`glance`       eight molecules at once: who of them can be met at all
-`lanes`        the same in vector instructions
-`rows`         what the rows of cells hold
-`search`       whom a molecule meets next
-`prediction`   what lies ahead of a molecule
-`membership`   who stands in which cells
-`crossing`     from cell to cell, where rows are lists of names
-`turning`      the piston of a lift turns between events
+`calendar`     which event is the next one
+`encounter`    the change of velocity at a contact or a wall hit
+`glance`       a quick test of eight molecules at once: which of them can be met at all
+`lanes`        the same test in vector instructions
+`rows`         the contents of the rows of cells
+`search`       the search for a molecule's next contact
+`prediction`   the next events of a molecule: contact, cell boundary, wall
+`membership`   which molecules are in which cells
+`crossing`     from cell to cell, where rows are lists of molecules
+`turning`      the piston of a lift gets new velocities between events
 `exact`        the loop over events
-`epoch`        how all clocks are set back, so that they always read small numbers
-`stall`        when time can go no further
+`epoch`        setting all clocks back, so that they always read small numbers
+`stall`        why time can go no further
 `parcelset`    the box, advanced exactly
 `reference`    the same model, slow and simple: the tests compare with it
 """

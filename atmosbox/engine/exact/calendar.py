@@ -1,8 +1,8 @@
-"""What happens next: a tournament of the molecules' next events.
+"""The next event of all: a tournament tree of the molecules' next events.
 
-Leaves hold one time per molecule, in groups of eight (a cache line). Above them stands a binary
-tournament whose nodes carry the winning time *and* its molecule, so the next event is read at the root
-and a change plays one match per level. There is nothing to tune.
+Leaves hold one time per molecule, in groups of eight (a cache line). Above them is a binary
+tournament whose nodes hold the winning (earliest) time *and* its molecule. So the next event is read at the root,
+and a change needs one comparison per level. There is nothing to tune.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ __all__ = ["new_calendar", "next_event", "schedule"]
 
 
 def new_calendar(molecules: int) -> Calendar:
-    """Return an empty calendar: nothing will ever happen.
+    """Return an empty calendar, in which no molecule has an event.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def new_calendar(molecules: int) -> Calendar:
 
 @kernel
 def schedule(calendar, i, time):
-    """Set the time of molecule i's next event [time] and replay its matches up to the root."""
+    """Set the time of molecule i's next event [time] and update the tournament up to the root."""
     times = calendar.time
     leaf = calendar.leaf & POSITIVE
     times[leaf + i] = time
@@ -71,5 +71,5 @@ def schedule(calendar, i, time):
 
 @kernel
 def next_event(calendar):
-    """Return whose event comes next, and when [time]; ``inf`` if none ever will."""
+    """Return the molecule whose event comes next, and its time [time]; ``inf`` if there is none."""
     return np.int64(calendar.winner[1]), calendar.time[1]

@@ -1,9 +1,9 @@
-"""Which molecules can meet: cells, and the slots by which molecules move among them.
+"""Which molecules can meet: cells, and the slots that tell which cells a molecule overlaps.
 
 A molecule belongs to every cell that its *sphere* overlaps: most often one, near a face two, in a corner
 eight. Two spheres that touch share the cell of the point where they touch, so a molecule is only ever
 compared with those that share a cell of its own, never with neighbouring cells. Along each axis its
-centre stands in a **slot**: an interval between two successive boundaries, which are the cell edges
+centre lies in a **slot**: an interval between two successive boundaries, which are the cell edges
 shifted by plus and minus its radius. Crossing a boundary means entering one cell, or leaving one. Layers
 of unequal thickness cost nothing, the outermost boundary is the wall, and a sphere larger than a cell
 just overlaps more of them.
@@ -17,7 +17,7 @@ Three cells along one axis, and the slots of a sphere of radius r::
 
 An even slot 2c lies within cell c (its span is 1), an odd one 2c + 1 across the edge from c to c + 1 (span 2). The
 first and the last boundary are one radius from the wall. Each cell has a row in one long array, ``stride`` numbers
-long: first how many molecules there are, then which::
+long: first the number of its molecules, then their indices::
 
     row          | 2 | 17 | 4 | . | . || 1 | 9 | . | . | . || ...
                  cell 0                 cell 1
@@ -64,9 +64,9 @@ ROW = 32
 class Grid(NamedTuple):
     """Cells and slots along the three axes: see `state.Cells`.
 
-    ``edges`` of the cells along each axis [length]; ``wanted`` how many layers of unequal thickness were asked for, 0
-    if all cells are alike, and ``thinnest`` of them [length]; ``rows`` whether their rows may hold copies of
-    trajectories.
+    ``edges`` of the cells along each axis [length]; ``wanted``: the number of layers of unequal thickness that was
+    intended, 0 if all cells are alike, and ``thinnest``: their least thickness [length]; ``rows``: whether the rows
+    may hold copies of trajectories.
     """
 
     number: tuple[int, int, int]
@@ -83,7 +83,7 @@ class Grid(NamedTuple):
 
 
 def size_classes(radius: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Sort radii into classes that differ by a tenth, so that a thousand sizes need few tables.
+    """Sort radii into classes of about equal size (within a tenth), so that a thousand sizes need few tables.
 
     Returns
     -------
@@ -120,24 +120,24 @@ def choose_grid(
     rows: bool,
     layers: NDArray[np.float64] | None = None,
 ) -> Grid:
-    """Choose the cells of a box: some two to nine molecules to a cell, layers thinner where gravity makes them denser.
+    """Choose the cells of a box: some two to ten molecules to a cell, layers thinner where gravity makes the gas dense.
 
     Parameters
     ----------
     length : (axis,)
-        What the cells cover [length].
+        Extent of the cells along each axis [length].
     periodic
         Which axes are periodic.
     radii : (size,)
         The radius of each size class [length].
     molecules
-        How many there will be.
+        Number of molecules.
     exact_radius
-        Whether all molecules have exactly the one radius given.
+        Whether all molecules have exactly the same radius.
     planar
         Whether all centres lie in one plane y = constant.
     filled
-        The height up to which there are molecules now [length].
+        Height up to which there are molecules now [length].
     open_top
         Whether the ceiling moves, so that the uppermost cells must have no end.
     scale_height
@@ -146,7 +146,7 @@ def choose_grid(
         Whether rows of cells may hold copies of trajectories; they need cells wider than any molecule, and four or more
         along a periodic axis.
     layers
-        The edges of layers [length], if they are not to follow the scale height.
+        The edges of the layers [length], unless they follow from the scale height.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def choose_grid(
     if rows and biggest > 0.0:
         width = widths_for_rows(length[0], length[1], filled, float(radii.min()), molecules, planar)
         found = cell_numbers(length, filled, width, float(radii.max()), molecules, periodic, planar)
-        number = [n for n in found if n > 0]  # all of them, or none
+        number = [n for n in found if n > 0]  # along all three axes, or none
     else:
         # measured (benchmarks): the pace is flat about this many molecules to a cell
         share = filled_share(length[0], length[1], filled, float(radii.min()), molecules, planar)
@@ -182,9 +182,9 @@ def choose_grid(
                     f"it {2.0 * diameter:.6g} or more"
                 )
             # Two that share a cell are within its width and a diameter of each other. Where that is less than half
-            # the box, only the nearest image of the other can be met; where it would take many cells for few
-            # molecules, three will do, for then no sphere reaches round the box into a cell that it is already in,
-            # and the nearest image and the one on the other side are looked at.
+            # the box, only the nearest image of the other can be met. Where this would need many cells for few
+            # molecules, three cells are enough: then no sphere reaches round the box into a cell that it is already
+            # in, and both the nearest image and the one on the other side are tested.
             room = 0.5 * length[axis] - 2.0 * biggest
             least = math.ceil(length[axis] / room) if room > 0.0 else math.inf
             if least > max(n, _FEW):
@@ -231,7 +231,7 @@ def _grid_of_rows(
     edges: list[NDArray[np.float64]], radii: NDArray[np.float64], periodic: tuple[bool, bool, bool], *, mixed: bool,
     open_top: bool,
 ) -> Grid:  # fmt: skip
-    """Return the grid of cells whose rows may hold copies."""
+    """Return the grid of cells whose rows may hold copies of trajectories."""
     boundaries = max(2 * len(edge) - 1 + wraps for edge, wraps in zip(edges, periodic, strict=True))
     boundary = np.full((len(radii), 3, boundaries), np.inf)
     for size, radius in enumerate(radii):
@@ -245,7 +245,7 @@ def _grid_of_rows(
 
 
 def _layers(height: float, number: int, scale_height: float, thinnest: float) -> NDArray[np.float64]:
-    """Return the edges of layers that hold about equally many molecules of an isothermal column."""
+    """Return the edges of layers that hold about equal numbers of molecules of an isothermal column [length]."""
     edge = np.zeros(number + 1)
     return edge[: write_layers(height, number, scale_height, thinnest, edge) + 1]
 
@@ -255,13 +255,13 @@ def _slots(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
     """Return boundaries, first cells and numbers of cells of the slots along one axis for one radius.
 
-    Where molecules span cells the table holds no walls, which are then each molecule's own business: not all of a class
-    are alike.
+    Where molecules may span cells, the table has no walls, as the molecules of a class differ in radius: the walls are
+    then computed for each molecule.
     """
     reach = radius * MARGIN
     n = len(edges) - 1
     length = float(edges[-1])
-    # where a cell is entered exactly as another is left, the slot between would have no width: reach further
+    # where one cell is entered exactly as another is left, the slot between would have no width: increase the reach
     inside = edges[:-1] if periodic else edges[1:-1]
     while reach > 0.0 and inside.size:
         ends = np.sort(np.mod(np.concatenate([inside - reach, inside + reach]), length))
@@ -287,7 +287,7 @@ def _slots(
 
 
 def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool) -> NDArray[np.int64]:
-    """Return the cell that holds each coordinate; beyond a periodic end the count goes on, beyond a wall it stops."""
+    """Return the number of the cell at each coordinate; it goes on beyond a periodic end and is cut off at a wall."""
     n = len(edges) - 1
     if periodic:
         turns = np.floor(x / edges[-1]).astype(np.int64)
@@ -299,7 +299,7 @@ def _cell_of(x: NDArray[np.float64], edges: NDArray[np.float64], periodic: bool)
 
 
 def new_rows(grid: Grid, stride: int) -> NDArray[np.uint32]:
-    """Return the memory of all rows of a grid, each so many words long, all empty."""
+    """Return the memory of all rows of a grid, each of ``stride`` words, all empty."""
     rows: NDArray[np.uint32] = aligned_records(math.prod(grid.number) * stride, np.dtype("u4")).view(np.ndarray)
     return rows
 
@@ -307,7 +307,7 @@ def new_rows(grid: Grid, stride: int) -> NDArray[np.uint32]:
 def new_cells(grid: Grid, slot: NDArray[np.uint16], row: NDArray[np.uint32], stride: int, copies: Copies) -> Cells:
     """Return the empty cells of a grid.
 
-    ``slot : (molecule, 3)`` is where it is kept in which slot each molecule stands, ``row`` the memory of the rows,
+    ``slot : (molecule, 3)`` is the memory for the slots of each molecule, ``row`` the memory of the rows,
     each ``stride`` words long: room for ``stride`` - 1 molecules, or for copies.
     """
     return Cells(
@@ -329,7 +329,7 @@ def new_cells(grid: Grid, slot: NDArray[np.uint16], row: NDArray[np.uint32], str
 
 @kernel
 def overlapped(slot, size, axis, cells, modes):
-    """Return the first cell along an axis that a sphere in a slot overlaps, and how many."""
+    """Return the first cell along an axis that a sphere in a slot overlaps, and the number of cells."""
     if modes.spanning:
         return np.int64(cells.first[size, axis, slot]), np.int64(cells.span[size, axis, slot])
     return slot >> 1, 1 + (slot & 1)
@@ -355,7 +355,7 @@ def slot_at(u, size, axis, last, cells, modes):
 
 @kernel
 def append(row, start, i):
-    """Write molecule i into the cell whose row starts there."""
+    """Add molecule i to the cell whose row begins at ``start``."""
     start &= POSITIVE
     n = np.int64(row[start]) + 1
     row[start + n] = i
@@ -364,7 +364,7 @@ def append(row, start, i):
 
 @kernel
 def remove(row, start, i):
-    """Strike molecule i from the cell whose row starts there."""
+    """Remove molecule i from the cell whose row begins at ``start``."""
     start &= POSITIVE
     last = start + np.int64(row[start])
     q = start + 1

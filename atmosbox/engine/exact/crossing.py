@@ -1,6 +1,6 @@
 """A molecule reaches a boundary: it enters a cell, or leaves one, or the boundary is a wall.
 
-On entering it is compared with the members of the new cells alone; on leaving, with none.
+When it enters a cell, it is compared with the members of the new cells alone; when it leaves one, with none.
 """
 
 from enum import IntEnum
@@ -19,10 +19,10 @@ __all__ = ["Crossed", "cross", "is_wall"]
 
 
 class Crossed(IntEnum):
-    """What came of it when a molecule reached a boundary.
+    """The result when a molecule has reached a boundary.
 
-    ``ENTERED`` the molecule is in a further cell; ``LEFT`` it has left one; ``FULL`` the row of a new cell must grow
-    first, and nothing is changed.
+    ``ENTERED``: the molecule is in one more layer of cells; ``LEFT``: it has left one; ``FULL``: the row of a new cell
+    must grow first, and nothing is changed.
     """
 
     ENTERED = 1
@@ -32,7 +32,7 @@ class Crossed(IntEnum):
 
 @kernel
 def is_wall(i, what, gas, modes):
-    """Tell whether the boundary that molecule i has reached is a wall, or the end of all cells."""
+    """Return whether the boundary that molecule i has reached is a wall, or the end of all cells."""
     cells = gas.cells
     axis = what >> 1
     up = what & 1
@@ -47,26 +47,26 @@ def is_wall(i, what, gas, modes):
         return cells.boundary[size, axis, slot] <= radius
     last = cells.last_slot_x if axis == 0 else (cells.last_slot_y if axis == 1 else cells.last_slot_z)
     if modes.rows:
-        # the first and the last cell, of which a molecule may be in another one too
+        # slots of the first and of the last cell; the molecule may be in the next cell too
         return slot < 2 if up == 0 else slot + 1 >= last
     return slot + up == 0 or slot + up == last + 1
 
 
 @kernel
 def cross(i, what, t, at, gas, modes):
-    """Let molecule i, which is where ``at`` says at time t, cross the boundary that it has reached; plan its next move.
+    """Move molecule i, whose `Motion` at time t is ``at``, across the boundary that it has reached; predict the next.
 
     Returns
     -------
     Crossed
-        What came of it.
+        Whether it entered or left cells, or a row was full.
     """
     cells = gas.cells
     axis = what >> 1
     up = what & 1
     slot = np.int64(cells.slot[i, axis])
     size, radius = size_and_radius(i, gas, modes)
-    # the next slot; beyond a periodic end it is the first or last, and the molecule goes on one length further
+    # the next slot; beyond a periodic end it is the first or last, and the molecule is shifted by one box length
     length, inverse = side(axis, gas.box)
     next_slot = slot + 2 * up - 1
     shift = 0.0
@@ -83,7 +83,7 @@ def cross(i, what, t, at, gas, modes):
             y = at.y + (shift if axis == 1 else 0.0)
             z = at.z + (shift if axis == 2 else 0.0)
             at = Motion(x, y, z, at.vx, at.vy, at.vz)
-    # the one layer of cells, across this axis, that is entered or left: a longer span is entered, a shorter one left
+    # the one layer of cells, across this axis, that is entered (the span grows) or left (the span shrinks)
     first, span = overlapped(slot, size, axis, cells, modes)
     next_first, next_span = overlapped(next_slot, size, axis, cells, modes)
     enter = next_span > span
@@ -107,7 +107,7 @@ def cross(i, what, t, at, gas, modes):
     stride = cells.stride
     event = gas.events[i]
     contact_time = event.contact_time
-    # on entering: who of the new cells is met sooner than whoever is known? Nothing is changed until all have room
+    # on entering: is a member of the new cells met before the known contact? Nothing is changed until all have room
     if enter and modes.contacts:
         meeting = Meeting(contact_time - t, -1)
         full = False
@@ -139,7 +139,7 @@ def cross(i, what, t, at, gas, modes):
                     append(cells.row, start, i)
                 else:
                     remove(cells.row, start, i)
-    # the molecule itself is written only where it has gone round a periodic box
+    # the molecule's own record changes only where it has crossed a periodic boundary
     if modes.periodic and shift != 0.0:
         if axis == 0:
             gas.molecules[i].x += shift

@@ -1,4 +1,4 @@
-"""What an encounter does: two molecules meet, or one hits a wall."""
+"""Encounters: two molecules collide, or one hits a wall."""
 
 import math
 
@@ -32,7 +32,7 @@ def motion_at(i, t, gas, modes):
 
 @kernel
 def write(i, t, at, gas):
-    """Give molecule i another place and velocity at time t; what was predicted of it is stale."""
+    """Set position and velocity of molecule i at time t; all contacts predicted with it become stale."""
     molecule = gas.molecules[i]
     molecule.x = at.x
     molecule.y = at.y
@@ -70,7 +70,7 @@ def slots_of(i, gas):
 
 @kernel
 def meet(i, j, t, at, gas, modes):
-    """Resolve a meeting of molecule i, which is where ``at`` says, with j; return the `Motion` of both after it."""
+    """Resolve the contact of molecule i, whose `Motion` is ``at``, with j; return the `Motion` of both after it."""
     box, tallies = gas.box, gas.tallies
     other = motion_at(j, t, gas, modes)
     rx, ry, rz = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, box, modes)
@@ -80,14 +80,14 @@ def meet(i, j, t, at, gas, modes):
     mass, _, rotation = kind_of(i, gas, modes)
     other_mass, _, other_rotation = kind_of(j, gas, modes)
     dx, dy, dz = resolve(rx, ry, rz, ux, uy, uz, mass, other_mass)
-    # rotation takes part in some meetings: then the energy of the pair is shared anew
+    # rotation takes part in a share of the contacts: then the energy of the pair is redistributed
     if modes.rotation and (box.exchange >= 1.0 or uniform(tallies.random) < box.exchange):
         reduced_mass = mass * other_mass / (mass + other_mass)
         spin = gas.kinds.rotational_energy
         relative = 0.5 * reduced_mass * (ux * ux + uy * uy + uz * uz)
         dimensions = 2.0 if box.planar else 3.0
         energy = relative + spin[i] + spin[j]
-        # the lower index first: what happens must not depend on which of the two held the event
+        # the lower index first: the result must not depend on which of the two held the event
         if i < j:
             shared, spin[i], spin[j] = share_energy(energy, dimensions, rotation, other_rotation, tallies.random)
         else:
@@ -98,7 +98,7 @@ def meet(i, j, t, at, gas, modes):
         dx = (scale * (ux + share * dx) - ux) / share
         dy = (scale * (uy + share * dy) - uy) / share
         dz = (scale * (uz + share * dz) - uz) / share
-    # the virial of the meeting belongs to the layer of the point midway between the two
+    # the virial of the contact is counted in the layer of the point midway between the two
     layer = min(max(int((at.z - 0.5 * rz) * tallies.layer_scale), 0), tallies.virial.size - 1)
     tallies.virial[layer] += mass * (rx * dx + ry * dy + rz * dz)
     back = mass / other_mass if modes.mixed else 1.0
@@ -111,7 +111,7 @@ def meet(i, j, t, at, gas, modes):
 
 @kernel
 def hit(i, wall, t, at, gas, modes):
-    """Resolve a hit of molecule i on a wall or the piston; return its `Motion` after it."""
+    """Resolve a hit of molecule i, whose `Motion` is ``at``, on a wall or the piston; return its `Motion` after it."""
     box, walls, tallies = gas.box, gas.walls, gas.tallies
     mass, radius, rotation = kind_of(i, gas, modes)
     spin = gas.kinds.rotational_energy[i] if modes.rotation else 0.0
@@ -120,7 +120,7 @@ def hit(i, wall, t, at, gas, modes):
         wall, walls.epoch[0] + t, (at.vx, at.vy, at.vz), spin, (mass, rotation), walls, box.planar, tallies.random
     )
     vx, vy, vz = velocity
-    # the centre stands one radius from the wall to the last digit, whatever the flight has rounded
+    # the centre is set to exactly one radius from the wall, without the rounding of the flight
     x, y, z = at.x, at.y, at.z
     high = wall & 1 == 1
     if wall >> 1 == 0:
@@ -133,7 +133,7 @@ def hit(i, wall, t, at, gas, modes):
         z = box.length_z - radius if high else radius
     if modes.rotation:
         gas.kinds.rotational_energy[i] = spin
-    # what the molecule gained, the wall gave: as work if it is the piston, else as heat
+    # the energy that the molecule gained was given by the wall: as work if it is the piston, else as heat
     gained = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin - before
     tallies.hits[wall] += 1
     tallies.impulse[wall] += -mass * change if high else mass * change

@@ -1,10 +1,10 @@
-"""Clocks that always read small numbers, so that time keeps its digits for ever.
+"""Clocks that always read small numbers, so that times keep their precision for ever.
 
-All times that the engine works with are local: they count from ``Walls.epoch``. When the next thing that happens lies
-ahead of that by more than the length of an epoch, all clocks are set back by whole epochs.
+All times that the engine works with are local: they count from ``Walls.epoch``. When the next event lies further ahead
+of that than the length of an epoch, all clocks are set back by whole epochs.
 
-Python runs these functions as they are written; the kernels of a page compile them. ``clocks`` are those of what is no
-event of a molecule: of a liquid, or of a bath.
+Python runs these functions as they are written; the kernels of the lab's page compile them. ``clocks`` are the times of
+events that belong to no molecule: those of a liquid, or of a bath.
 """
 
 import math
@@ -17,7 +17,7 @@ __all__ = ["next_time", "set_back", "whole_epochs"]
 
 @kernel(plain=True)
 def next_time(gas, clocks):
-    """Return the local time of what happens next [time]."""
+    """Return the local time of the next event of a molecule or of one of the clocks [time]."""
     time = gas.calendar.time[1]
     for clock in clocks:
         time = min(time, clock)
@@ -26,9 +26,9 @@ def next_time(gas, clocks):
 
 @kernel(plain=True)
 def whole_epochs(ahead, length):
-    """Return by how much to set clocks back when the next thing happens at a local time, 0 if nothing does [time].
+    """Return by how much to set clocks back when the next event is at the local time ``ahead`` [time]; 0 for no event.
 
-    It depends on events alone, never on where a run is cut.
+    The result depends on events alone, not on where a run is cut into pieces.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def whole_epochs(ahead, length):
 
 @kernel(plain=True)
 def set_back(step, gas, clocks, modes):
-    """Let all clocks of a box read so much less [time]."""
+    """Set all clocks of a box back by ``step`` [time]."""
     clock, contact, due = gas.molecules.clock, gas.events.contact_time, gas.calendar.time
     clock -= step
     contact -= step

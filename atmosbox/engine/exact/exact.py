@@ -1,13 +1,12 @@
-"""The exact engine: from event to event, with nothing in between.
+"""The exact engine: time jumps from one event to the next, and nothing is approximated in between.
 
-Every molecule holds one event: its next contact, its next crossing of a cell boundary, or its next wall,
-whichever comes first. The calendar tells which of all is next; that one is resolved, and the molecules it
-changed plan anew. A contact whose partner has meanwhile met someone else is stale: its molecule plans
-anew when it comes due. Nothing is approximated; the order of events is that of the real numbers, to
-rounding.
+Every molecule has one event: its next contact, its next crossing of a cell boundary, or its next wall,
+whichever comes first. The calendar tells which of all is next; that event is resolved, and the events of the molecules
+that it changed are predicted anew. A contact whose partner has meanwhile had another encounter is stale: when it comes
+due, the events of its molecule are predicted anew. The order of events is exact to rounding.
 
-A scene pays only for what it requires: `specialise` makes the kernels for one set of `Modes`, in which
-the code of everything else does not exist.
+A scene pays only for what it requires: `specialise` makes the kernels for one set of `Modes`, and
+the code of all other features is left out of them.
 """
 
 import functools
@@ -37,12 +36,13 @@ __all__ = ["CHECK_EVERY", "Status", "piled_up", "proceed", "specialise"]
 class Status(IntEnum):
     """Why the loop over events has stopped.
 
-    ``DONE`` the time asked for is reached; ``BUSY`` as many events are resolved as were asked for; ``ROW_FULL`` the
-    row of a cell must grow; ``STALLED`` events pile up without progress in time; ``MEETS_LIQUID`` the next event is a
-    molecule that meets a pool or a drop, which is left to the caller; ``CROWDED`` a molecule that evaporates finds no
-    free place; ``EPOCH_OVER`` the copies in the rows must be written anew before the next event; ``OUTGROWN`` a
-    molecule has risen above the cells, which must be laid out anew; ``CRUSHED`` the piston has come too low; ``TURNED``
-    the piston has turned, and the cells must be laid out anew for a box that has become higher or lower.
+    ``DONE``: the time asked for is reached; ``BUSY``: as many events are resolved as were asked for; ``ROW_FULL``: the
+    row of a cell must grow; ``STALLED``: very many events in a vanishing time; ``MEETS_LIQUID``: the next event is a
+    molecule that meets a pool or a drop, which the caller resolves; ``CROWDED``: there is no free place for a molecule
+    that evaporates; ``EPOCH_OVER``: the copies in the rows must be written anew before the next event; ``OUTGROWN``: a
+    molecule has risen above the cells, which must be laid out anew; ``CRUSHED``: the piston has come too low;
+    ``TURNED``: the piston has a new velocity, and the cells must be laid out anew because the height of the box has
+    changed too much.
     """
 
     DONE = 0
@@ -58,16 +58,16 @@ class Status(IntEnum):
 
 
 CHECK_EVERY = 1024
-"""After how many events it is checked whether they pile up."""
+"""Number of events between two checks whether the run has stalled."""
 _FLOOR, _CEILING = 4, 5
 
 
 @kernel
 def _fetch_ahead(gas):
-    """Fetch what the runners-up of the tournament will need.
+    """Fetch into the cache the data of the molecules whose events may come next.
 
-    The nodes 2 to 7 of the tournament hold those who have lost against the winner in the last rounds; one of them is
-    most often the next event but one.
+    The nodes 2 to 7 of the tournament hold the winners of the two levels below the root; one of them is most often
+    the next event but one.
     """
     calendar = gas.calendar
     for node in range(2, 8):
@@ -79,7 +79,7 @@ def _fetch_ahead(gas):
 
 @kernel
 def piled_up(t, events, gas):
-    """Note so many events up to time t; tell whether there are too many in next to no time."""
+    """Count ``events`` more events up to time t; return whether there are too many of them in next to no time."""
     progress = gas.tallies.progress
     if t - progress[0] > gas.box.stall:
         progress[0] = t
@@ -90,14 +90,14 @@ def piled_up(t, events, gas):
 
 @kernel
 def proceed(gas, until, most, modes):
-    """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
+    """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and their number."""
     tallies = gas.tallies
     done = 0
     status = Status.BUSY
     contacts = entered = left = stale = wall_hits = 0
     epoch_end = gas.cells.copies.epoch[STOP]
     while done < most:
-        # whose event is next?
+        # the next event, and its molecule
         i, t = next_event(gas.calendar)
         if not t <= until:
             status = Status.DONE
@@ -116,7 +116,7 @@ def proceed(gas, until, most, modes):
         other = at
         boundary = CONTACT
         if what < CONTACT and not is_wall(i, what, gas, modes):
-            # a boundary between cells: the molecule flies on, and only its cells and its event change
+            # a boundary between cells: the molecule's motion stays, only its cells and its event change
             if modes.rows:
                 boundary = what
                 entered += 1
@@ -130,7 +130,7 @@ def proceed(gas, until, most, modes):
                 done += 1
                 continue
         elif what == CONTACT:
-            # a contact, if the partner is still on the way that was predicted
+            # a contact, if the partner has had no other encounter since the prediction
             j = np.int64(event.partner)
             if j != i and gas.molecules[j].count == event.partner_count:
                 if (
@@ -142,7 +142,7 @@ def proceed(gas, until, most, modes):
                 at, other = meet(i, j, t, at, gas, modes)
                 contacts += 1
             else:
-                # a contact with itself at the time of its clock means a new velocity, which makes nothing stale
+                # a contact with itself at the time of its clock means a new velocity: that is no stale prediction
                 stale += 1 if j != i or gas.molecules[i].clock < t else 0
                 j = -1
         else:
@@ -155,7 +155,7 @@ def proceed(gas, until, most, modes):
             at = hit(i, _CEILING if what == CEILING else what, t, at, gas, modes)
             wall_hits += 1
         done += 1
-        # both plan anew; in one loop, so that the search for contacts is compiled into it once
+        # the events of both are predicted anew; in one loop, so that the search for contacts is compiled into it once
         full = False
         m = i
         while True:
@@ -178,7 +178,7 @@ def proceed(gas, until, most, modes):
 
 @kernel
 def _into_box(i, axis, u, size, gas):
-    """Return a coordinate brought back into a periodic box, whose cells begin at the lowest boundary; write it down."""
+    """Return a coordinate brought back into a periodic box, from the lowest boundary on; update the molecule."""
     length, inverse = side(axis, gas.box)
     if inverse != 0.0:
         turns = math.floor((u - gas.cells.boundary[size, axis, 0]) / length)
@@ -199,7 +199,7 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def place(gas, now):
-        """Enter all molecules into their cells at time ``now``, where they plan their events, unless a row is full."""
+        """Enter all molecules into their cells at time ``now`` and have their events predicted; stop at a full row."""
         gas = by_reference(gas)
         cells = gas.cells
         row = cells.row
@@ -226,7 +226,7 @@ def _laying_out(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def refill(gas, now):
-        """Write the copies in all rows anew at time ``now``; tell whether a row is too short."""
+        """Write the copies in all rows anew at time ``now``; return whether a row is too short."""
         gas = by_reference(gas)
         return fill(now, gas, modes)
 
@@ -239,7 +239,7 @@ def _checking(modes: Modes) -> Any:
 
     @kernel(entry=True)
     def overlap(gas):
-        """Return the deepest overlap, in diameters, and the two molecules; all clocks must read the same."""
+        """Return the deepest overlap, in diameters, and the two molecules; all clocks must read the same time."""
         gas = by_reference(gas)
         cells = gas.cells
         deepest = -1.0
@@ -272,7 +272,7 @@ def _checking(modes: Modes) -> Any:
 def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
     """Return the kernels of one set of modes: ``place``, ``advance``, ``replan_ceiling``, ``overlap`` and ``refill``.
 
-    They are closures over plain flags, compiled once per set and kept on disk. Those that ask for few of the flags are
+    They are closures over plain flags, compiled once per set and kept on disk. Kernels that read few of the flags are
     shared by all sets that differ in the others.
     """
     of_events = ("rotation", "pool", "drops", "images", "ascends")
@@ -281,16 +281,16 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def replan_ceiling(gas, now, lowest):
-        """Plan anew, at time ``now``, the moves of all that may meet a ceiling that comes down to ``lowest``."""
+        """Predict anew, at ``now``, the moves of all molecules that may meet a ceiling coming down to ``lowest``."""
         gas = by_reference(gas)
         replan_under(lowest, now, gas, modes)
 
     @kernel(entry=True)
     def advance(gas, until, most):
-        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many.
+        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` as a number and how many.
 
-        The status leaves compiled code as a plain number: to make an enum of it is Python's work, in which a signal
-        that has arrived meanwhile would raise its exception at a place where none can be.
+        Compiled code returns the status as a plain number, because numba would make an enum by calling Python: a
+        signal that has arrived meanwhile would then raise its exception where none can be handled.
         """
         gas = by_reference(gas)
         status, done = proceed(gas, until, most, modes)
@@ -298,7 +298,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def ascend(gas, ascent, until, most):
-        """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        """Do what ``advance`` does, and set the velocity of the piston whenever that is due."""
         gas, ascent = by_reference(gas), by_reference(ascent)
         done = 0
         while True:

@@ -1,4 +1,4 @@
-"""The glance in vector instructions: what `glance` says in numpy, for the compiler.
+"""`glance` in vector instructions: the numpy code of that file, written for the compiler.
 
 This file is imported when the first kernel is compiled.
 """
@@ -11,7 +11,7 @@ __all__ = ["glance_of"]
 
 
 def glance_of(lanes, tiny):
-    """Return `glance` for so many copies at once, with so small a product granted to all."""
+    """Return `glance` for ``lanes`` copies at once, with the tolerance ``tiny`` for small products."""
 
     @intrinsic
     def glance(typing_context, values, first, mixed, place, velocity, since, slack, within):
@@ -59,7 +59,7 @@ def glance_of(lanes, tiny):
             square = builder.call(fused, [reach, reach, part(6, 1)])
             b, a, c = product(r, v), product(v, v), product(r, r, builder.fneg(square))
             granted = ir.Constant(vector, [tiny] * lanes)
-            # each comparison also holds for what is no number
+            # each comparison is also true for NaN
             near = builder.fcmp_unordered("<=", builder.fmul(a, c), builder.call(fused, [b, b, granted]))
             approach = builder.fcmp_unordered("<", b, part(6, 2))
             turn = builder.call(fused, [a, within, b])

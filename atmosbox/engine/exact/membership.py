@@ -1,7 +1,7 @@
-"""Who stands in which cells, whichever way their rows are kept: for all that is not in the innermost loops.
+"""Which molecules are in which cells, for both kinds of rows; for everything outside the innermost loops.
 
-The rows of cells are lists of names (`cells`), or hold copies of trajectories beside them (`rows`); which of the two,
-the mode ``rows`` says.
+The rows of cells are lists of molecules (`cells`), or hold copies of trajectories too (`rows`); the mode ``rows``
+tells which.
 """
 
 from enum import IntEnum
@@ -25,14 +25,14 @@ class Change(IntEnum):
 
 @kernel
 def row_of(x, y, z, cells):
-    """Return where in memory the row begins of a cell whose three numbers may go once round a periodic box."""
+    """Return where the row of a cell begins; its numbers x, y, z may be beyond the end of a periodic axis."""
     cell = ((x % cells.number_x) * cells.number_y + y % cells.number_y) * cells.number_z + z % cells.number_z
     return (cell * cells.stride) & POSITIVE
 
 
 @kernel
 def places(start, cells, modes):
-    """Return how many places of a row are to be looked through."""
+    """Return the number of places of a row that must be read."""
     return number_of_places(cells, modes) if modes.rows else np.int64(cells.row[start])
 
 
@@ -44,7 +44,7 @@ def listed(start, place, cells, modes):
 
 @kernel
 def change(what, i, size, slots, cells, modes):
-    """Do one `Change` with molecule i in all cells of three slots; tell whether one of them is full."""
+    """Do one `Change` with molecule i in all cells of three slots; return whether one of them is full."""
     full = False
     if modes.rows:
         members = members_of(slots)

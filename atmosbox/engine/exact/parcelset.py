@@ -1,6 +1,6 @@
 """The parcel of air: molecules in a box, advanced exactly.
 
-`ParcelSet` checks what it is given, lays it out for the kernels, owns the random numbers and the moving
+`ParcelSet` checks its arguments, arranges the data for the kernels, holds the random numbers and the
 epoch of time, and turns the kernels' status codes into sentences.
 """
 
@@ -35,13 +35,13 @@ _OVERLAP = 1e-9
 
 
 class ParcelSet(Parcel):
-    """A set of molecules with its box, advanced exactly: from event to event.
+    """A set of molecules with its box, advanced exactly, from event to event.
 
-    What it is given, and what it tells, is described at `Parcel`.
+    Its parameters, properties and refusals are described at `Parcel`; overlaps at the start are refused.
 
     Examples
     --------
-    Two molecules that approach each other along x bounce once and keep their energy:
+    Two molecules that approach each other along x collide once and keep their energy:
 
     >>> pair = ParcelSet([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
     >>> pair.advance(1.0)
@@ -53,11 +53,11 @@ class ParcelSet(Parcel):
 
     _frugal = True
     _crowded: bool
-    """Whether so many molecules have come together in one cell that rows cannot hold copies of trajectories."""
+    """Whether so many molecules are in one cell that rows cannot hold copies of trajectories."""
     _present: slice | NDArray[np.bool_] = slice(None)
     """Which molecules are in the box: all of them."""
     _first_drop: int = 0
-    """The first kind that is a drop, 0 if none is."""
+    """The number of the first kind that is a drop, 0 if there is none."""
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         self._crowded = False
@@ -84,7 +84,7 @@ class ParcelSet(Parcel):
             )
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
-        """Write down the molecules."""
+        """Write the molecules into the engine's arrays."""
         self._kinds, kind, self._size_radius = classify(
             self._mass, self._diameter, self._rotation, np.array(rotational_energy) if self._rotates else None
         )
@@ -93,18 +93,18 @@ class ParcelSet(Parcel):
             self._molecules[name] = position[:, axis]
             self._molecules["v" + name] = velocity[:, axis]
         self._molecules["kind"] = kind
-        self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads a field of it ten times faster
+        self._fields = self._molecules.view(np.ndarray)  # the same memory; numpy reads its fields ten times faster
 
     def memory(self) -> int:
-        """Return the bytes that molecules, events, cells and calendar take, and what is known of each molecule."""
+        """Return the memory of molecules, events, cells and calendar, and of the properties of molecules [bytes]."""
         arrays = [self._molecules, self._events, self._cells.row, self._calendar.time, self._calendar.winner]
         arrays += [self._kinds.rotational_energy, self._kinds.table, self._cells.boundary]
         for each in (self._mass, self._diameter, self._rotation):
-            arrays.append(each if each.strides != (0,) else each[:1])  # a number that all share takes the memory of one
+            arrays.append(each if each.strides != (0,) else each[:1])  # a number shared by all is stored once
         return sum(int(a.nbytes) for a in arrays)
 
     def snapshot(self) -> Snapshot:
-        """Return all molecules as they are now; nothing in the box changes by being looked at."""
+        """Return all molecules as they are now; the box does not change."""
         m = self._fields[self._present]
         dt = self._now - m["clock"]
         position = np.stack([m["x"] + dt * m["vx"], m["y"] + dt * m["vy"], m["z"] + dt * m["vz"]], axis=1)
@@ -119,7 +119,7 @@ class ParcelSet(Parcel):
         return Snapshot(self.time, position, velocity, spin)
 
     def advance(self, until: float, watch: Callable[[float], None] | None = None) -> None:
-        """Let time pass until ``until`` [time since the start]: see `Parcel.advance`."""
+        """Advance the box to the time ``until`` [time since the start]: see `Parcel.advance`."""
         until = number(until, "until")
         if until < self.time:
             raise RefusedError(f"until = {until} lies before now, t = {self.time}: give a later time")
@@ -139,7 +139,7 @@ class ParcelSet(Parcel):
                 break
         self._asked = until
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ how events are resolved
 
     def _piston_turned(self) -> None:
         velocity = self.piston_velocity
@@ -205,17 +205,17 @@ class ParcelSet(Parcel):
             raise StalledError(why_crushed(self))
 
     def _proceed(self, until: float) -> tuple[Status, int]:
-        """Resolve a number of events up to a local time; tell why it stopped, and how many there were."""
+        """Resolve a number of events up to a local time; return why the loop stopped, and their number."""
         status, done = self._advance(self._gas(), *self._ascent(), until, _CHUNK)
         return Status(status), int(done)
 
     @property
     def _ascends(self) -> bool:
-        """Whether compiled code turns the piston: it knows one driver, and molecules of one size."""
+        """Whether compiled code moves the piston: it knows one driver, and needs molecules of one size."""
         return type(self._driver) is FollowPressure and self._same_size and not self._first_drop
 
     def _ascent(self) -> tuple[Ascent] | tuple[()]:
-        """Return what the kernels must know that turn the piston, or nothing for the others."""
+        """Return the last argument of the kernels that move the piston; nothing if none does."""
         if not self._ascends:
             return ()
         assert isinstance(self._driver, FollowPressure)
@@ -225,18 +225,18 @@ class ParcelSet(Parcel):
         return (Ascent(self._driver.law(), self._turns, *heights, *energy, self._freedom, diameter),)
 
     def _next_turn(self) -> float:
-        """Return when the driver is asked next [time]."""
+        """Return when the driver is called next [time]."""
         return math.inf if self._driver is None else (int(self._turns[0]) + 1) * self._driver.interval
 
     def _gas(self) -> Gas:
-        """Return all that the kernels work on."""
+        """Return all data of the kernels."""
         return Gas(
             self._molecules, self._events, self._kinds, self._cells,
             self._calendar, self._box, self._walls, self._tallies,
         )  # fmt: skip
 
     def _shift(self, local: float, watch: Callable[[float], None] | None) -> bool:
-        """Move the epoch on, up to the next thing that happens; return whether anything is left to happen at all."""
+        """Move the epoch on towards the next event; return False if no event will ever come."""
         if self._now < self._epoch_length:
             self._resolve(self._epoch_length, watch)
         ahead = min(self._next_time(), self._next_turn() - float(self._walls.epoch[0]))
@@ -247,12 +247,12 @@ class ParcelSet(Parcel):
         return step > 0.0
 
     def _next_time(self) -> float:
-        """Return the local time of what happens next."""
+        """Return the local time of the next event."""
         return float(next_time(self._gas(), self._clocks))
 
     @property
     def _clocks(self) -> Array:
-        """The clocks of what is no event of a molecule: none ever strikes."""
+        """The times of events that belong to no molecule: here there are none."""
         return np.full(1, math.inf)
 
     def _grow_rows(self) -> None:
@@ -271,13 +271,13 @@ class ParcelSet(Parcel):
         self._cells = old._replace(row=row, stride=stride)
 
     def _refill_rows(self, now: float) -> None:
-        """Write the copies in all rows anew at a local time, in longer rows if there is no other way."""
+        """Write the copies in all rows anew at a local time; make the rows longer or lay out other cells if needed."""
         while self._refill(self._gas(), now):
             if not self._enlarge_rows():
                 return self._lay_out_closer()
 
     def _enlarge_rows(self) -> bool:
-        """Give the rows more places, empty; return whether that is possible."""
+        """Make new, empty rows with more places; return whether that is possible."""
         self._places += MORE
         if self._places > MOST:
             return False
@@ -285,7 +285,7 @@ class ParcelSet(Parcel):
         return True
 
     def _new_cells(self, stride: int) -> None:
-        """Make empty rows of so many words for the cells that are chosen."""
+        """Make empty rows of ``stride`` words for the chosen cells."""
         grid, n = self._grid, len(self._fields)
         slot = np.zeros((0, 3), np.uint16)
         if n:
@@ -299,7 +299,7 @@ class ParcelSet(Parcel):
         self._cells = new_cells(grid, slot, row, stride, copies)
 
     def _lay_out_closer(self) -> None:
-        """Choose cells anew because there are too many molecules for a row: layers that follow them, or else lists."""
+        """Lay out other cells because a row has too many molecules: layers that follow the molecules, or else lists."""
         grid, found = self._grid, 0
         edge = np.zeros(grid.wanted + 1)
         if grid.wanted > 1:
@@ -309,11 +309,11 @@ class ParcelSet(Parcel):
         self._enter(self._choose(edge[: found + 1] if found else None))
 
     def _lay_out(self) -> None:
-        """Choose cells for the box as it is now and plan every molecule's event anew."""
+        """Choose cells for the box as it is now and predict all events anew."""
         self._enter(self._choose())
 
     def _choose(self, layers: Array | None = None) -> Grid:
-        """Choose cells for the box as it is now, with these edges of layers if any are given."""
+        """Choose cells for the box as it is now, with ``layers`` as edges along z if they are given."""
         n = len(self._fields)
         moving = self._walls.law[5] == PISTON
         self._filled = self.ceiling
@@ -337,7 +337,7 @@ class ParcelSet(Parcel):
         )
 
     def _enter(self, grid: Grid) -> None:
-        """Enter all molecules into these cells, where they plan their events."""
+        """Enter all molecules into the cells of a grid, and have their events predicted."""
         n = len(self._fields)
         self._grid = grid
         self._modes = Modes(

@@ -1,6 +1,6 @@
-"""What lies ahead of a molecule: its next contact, its next boundary, its next wall.
+"""The next events of a molecule: its next contact, its next cell boundary, its next wall.
 
-All three are worked out when the molecule has met something, and only its cells are searched. What is soonest becomes
+All three are predicted when the molecule has had an encounter, and only its own cells are searched. The soonest becomes
 its event in the calendar.
 """
 
@@ -20,11 +20,11 @@ from atmosbox.engine.exact.search import CONTACT, search
 __all__ = ["CEILING", "CONTACT", "Meeting", "call", "limits", "next_move", "plan", "side", "soonest_in_cell"]
 
 CEILING = 7
-"""What comes first: 0 to 5 is a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact, 7 this."""
+"""Which event comes first: 0 to 5 a boundary or wall (2 * axis, plus 1 for the upper side), 6 a contact, 7 this."""
 
 
 class Meeting(NamedTuple):
-    """The soonest contact found so far: how long until then [time], and with which molecule, -1 for none."""
+    """The soonest contact found so far: the time until then [time], and the partner, -1 for none."""
 
     after: float
     partner: int
@@ -42,9 +42,9 @@ def side(axis, box):
 
 @kernel
 def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
-    """Return the earlier of the `Meeting` known and the first contact of molecule i with a member of a cell.
+    """Return the earlier of the `Meeting` ``known`` and the first contact of molecule i with a member of a cell.
 
-    The others are taken to time t, each from the time of its own clock; nothing is written.
+    The positions of the members at time t are computed from their own clocks; nothing is written.
     """
     row = gas.cells.row
     start = (cell * gas.cells.stride) & POSITIVE
@@ -76,7 +76,7 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
                 partner = j
             continue
         discriminant, b, c = approach(rx, ry, rz, ux, uy, uz, distance)
-        # most pairs miss: all else stands inside this one branch; a pair that overlaps by rounding and parts has b >= 0
+        # most pairs miss: all else is inside this one branch; a pair that overlaps by rounding and parts has b >= 0
         if discriminant > 0.0:
             after = predict(discriminant, b, c)
             if after < soonest and b < 0.0 and i != j:
@@ -87,10 +87,10 @@ def soonest_in_cell(cell, i, t, at, radius, known, gas, modes):
 
 @kernel
 def limits(slot, axis, size, radius, gas, modes):
-    """Return the interval in which the centre stays before it reaches a new cell (or slot) or a wall."""
+    """Return the interval along an axis in which the centre stays until it reaches a new cell (or slot) or a wall."""
     boundary = gas.cells.boundary
     if modes.rows:
-        # to leave a cell is no event
+        # leaving a cell is not an event here
         low = boundary[size, axis, slot & ~1]
         high = boundary[size, axis, (slot | 1) + 2 * (slot & 1)]
     else:
@@ -106,7 +106,7 @@ def limits(slot, axis, size, radius, gas, modes):
 
 @kernel
 def next_move(slots, t, at, size, radius, gas, modes):
-    """Return when a molecule next crosses a boundary or hits a wall [time from now], and which.
+    """Return the time until a molecule crosses a boundary or hits a wall [time from now], and the number of that one.
 
     ``slots`` are its slots along x, y and z, ``size`` its size class.
     """
@@ -139,9 +139,9 @@ def next_move(slots, t, at, size, radius, gas, modes):
 
 @kernel
 def plan(i, t, at, boundary, gas, modes):
-    """Work out all that lies ahead of molecule i, which is where ``at`` says at time t; write it down.
+    """Predict the next events of molecule i, whose `Motion` at time t is ``at``, and enter the first in the calendar.
 
-    With rows it may just have reached a boundary, see `search`. Returns whether the row of a cell must grow.
+    With rows, the molecule may just have reached ``boundary``: see `search`. Returns whether the row of a cell is full.
     """
     event = gas.events[i]
     size, radius = size_and_radius(i, gas, modes)
@@ -151,7 +151,7 @@ def plan(i, t, at, boundary, gas, modes):
         at, slots, full = found.at, found.slots, found.full
         after, partner = found.after, found.partner
         if partner < 0 and boundary >= CONTACT:
-            partner = i  # no contact within the horizon: it plans anew when that is reached
+            partner = i  # no contact within the horizon: when that is reached, its events are predicted anew
     else:
         slots = slots_of(i, gas)
         after, partner = _soonest_in_lists(i, t, at, slots, gas, modes)
@@ -159,7 +159,7 @@ def plan(i, t, at, boundary, gas, modes):
     event.contact_time = t + after
     if partner >= 0:
         event.partner = partner
-        # a prediction is stale as soon as its partner has met somebody else, which its count will tell
+        # a prediction is stale as soon as its partner has another encounter: then the partner's count differs
         event.partner_count = gas.molecules[partner].count
     if after < time:
         what = CONTACT
@@ -170,10 +170,10 @@ def plan(i, t, at, boundary, gas, modes):
 
 @kernel
 def call(i, t, gas):
-    """Let molecule i plan anew at time t, before anything else happens: it has got a new velocity.
+    """Have the events of molecule i predicted anew at time t, before anything else happens: its velocity is new.
 
-    It is entered as a contact with itself, so that the loop over events, which plans, is the one place where the search
-    for contacts is compiled.
+    This is entered as a contact of the molecule with itself, so that the loop over events, which does the prediction,
+    is the only place into which the search for contacts is compiled.
     """
     event = gas.events[i]
     event.contact_time = t
@@ -184,7 +184,7 @@ def call(i, t, gas):
 
 @kernel
 def _soonest_in_lists(i, t, at, slots, gas, modes):
-    """Return how long until the soonest contact with a member of the cells in three slots, and with whom."""
+    """Return the time until the soonest contact with a member of the cells of three slots, and the partner."""
     cells = gas.cells
     size, radius = size_and_radius(i, gas, modes)
     meeting = Meeting(math.inf, -1)

@@ -1,14 +1,14 @@
-r"""The definition of the model, slow and obvious: what the exact engine must agree with.
+r"""The definition of the model, slow and simple: the exact engine must agree with it.
 
-Before every event everything that lies ahead is worked out from scratch, for all pairs and all walls; the
-list is sorted, all molecules fly to the first event in it, and that one is resolved. There are no cells, no
-calendar, no clocks and nothing remembered, so there is little to get wrong. What a contact and a wall do to
-velocities is not written twice: `pair.resolve`, `share_energy` and `resolve_wall_hit` are the engine's
-own, and so are the random numbers, drawn in the same order.
+Before every event, all possible events are computed from scratch, for all pairs and all walls; the list is sorted, all
+molecules fly to the first event in it, and that one is resolved. There are no cells, no calendar and no clocks, and
+nothing is kept from one event to the next, so there is little to get wrong. The change of velocity at a contact or a
+wall is not written twice: `pair.resolve`, `share_energy` and `resolve_wall_hit` are the engine's own, and so are the
+random numbers, drawn in the same order.
 
-Every encounter is the closing of a gap. The gap between two spheres, taken as
+Every event is the closing of a gap. The gap between two spheres, defined as
 :math:`|r + v t|^2 - \sigma^2`, and the height above the floor, below the ceiling or below a moving piston,
-with or without gravity, are all parabolas in time, so one formula (`time_to_close`) says when each closes.
+with or without gravity, are all parabolas in time, so one formula (`time_to_close`) tells when each closes.
 """
 
 import itertools
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 
 class Event(NamedTuple):
-    """What happens, and to whom.
+    """An event: its time, what happens, and which molecules or walls take part.
 
     ``kind`` is "contact", "wall hit" or "crossing" (of a periodic boundary). ``first`` is a molecule;
     ``second`` is its partner, of higher index, or the wall, 0 to 5 in the order x low, x high, y low, y high,
@@ -49,7 +49,7 @@ def time_to_close(a: float, b: float, c: float) -> float:
     Parameters
     ----------
     a, b, c
-        Half the acceleration with which the gap opens, the speed with which it does, and its width now.
+        Half the acceleration with which the gap opens, the speed with which it opens, and its width now.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def time_to_close(a: float, b: float, c: float) -> float:
     Notes
     -----
     Of the two roots this is the one where the slope is :math:`-\sqrt{b^2 - 4 a c}`, whatever the sign of a,
-    written in the form in which nothing cancels.
+    written so that no digits are lost by cancellation.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def time_to_close(a: float, b: float, c: float) -> float:
     """
     square = b * b - 4.0 * a * c
     if a < 0.0:
-        square = max(square, 0.0)  # what falls always arrives
+        square = max(square, 0.0)  # a gap that accelerates towards closing always closes
     if square < 0.0:
         return math.inf
     root = math.sqrt(square)
@@ -86,28 +86,28 @@ def time_to_close(a: float, b: float, c: float) -> float:
 
 
 class Reference:
-    """A set of molecules with its box, advanced the slow way.
+    """A set of molecules with its box, advanced by the slow method.
 
-    It is given what `ParcelSet` is given, and checks nothing.
+    It takes the arguments of `ParcelSet` below, and does not check them.
 
     Parameters
     ----------
     position, velocity : (molecule, axis)
         Centres [length] and velocities [length/time].
     length
-        The three sides of the box [length]; along z up to where the ceiling starts.
+        The three sides of the box [length]; along z, the height of the ceiling at the start.
     walls
         Six laws; a piston moves at its velocity for ever.
     mass, diameter, rotation : (molecule,) or one number
         Mass [mass], diameter [length], rotational degrees of freedom.
     rotational_energy : (molecule,)
-        At the start [energy]; zero by default.
+        Rotational energy at the start [energy]; zero by default.
     gravity
         Downward acceleration [length/time^2].
     planar
         Whether this is a plane gas.
     collision_number
-        How many contacts pass, on average, between two exchanges of energy with rotation.
+        Average number of contacts per exchange of energy with rotation.
     seed
         Seed of the random numbers.
 
@@ -116,11 +116,11 @@ class Reference:
     time
         Time since the start [time].
     position, velocity, rotational_energy
-        All molecules at that time.
+        Positions, velocities and rotational energies of all molecules at that time.
 
     Examples
     --------
-    Two molecules that approach each other along x bounce once and keep their energy:
+    Two molecules that approach each other along x collide once and keep their energy:
 
     >>> pair = Reference([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4))
     >>> pair.step()
@@ -165,7 +165,7 @@ class Reference:
                 self.position[:, axis] %= self.length[axis]
 
     def step(self) -> Event | None:
-        """Go to the next event, resolve it and return it; None if nothing will ever happen."""
+        """Go to the next event, resolve it and return it; None if there will be no event."""
         events = self.ahead()
         if not events:
             return None
@@ -173,21 +173,21 @@ class Reference:
         return events[0]
 
     def advance(self, until: float) -> None:
-        """Let time pass until ``until`` [time since the start]."""
+        """Advance to the time ``until`` [time since the start]."""
         while (events := self.ahead()) and events[0].time <= until:
             self._resolve(events[0])
         self._fly(until)
 
     def energy(self) -> float:
-        """Return kinetic, rotational and potential energy together [energy]."""
+        """Return the sum of kinetic, rotational and potential energy [energy]."""
         kinetic = 0.5 * np.sum(self.mass * np.sum(self.velocity**2, axis=1))
         potential = self.gravity * np.sum(self.mass * self.position[:, 2])
         return float(kinetic + np.sum(self.rotational_energy) + potential)
 
-    # ------------------------------------------------------------------ what lies ahead
+    # ------------------------------------------------------------------ the possible events
 
     def ahead(self) -> list[Event]:
-        """Return every event that lies ahead if no other came before it, the soonest first."""
+        """Return all possible events, each as if no other came before it, in order of time."""
         events = itertools.chain(self._wall_hits(), self._contacts())
         return sorted(event for event in events if event.time < math.inf)
 
@@ -204,14 +204,14 @@ class Reference:
                 yield Event(self.time + time_to_close(0.5 * acceleration, speeds[i], gaps[i]), kind, i, wall)
 
     def _contacts(self) -> Iterator[Event]:
-        # until one of them crosses a boundary, two molecules of a periodic box meet in it or across its sides
+        # until one of them crosses a boundary, two molecules of a periodic box meet inside it or across its sides
         turns = [(-1.0, 0.0, 1.0) if periodic else (0.0,) for periodic in self.periodic]
         images = self.length * np.array(list(itertools.product(*turns)))
         for i in range(self.number):
             for j in range(i + 1, self.number):
                 distance = reach(0.5 * self.diameter[i], 0.5 * self.diameter[j])
                 if distance == 0.0:
-                    continue  # points never meet
+                    continue  # points never collide
                 v = self.velocity[i] - self.velocity[j]
                 r = self.position[i] - self.position[j] + images
                 speed_squared = float(v @ v)
@@ -221,7 +221,7 @@ class Reference:
                     yield Event(self.time + time_to_close(speed_squared, slope, gap), "contact", i, j)
 
     def place(self, wall: int) -> float:
-        """Return where a wall is now [length]."""
+        """Return the coordinate of a wall now [length]."""
         if wall % 2 == 0:
             return 0.0
         return float(self.length[wall // 2] + self._speed(wall) * self.time)
@@ -229,10 +229,10 @@ class Reference:
     def _speed(self, wall: int) -> float:
         return float(self.walls.piston[1]) if self.walls.law[wall] == PISTON else 0.0
 
-    # ------------------------------------------------------------------ what happens
+    # ------------------------------------------------------------------ resolving an event
 
     def _fly(self, time: float) -> None:
-        """Move all molecules to a time, each along its own parabola."""
+        """Move all molecules to a time, each along its own parabola, and set the clock."""
         dt = time - self.time
         self.position += dt * self.velocity
         self.position[:, 2] -= 0.5 * self.gravity * dt * dt

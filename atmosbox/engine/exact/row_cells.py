@@ -1,7 +1,7 @@
-"""Cells whose rows hold copies of trajectories: how many there are along each axis, and where their slots begin.
+"""Cells whose rows hold copies of trajectories: their number along each axis, and the boundaries of their slots.
 
 They are wider than any molecule. Python runs these functions as they are written, when it lays out a box; the kernels
-of a page, which must lay it out themselves, compile them.
+of the lab's page, which lays out its boxes itself, compile them.
 """
 
 import math
@@ -23,34 +23,35 @@ __all__ = [
 ]
 
 MARGIN = 1.0 + 1e-7
-"""How much larger than its sphere a molecule is taken to be."""
+"""How much larger than its sphere a molecule is assumed to be."""
 MOST_CELLS = 20_000
-"""As many cells as there may be along an axis."""
+"""Largest number of cells along an axis."""
 TALLER = 1.75
-"""How high the cells under a ceiling that moves reach, over its height when they are laid out."""
+"""Height of the cells under a moving ceiling, relative to the height of the ceiling when they are laid out."""
 _CROWD = 18.0
-"""Up to how many molecules to a cell its row may hold copies.
+"""Largest mean number of molecules per cell with which rows may hold copies.
 
-A molecule stays in the row of the cell that it comes from until it plans anew: where it flies across many cells, it is
-in two rows on average. Of 64 places so many leave room for chance: 36 and four times its root.
+A molecule stays in the row of the cell that it comes from until its next event: where it flies across many cells, it is
+in two rows on average. So a row holds 36 on average, and its 64 places leave room for fluctuations: 36 plus four times
+its root is 60.
 """
 _STEPS = 20_000
 _EVENLY = 0.1
-"""Of so large a share of all molecules it is assumed that they are spread evenly over the height, wherever they are."""
+"""Fraction of all molecules that is assumed to be spread evenly over the height, wherever they are."""
 _EMPTIER = 0.8
-"""Layers that follow the molecules are worth it if the fullest has so small a share of what the fullest had before."""
+"""Layers that follow the molecules are used if the fullest then has less than this fraction of the fullest before."""
 
 
 @kernel(plain=True)
 def filled_share(x, y, z, radius, molecules, planar):
-    """Return which share of a box so many spheres, or discs, of a radius fill."""
+    """Return the fraction of a box that ``molecules`` spheres, or discs, of a radius fill."""
     size = math.pi * radius * radius * (1.0 if planar else 4.0 / 3.0 * radius)
     return molecules * size / (x * (1.0 if planar else y) * z)
 
 
 @kernel(plain=True)
 def cell_widths(x, y, z, cells, planar):
-    """Return the width of a cell along each axis, if there are to be so many; an axis shorter than a cell has one.
+    """Return the width along each axis of ``cells`` cells, as cubic as possible; a shorter axis has one cell.
 
     Examples
     --------
@@ -69,7 +70,7 @@ def cell_widths(x, y, z, cells, planar):
 
 @kernel(plain=True)
 def widths_for_rows(x, y, z, radius, molecules, planar):
-    """Return the widths of cells that are wanted of molecules of a radius: eight to ten of them to a cell."""
+    """Return the intended widths of cells for molecules of a radius: eight to ten molecules to a cell."""
     # measured at packing fractions of .01, .1, .3 and .49: fewer lose, more gain in large boxes and lose in small ones
     filled = filled_share(x, y, z, radius, molecules, planar)
     return cell_widths(x, y, z, molecules / (9.0 if filled < 0.05 else 8.0 if filled < 0.2 else 10.0), planar)
@@ -77,7 +78,7 @@ def widths_for_rows(x, y, z, radius, molecules, planar):
 
 @kernel(plain=True)
 def _nearest(length, width, widest, periodic, above):
-    """Return the number of cells below, or above, that which has the width that is wanted; 0 if none is possible."""
+    """Return the number of cells next below, or above, that with the intended width; 0 if none is possible."""
     step, least = (2, 4) if periodic else (1, 1)
     top = min(step * math.floor(length / (2.002 * widest) / step), MOST_CELLS)
     if top < least:
@@ -87,20 +88,20 @@ def _nearest(length, width, widest, periodic, above):
 
 @kernel(plain=True)
 def cell_numbers(length, filled, width, radius, molecules, periodic, planar):
-    """Return how many cells along each axis come nearest to a width, if rows may hold copies then, else zeros.
+    """Return the numbers of cells along the axes that come nearest to a width; zeros if rows cannot hold copies then.
 
     Parameters
     ----------
     length, filled
-        What the cells cover along x, y and z, and up to where there are molecules now [length].
+        Extent of the cells along x, y and z, and the height up to which there are molecules now [length].
     width
-        That is wanted, along each axis [length].
+        The intended width of a cell along each axis [length].
     radius
-        Of the largest molecule [length].
+        Radius of the largest molecule [length].
     molecules
-        How many there will be.
+        Number of molecules.
     periodic
-        Which axes are.
+        Whether each axis is periodic.
     planar
         Whether all centres lie in one plane y = constant.
     """
@@ -117,7 +118,7 @@ def cell_numbers(length, filled, width, radius, molecules, periodic, planar):
         nz = _nearest(z, width[2], widest, periodic[2], k & 1)
         if nx * ny * nz == 0:
             return found
-        # how far they are from the volume and the shape that are wanted
+        # the deviations from the intended number of cells and from the intended shape
         a, b, c = log(nx * width[0] / x), log(ny * width[1] / y), log(nz * width[2] / z)
         mean = (a + b + c) / 3.0
         a, b, c = a - mean, b - mean, c - mean
@@ -132,8 +133,8 @@ def cell_numbers(length, filled, width, radius, molecules, periodic, planar):
 def write_slots(edge, radius, periodic, mixed, opens, boundary):
     """Write the boundaries of the slots along one axis for molecules of a radius; return the last slot.
 
-    Where molecules of several kinds are ``mixed``, their walls are not in the table: each turns at its own radius.
-    Along an axis that ``opens``, a molecule beyond the last edge has left the cells.
+    If molecules of several kinds are ``mixed``, walls are not in the table: each molecule hits them at its own radius.
+    On an axis that ``opens``, a molecule beyond the last edge has left the cells.
     """
     n = edge.size - 1
     length, reach = edge[n], radius * MARGIN
@@ -143,7 +144,7 @@ def write_slots(edge, radius, periodic, mixed, opens, boundary):
     if periodic:
         boundary[0] = reach
         boundary[2 * n - 1] = length - reach
-        # a turn further: the first, and the one after it
+        # one period further: the first boundary, and the one after it
         boundary[2 * n] = reach + length
         boundary[2 * n + 1] = boundary[1] + boundary[2 * n] - reach
         return 2 * n - 1
@@ -154,11 +155,12 @@ def write_slots(edge, radius, periodic, mixed, opens, boundary):
 
 @kernel(plain=True)
 def write_layers(height, wanted, scale_height, thinnest, edge):
-    """Write the edges of layers that hold about equally many molecules of an isothermal column; return how many.
+    """Write the edges of layers that hold about equal numbers of molecules of an isothermal column; return how many.
 
-    They are `wanted`, or fewer, so that none is thinner than `thinnest` [length]; 0 if there is no memory for them.
+    There are ``wanted`` layers, or fewer so that none is thinner than ``thinnest`` [length]; 0 if the memory is too
+    short for them.
     """
-    # a table of heights; where the air is shallow, it begins with as many close to the floor
+    # a table of heights; where the air is shallow, it begins with as many steps close to the floor
     shallow = min(40.0 * scale_height, height / 2) if scale_height < height / 5_000 else 0.0
     begin, first = _STEPS, 0
     if shallow > 0.0:
@@ -192,7 +194,7 @@ def write_layers(height, wanted, scale_height, thinnest, edge):
 
 @kernel(plain=True)
 def _height(k, height, shallow, first):
-    """Return a height of the table: steps up to ``shallow``, and then those of the whole, from the first above it."""
+    """Return height k of the table: even steps up to ``shallow``, then steps of the whole height from ``first`` on."""
     if k < _STEPS:
         return k * (shallow / _STEPS)
     k += first - _STEPS
@@ -201,19 +203,19 @@ def _height(k, height, shallow, first):
 
 @kernel(plain=True)
 def _share_below(z, height, scale_height, shallow, whole):
-    """Return which share of the molecules is below a height, some of them spread evenly; see `write_layers`."""
+    """Return the fraction of the molecules below a height, some of them spread evenly; see `write_layers`."""
     depth = z / scale_height if shallow > 0.0 else min(height / scale_height, 700.0) * z / height
     return (1.0 - _EVENLY) * expm1(-depth) / whole + _EVENLY * z / height
 
 
 @kernel(plain=True)
 def write_even_layers(count, old, wanted, thinnest, edge):
-    """Write the edges of layers that hold about equally many of the molecules that are there; return how many.
+    """Write the edges of layers that hold about equal numbers of the present molecules; return the number of layers.
 
-    ``count : (layer,)`` tells how many there are in each of the layers with the edges ``old : (layer + 1,)`` [length],
-    where they are taken to be spread evenly. As in `write_layers` there are as many as ``wanted``, or fewer, none
-    thinner than ``thinnest`` [length]; 0 if there is no memory for them, or if the fullest layer would be nearly as
-    full as before.
+    ``count : (layer,)`` are the numbers of molecules in the layers with the edges ``old : (layer + 1,)`` [length], in
+    each of which they are assumed to be spread evenly. As in `write_layers` there are ``wanted`` layers, or fewer so
+    that none is thinner than ``thinnest`` [length]; 0 if the memory is too short for them, or if the fullest layer
+    would be nearly as full as before.
 
     Examples
     --------
@@ -232,7 +234,7 @@ def write_even_layers(count, old, wanted, thinnest, edge):
     for each in count:
         number += each
         most = max(most, each)
-    # below a height are so many molecules, ``under`` the last edge, and in the fullest of the new layers
+    # molecules below a height (passed), below the last edge (under), and in the fullest of the new layers
     passed, under, fullest = 0, 0.0, 0.0
     found, k, below = 1, 0, 0.0
     share = (1.0 - _EVENLY) * count[0] / number + _EVENLY * (old[1] - old[0]) / height

@@ -1,26 +1,26 @@
-"""The rows of cells, where they hold copies of trajectories: who stands in which place of which row.
+"""The rows of cells, where they hold copies of trajectories: which molecule has which place in which row.
 
-Beside the names of its members the row of a cell holds a copy of the trajectory of each in single precision, relative
-to the centre of the cell and to a common time, the start of the epoch. So all that a `glance` asks about eight members
-lies in one piece of memory. The row of a cell is ``stride`` words of four bytes, whole lines of 64 bytes::
+Beside the indices of its members, the row of a cell holds a copy of the trajectory of each in single precision,
+relative to the centre of the cell and to a common time, the start of the epoch. So all data that a `glance` needs for
+eight members lie in one piece of memory. The row of a cell is ``stride`` words of four bytes, whole lines of 64 bytes::
 
     | occupied . . . | names | x | y | z | vx | vy | vz | extent | names | x | ...
       half a line of     8     8   8   8   8    8    8      8
       64 bytes       |<---------------- a block --------------->|<-- the next --
 
-The first 64 bits of a row tell which of its places are occupied, at most `MOST`. Extents are there only if molecules
-differ in size. In gravity the copies are in the frame that falls from the start of the epoch, where all paths are
-straight.
+The first 64 bits of a row tell which of its places are occupied, at most `MOST`. "names" are the indices of the
+members. Extents are there only if molecules differ in size. In gravity the copies are in the frame that falls from the
+start of the epoch, in which all paths are straight.
 
-Along each axis a molecule stands in one cell, or in two neighbours: that is its slot (`cells`). But here it keeps a
-cell that it has left until its next event, because to leave a cell is no event. Of its cells, eight at most, no two
-have the same parity of their three numbers. So eight bits tell which they are (`members_of`), and eight bytes of its
-event its place in the row of each::
+Along each axis a molecule is in one cell, or in two neighbours: that is its slot (`cells`). But here it keeps a
+cell that it has left until its next event, because leaving a cell is not an event. Of its cells, eight at most, no two
+have the same parities of their three numbers. So eight bits tell which cells they are (`members_of`), and eight bytes
+of its event tell its place in the row of each::
 
     cell numbers (x, y, z)   even even even   even even odd   ...   odd odd odd
     bit, and byte of place         0                1                    7
 
-On a periodic axis the number of cells is even, so that parities go on across the border, and at least four: then the
+On a periodic axis the number of cells is even, so that parities continue across the border, and at least four: then the
 image of a member that belongs to a row is the one nearest to the centre of its cell, from which no member is further
 than one and a half cells.
 """
@@ -44,20 +44,20 @@ __all__ = [
 
 _HEAD = 8
 FEWEST, MORE, MOST = 32, 16, 64
-"""How many places a row has at first, how many it gets more when it is full, and as many as it may have at most.
+"""Number of places that a row has at first, number that it gains when it is full, and the largest number.
 
 One word of 64 bits tells which are occupied.
 """
 START, STOP, TOP_SPEED, LONGEST = range(4)
-"""What is known of an epoch: its start and its end [time], V [length/time], and how long it may be at most [time]."""
+"""The numbers of an epoch: its start and its end [time], the top speed V [length/time], its greatest length [time]."""
 _PLACE, _SPEED, _EXTENT = LANES, 4 * LANES, 7 * LANES
 _DILUTE, _DENSE = 0.05, 0.2
-"""Below the first packing fraction a horizon gains nothing (measured); above the second it may be nearer."""
+"""Below the first packing fraction a horizon gains nothing (measured); above the second a shorter one is enough."""
 
 
 @kernel(plain=True)
 def row_stride(places, mixed):
-    """Return how many words the row of a cell takes that has so many places.
+    """Return the number of words in the row of a cell that has ``places`` places.
 
     Examples
     --------
@@ -72,20 +72,20 @@ def copies_of(
     row: NDArray[np.uint32], events: NDArray[np.void], edges: tuple[NDArray[np.float64], ...],
     periodic: tuple[bool, bool, bool], radius: float, longest: float, *, planar: bool,
 ) -> Copies:  # fmt: skip
-    """Return what the kernels know of the copies in rows.
+    """Return the `Copies` of a grid of cells, with the description of its cells.
 
     Parameters
     ----------
     row, events
-        The memory of both.
+        The memory of the rows and of the events.
     edges
-        Of the cells along each axis [length].
+        Edges of the cells along each axis [length].
     periodic
-        Which axes are.
+        Whether each axis is periodic.
     radius
         The usual radius of a molecule [length].
     longest
-        How long an epoch may be [time].
+        Greatest length of an epoch [time].
     planar
         Whether all centres lie in one plane y = constant.
     """
@@ -107,9 +107,9 @@ def copies_of(
 
 @kernel(plain=True)
 def _farthest(edge, k, wraps):
-    """Return how far a member of cell k along an axis can be from its centre: W of `glance` [length].
+    """Return the largest distance along an axis of a member of cell k from its centre: W of `glance` [length].
 
-    It may stand in a neighbour of the cell too, anywhere.
+    A member may also be anywhere in a neighbour of the cell.
     """
     last = edge.size - 2
     low = k - 1 if k > 0 else last
@@ -121,7 +121,7 @@ def _farthest(edge, k, wraps):
 
 @kernel(plain=True)
 def describe_cells(edges, periodic, planar, copies):
-    """Write the centres of cells, and of each layer how large it is and how far the copies in it may be wrong."""
+    """Write the centres of the cells, and for each layer its size and the slack of the copies in it."""
     beside = 0.0
     for axis in range(3):
         edge = edges[axis]
@@ -130,11 +130,11 @@ def describe_cells(edges, periodic, planar, copies):
             copies.centre[axis, k] = 0.5 * (edge[k + 1] + edge[k])
             if axis == 0 or (axis == 1 and not planar):
                 beside = max(beside, _farthest(edge, k, periodic[axis]))
-        if periodic[axis]:  # beyond the last cell stands the first again
+        if periodic[axis]:  # after the last cell comes the first again
             copies.centre[axis, n] = copies.centre[axis, 0] + edge[n]
     x, y, z = edges
     area = x[x.size - 1] * (1.0 if planar else y[y.size - 1])
-    copies.slack[:] = math.inf  # where there is memory for more layers
+    copies.slack[:] = math.inf  # also for layers that the memory has room for but that do not exist
     copies.room[:] = 1.0
     for k in range(z.size - 1):
         layer = max(_farthest(z, k, periodic[2]), beside)
@@ -146,7 +146,7 @@ def describe_cells(edges, periodic, planar, copies):
 
 @kernel
 def members_of(slots):
-    """Return the cells of three slots as eight bits, by the parity of their numbers."""
+    """Return the cells of three slots as eight bits, one for each combination of parities of their numbers."""
     x = 0xFF if slots[0] & 1 else (0xF0 if slots[0] & 2 else 0x0F)
     y = 0xFF if slots[1] & 1 else (0xCC if slots[1] & 2 else 0x33)
     z = 0xFF if slots[2] & 1 else (0xAA if slots[2] & 2 else 0x55)
@@ -155,14 +155,14 @@ def members_of(slots):
 
 @kernel
 def number_of(bit, axis, slots):
-    """Return the number along an axis of that cell of three slots that has the parity of a bit."""
+    """Return the number along an axis of the cell, among those of three slots, that belongs to a bit."""
     lower = slots[axis] >> 1
     return lower + ((bit >> (2 - axis) ^ lower) & 1)
 
 
 @kernel
 def _turned(cell, number, modes):
-    """Return the number of a cell along an axis of so many; beyond the last of a periodic axis comes the first."""
+    """Return the number of a cell along an axis of ``number`` cells; a periodic axis begins again after its end."""
     if modes.periodic:
         cell -= number if cell >= number else 0
     return cell
@@ -170,7 +170,7 @@ def _turned(cell, number, modes):
 
 @kernel
 def start_of(bit, slots, cells, modes):
-    """Return where in memory the row begins of that cell of three slots that has the parity of a bit."""
+    """Return where in memory the row begins of the cell, among those of three slots, that belongs to a bit."""
     x = _turned(number_of(bit, 0, slots), cells.number_x, modes)
     y = _turned(number_of(bit, 1, slots), cells.number_y, modes)
     z = _turned(number_of(bit, 2, slots), cells.number_z, modes)
@@ -179,31 +179,31 @@ def start_of(bit, slots, cells, modes):
 
 @kernel
 def _length_of_block(modes):
-    """Return how many words a block of a row takes."""
+    """Return the number of words in a block of a row."""
     return 8 * LANES if modes.mixed else 7 * LANES
 
 
 @kernel
 def _name_of(place, modes):
-    """Return at which word of a row the name of the molecule in a place stands."""
+    """Return the word of a row that holds the index of the molecule in a place."""
     return _HEAD + place // LANES * _length_of_block(modes) + place % LANES
 
 
 @kernel
 def copies_in_block(start, block, modes):
-    """Return where the copies of a block of a row begin."""
+    """Return where in memory the copies of a block of a row begin."""
     return start + _HEAD + block * _length_of_block(modes) + _PLACE
 
 
 @kernel
 def number_of_places(cells, modes):
-    """Return how many places a row has."""
+    """Return the number of places of a row."""
     return (cells.stride - _HEAD) // _length_of_block(modes) * LANES
 
 
 @kernel
 def name_at(start, place, cells, modes):
-    """Return the molecule in a place of a row that is occupied."""
+    """Return the molecule in an occupied place of a row."""
     return np.int64(cells.row[start + _name_of(place, modes)])
 
 
@@ -217,20 +217,20 @@ def name_in(start, place, cells, modes):
 
 @kernel
 def _free_place(start, cells):
-    """Return the lowest place of a row that is not occupied."""
+    """Return the lowest place of a row that is free; `MOST` if none of the 64 is."""
     taken = cells.copies.occupied[start >> 1]
     return lowest_bit(~taken) if taken != -1 else MOST
 
 
 @kernel
 def has_place(start, cells, modes):
-    """Tell whether a row has a place left."""
+    """Return whether a row has a free place."""
     return _free_place(start, cells) < number_of_places(cells, modes)
 
 
 @kernel
 def enter(i, bit, start, cells, modes):
-    """Give molecule i a place in a row, whose copy is no number (NaN) until it is written; tell if there was none."""
+    """Give molecule i a place in a row, with NaN as its copy until that is written; return whether there was none."""
     place = _free_place(start, cells)
     if place >= number_of_places(cells, modes):
         return True
@@ -244,16 +244,16 @@ def enter(i, bit, start, cells, modes):
 
 @kernel
 def leave(i, bit, start, cells):
-    """Strike molecule i from a row."""
+    """Remove molecule i from a row."""
     cells.copies.occupied[start >> 1] &= ~own_place(i, bit, cells.copies)
 
 
 @kernel
 def path_of(at, since, gas, modes):
-    """Return the trajectory of a molecule that is where ``at`` says ``since`` after the start of the epoch: its copy.
+    """Return the trajectory to be copied of a molecule whose `Motion` is ``at`` at the time ``since`` in the epoch.
 
-    It is a `Motion` at the start of the epoch, in the frame that falls from then; of a molecule faster than copies may
-    be it is no number (NaN).
+    It is a `Motion` at the start of the epoch, in the frame that falls from then on. For a molecule faster than the top
+    speed of copies it is NaN.
     """
     top = gas.cells.copies.epoch[TOP_SPEED]
     vx, vz, fall = at.vx, at.vz, 0.0
@@ -266,7 +266,7 @@ def path_of(at, since, gas, modes):
 
 @kernel
 def write_copy(i, bit, start, path, centre, radius, copies, modes):
-    """Write the copy of molecule i, of this `path_of`, into the row of a cell with this `centre_of`."""
+    """Write the copy of molecule i, from its `path_of`, into the row of a cell with this `centre_of`."""
     place = np.int64(copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
     first = start + _name_of(place, modes)
     value = copies.value
@@ -282,14 +282,11 @@ def write_copy(i, bit, start, path, centre, radius, copies, modes):
 
 @kernel
 def fill(now, gas, modes):
-    """Write the copies of all molecules anew, as the members that they are; tell whether a row is too short for them.
-
-    This begins an epoch.
-    """
+    """Begin an epoch: write the copies of all molecules anew; return whether a row is too short for its members."""
     cells, copies, molecules = gas.cells, gas.cells.copies, gas.molecules
     for cell in range(cells.number_x * cells.number_y * cells.number_z):
         copies.occupied[((cell * cells.stride) & POSITIVE) >> 1] = 0
-    # how fast they are, and how many in each layer
+    # the largest and the mean square speed, and the number of molecules in each layer
     number = 0
     squares = 0.0
     fastest = 0.0
@@ -305,7 +302,7 @@ def fill(now, gas, modes):
         copies.horizon[slots_of(i, gas)[2] >> 1] += 1.0
     mean_square = squares / max(number, 1)
     _new_epoch(now, math.sqrt(fastest), math.sqrt(mean_square), copies, gas.box.gravity)
-    # how far ahead contacts are looked for depends on how dense a layer is
+    # how far ahead contacts are searched depends on the density of a layer
     for layer in range(copies.horizon.size):
         copies.horizon[layer] = _horizon(copies.horizon[layer] / copies.room[layer], mean_square, gas)
     for i in range(molecules.size):
@@ -328,7 +325,7 @@ def fill(now, gas, modes):
 
 @kernel
 def centre_of(bit, slots, copies):
-    """Return the centre of that cell of three slots that has the parity of a bit."""
+    """Return the centre of the cell, among those of three slots, that belongs to a bit."""
     x = copies.centre[0, number_of(bit, 0, slots) & POSITIVE]
     y = copies.centre[1, number_of(bit, 1, slots) & POSITIVE]
     z = copies.centre[2, number_of(bit, 2, slots) & POSITIVE]
@@ -337,15 +334,15 @@ def centre_of(bit, slots, copies):
 
 @kernel
 def own_place(i, bit, copies):
-    """Return the bit of the place of molecule i in the row of that of its cells which has the parity of ``bit``."""
+    """Return, as a bit of the occupied places, the place of molecule i in the row of its cell for ``bit``."""
     return np.int64(1) << np.int64(copies.place[((i << 5) + PLACE_OFFSET + bit) & POSITIVE])
 
 
 @kernel
 def _new_epoch(now, fastest, usual, copies, gravity):
-    """Begin an epoch for molecules of this greatest speed and root mean square of speed: see `glance` for its bounds.
+    """Begin an epoch for molecules of this greatest speed and root mean square speed: see `glance` for its bounds.
 
-    A few that are much faster than most are not waited for: their copies are nowhere.
+    A few molecules much faster than the others do not shorten the epoch: their copies are NaN.
     """
     epoch = copies.epoch
     width = math.inf
@@ -363,10 +360,10 @@ def _new_epoch(now, fastest, usual, copies, gravity):
 
 @kernel
 def _horizon(density, mean_square, gas):
-    """Return how far ahead to look for contacts where there are so many molecules [time]: some mean free times.
+    """Return how far ahead to search for contacts at a number density [time]: some mean free times.
 
     In a dense gas few molecules fly further. The rate of collisions is that of Enskog's theory; it need not be exact,
-    since a molecule that finds no contact until then plans anew.
+    since a molecule that finds no contact within the horizon searches again at its end.
     """
     diameter = 2.0 * gas.cells.copies.radius
     if gas.box.planar:

@@ -1,8 +1,8 @@
-"""Whom a molecule meets next, where the rows of cells hold copies of trajectories.
+"""The search for a molecule's next contact, where the rows of cells hold copies of trajectories.
 
-A molecule searches the rows of its cells when its velocity is new, and the rows of new cells alone when it reaches
-their boundary. Both are done here, so that the search is compiled once. On the way it leaves the cells that it no
-longer overlaps: nothing else ever happens because a cell is left.
+A molecule searches the rows of all its cells when its velocity is new, and the rows of new cells alone when it reaches
+their boundary. Both are done here, so that the search is compiled once. In the same step it leaves the cells that it no
+longer overlaps: leaving a cell has no event of its own.
 """
 
 from typing import Any, NamedTuple
@@ -32,18 +32,18 @@ from atmosbox.engine.exact.rows import (
 __all__ = ["CONTACT", "Found", "search"]
 
 CONTACT = 6
-"""What comes first: 0 to 5 is a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact."""
+"""Which event comes first: 0 to 5 a boundary or wall (twice the axis, plus 1 for the upper side), 6 a contact."""
 
 
 _OTHERS = (1 << 64 - LANES) - 1
-"""The bits of a word of occupied places that are left when those of a block are shifted out."""
+"""The bits that remain in a word of occupied places when those of one block are shifted out."""
 
 
 class Seeker(NamedTuple):
-    """A molecule that looks for partners.
+    """A molecule that searches for partners.
 
-    The time, its `Motion` then and its radius; for `glance`, how much higher it is in the falling frame [length], and,
-    in single precision, its velocity in that frame, the time since the start of the epoch, and the slack.
+    The time, its `Motion` then and its radius; for `glance`, how much higher it is in the falling frame [length],
+    and, in single precision, its velocity in that frame, the time since the start of the epoch, and the slack.
     """
 
     t: float
@@ -56,10 +56,10 @@ class Seeker(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search has found.
+    """The result of a search.
 
-    Where the molecule is, brought back into a periodic box; its slots; how long until its soonest contact [time] and
-    with which molecule, -1 if that contact was known before or there is none; whether a row had no place for it.
+    The `Motion` of the molecule, brought back into a periodic box; its slots; the time until its soonest contact [time]
+    and the partner, -1 if that contact was known before or there is none; whether a row had no place for the molecule.
     """
 
     at: Any
@@ -71,7 +71,7 @@ class Found(NamedTuple):
 
 @kernel
 def _narrowed(x, slot, size, axis, cells):
-    """Return the slot along an axis of a sphere centred at x that has left one of its two cells, or has not."""
+    """Return the slot along an axis of a sphere centred at x, after leaving a cell if it no longer overlaps both."""
     if slot & 1 == 1:
         return slot - (x < cells.boundary[size, axis, slot]) + (x > cells.boundary[size, axis, slot + 1])
     return slot
@@ -79,20 +79,20 @@ def _narrowed(x, slot, size, axis, cells):
 
 @kernel
 def _widened(slot, up):
-    """Return the slot of a molecule that reaches the next cell along an axis: that cell, and the one before it."""
+    """Return the slot of a molecule that reaches the next cell along an axis: that cell and the one before it."""
     lower = slot >> 1
     return 2 * (lower + (slot & 1)) + 1 if up == 1 else 2 * lower - 1
 
 
 @kernel
 def _turns(slot, number):
-    """Return how often a slot on a periodic axis of so many cells has gone round: -1, 0 or 1."""
+    """Return by how many turns, -1, 0 or 1, a slot lies outside a periodic axis of ``number`` cells."""
     return (1 if slot >= 2 * number else 0) - (1 if slot < 0 else 0)
 
 
 @kernel
 def _brought_back(i, at, sx, sy, sz, gas):
-    """Return where molecule i is, and its slots, brought back into the periodic box; write it down."""
+    """Return the `Motion` of molecule i and its slots, brought back into the periodic box; update its record."""
     cells, box, molecule = gas.cells, gas.box, gas.molecules[i]
     x, y, z = at.x, at.y, at.z
     turns = _turns(sx, cells.number_x)
@@ -115,13 +115,13 @@ def _brought_back(i, at, sx, sy, sz, gas):
 
 @kernel
 def _image_shift(q, length, inverse):
-    """Return by how much a coordinate relative to the centre of a cell must be shifted to be the nearest image."""
+    """Return by how much a coordinate relative to the centre of a cell must be shifted to become the nearest image."""
     return length * np.rint(q * inverse)
 
 
 @kernel
 def _seeker(t, at, radius, since, path, layer, gas, modes):
-    """Return the `Seeker` of a molecule in a layer: where it is at time t, and its `path_of`."""
+    """Return the `Seeker` of a molecule in a layer, from its `Motion` at time t and its `path_of`."""
     copies = gas.cells.copies
     fall = 0.5 * gas.box.gravity * since * since if modes.gravity else 0.0
     velocity = np.float32(path.vx), np.float32(path.vy), np.float32(path.vz)
@@ -136,7 +136,7 @@ def _seeker(t, at, radius, since, path, layer, gas, modes):
 
 @kernel
 def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
-    """Return the earlier of the contact known, ``after`` and ``partner``, and the first one with a member of a row.
+    """Return the earlier of the known contact (``after``, ``partner``) and the first one with a member of a row.
 
     ``own`` is the bit of the seeker's own place in the row, 0 if it has none.
     """
@@ -145,7 +145,7 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
     t, at, radius = seeker.t, seeker.at, seeker.radius
     x, y, z = at.x - centre[0], at.y - centre[1], at.z - centre[2]
     place = np.float32(x), np.float32(y), np.float32(z + seeker.fall)
-    # who may be met? All blocks are looked at before anyone is judged: the processor then guesses fewer branches wrong
+    # which members may be met? All blocks are tested first: the processor then mispredicts fewer branches
     occupied = copies.occupied[start >> 1] & ~own
     within = np.float32(after)
     named = np.int64(0)
@@ -158,7 +158,7 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
         left = (left >> LANES) & _OTHERS
         block += 1
     named &= occupied
-    # double precision judges them; the image of a member is the one nearest to the centre of the cell
+    # these are tested in double precision; the image of a member is the one nearest to the centre of the cell
     while named != 0:
         j = name_at(start, lowest_bit(named), cells, modes)
         named &= named - 1
@@ -185,21 +185,21 @@ def _soonest_in_row(start, centre, own, seeker, after, partner, gas, modes):
 
 @kernel
 def search(i, t, at, boundary, gas, modes):
-    """Bring molecule i, which is where ``at`` says at time t, into its cells, and look for its soonest contact.
+    """Update the cells of molecule i, whose `Motion` at time t is ``at``, and search for its soonest contact.
 
     Parameters
     ----------
     i, t, at
-        Its number, the time, its `Motion`.
+        Index of the molecule, the time, and its `Motion`.
     boundary
         The boundary of a cell that it has reached, 0 to 5; `CONTACT` or more if its velocity may be new.
     gas, modes
-        All the rest.
+        All data of the engine, and the flags of the scene.
 
     Returns
     -------
     Found
-        Its place, its slots and its contact.
+        Its `Motion`, its slots and its contact.
     """
     cells, copies = gas.cells, gas.cells.copies
     event = gas.events[i]
@@ -209,7 +209,7 @@ def search(i, t, at, boundary, gas, modes):
     sx = _narrowed(at.x, before[0], size, 0, cells)
     sy = _narrowed(at.y, before[1], size, 1, cells)
     sz = _narrowed(at.z, before[2], size, 2, cells)
-    # the cells that it enters: those along one axis whose number has one parity
+    # the cells that it enters: its cells in one layer across the axis; all have the same parity of that number
     crossing = boundary < CONTACT
     entered = 0xFF
     if crossing:
@@ -234,7 +234,7 @@ def search(i, t, at, boundary, gas, modes):
         bit = lowest_bit(gone)
         gone &= gone - 1
         leave(i, bit, start_of(bit, before, cells, modes), cells)
-    # who is in the others? On entering a cell, only those in it are asked for, and only sooner than what is known
+    # search the others. On entering, only the new cells are searched, and only for contacts before the known one
     after = event.contact_time - t if crossing else copies.horizon[slots[2] >> 1]
     partner = -1
     full = False

@@ -1,4 +1,4 @@
-"""When time can go no further, and which sentence says why."""
+"""When time can go no further, and the sentence that tells the user why."""
 
 import math
 
@@ -15,7 +15,7 @@ __all__ = ["crushing_height", "is_jammed", "why_crowded", "why_crushed", "why_st
 
 
 def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *, planar: bool) -> float:
-    """Return how low a ceiling may come: molecules filling 0.6 of the box, or a thousandth of the start [length].
+    """Return the lowest ceiling [length]: 0.6 of the box filled, 1.02 diameters, or a thousandth of the first height.
 
     Examples
     --------
@@ -30,11 +30,11 @@ def crushing_height(sides: NDArray[np.float64], diameter: NDArray[np.float64], *
 
 
 def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.float64], start_energy: float) -> bool:
-    """Tell whether the piston has heated the molecules a million times, as only one that crushes them can.
+    """Return whether the piston has heated the molecules a million times, as only a piston that crushes them can.
 
-    Between jammed spheres the gaps close while the speeds grow as one over them: the events have no end.
+    Between jammed spheres the gaps shrink to zero while the speeds grow as the inverse of the gaps: events have no end.
     """
-    m = molecules[: len(mass)]  # behind them there may be drops
+    m = molecules[: len(mass)]  # any drops come after them
     kinetic = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
     baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
     usual = start_energy + 2.0 * float(mass.sum()) * parcel.piston_velocity**2
@@ -42,7 +42,7 @@ def is_jammed(parcel: Parcel, molecules: NDArray[np.void], mass: NDArray[np.floa
 
 
 def why_crowded(parcel: Parcel) -> str:
-    """Return the sentence on a molecule of the liquid for which the box has no place."""
+    """Return the sentence for a molecule of the liquid that finds no place in the gas."""
     filled = packing_fraction(list(parcel.length), parcel.diameter)
     return (
         f"a molecule that evaporates finds no place among the {parcel.number} others, which fill {filled:.3g} of the "
@@ -51,7 +51,7 @@ def why_crowded(parcel: Parcel) -> str:
 
 
 def why_crushed(parcel: Parcel) -> str:
-    """Return the sentence on a piston that has come down too far."""
+    """Return the sentence for a piston that has come down too far."""
     return (
         f"the piston has come down to {parcel.ceiling:.6g} at t = {parcel.time:.6g}, where it would crush the "
         "molecules: stop it earlier, or let it move more slowly"
@@ -59,7 +59,7 @@ def why_crushed(parcel: Parcel) -> str:
 
 
 def why_stalled(parcel: Parcel) -> str:
-    """Return the sentence on why events pile up, naming what to change."""
+    """Return the sentence that says why very many events happen in no time, and what to change."""
     if parcel.piston_velocity < 0.0:
         return why_crushed(parcel)
     sides, widest = parcel.length, float(parcel.diameter.max(initial=0.0))

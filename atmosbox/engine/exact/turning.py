@@ -1,7 +1,7 @@
-"""The piston of a parcel that follows a pressure: asked and turned between events, without leaving compiled code.
+"""The piston of a parcel that follows a pressure gets new velocities between events, inside compiled code.
 
-A parcel on its way up asks for its velocity thousands of times. What the law of `lift` needs to know of the gas is read
-off the tallies here, and all that may meet the ceiling plans its next move anew.
+A parcel on its ascent sets the velocity of its piston thousands of times. What the law of `lift` needs to know of the
+gas is computed from the tallies here, and the next move of all molecules that may meet the ceiling is predicted anew.
 """
 
 import math
@@ -20,15 +20,16 @@ from atmosbox.engine.exact.search import CONTACT
 __all__ = ["HIGHEST", "LOWEST", "Ascent", "Next", "ahead", "gauges", "replan_under", "turn"]
 
 LOWEST, HIGHEST = 0.6, 1.5
-"""How high the ceiling may come, over its height when the cells were laid out, before they are laid out anew."""
+"""Lowest and highest ceiling, relative to its height when the cells were laid out; beyond, they are laid out anew."""
 
 
 class Ascent(NamedTuple):
-    """What the kernels know of a box whose piston follows a pressure.
+    """The data that the kernels need for a piston that follows a pressure.
 
-    ``lift`` the law; ``turns : (1,)`` how often the piston has turned; ``filled`` the height for which the cells were
-    laid out, ``lowest`` how low the ceiling may come [length]; the energy that there was at the start, and what changes
-    of gravity gave [energy]; degrees of freedom of a molecule of dry air, and the diameter of all [length].
+    ``lift``: the law; ``turns : (1,)``: how often the velocity of the piston has been set; ``filled``: the height for
+    which the cells were laid out, ``lowest``: how low the ceiling may come [length]; the energy at the start, and the
+    energy from changes of gravity [energy]; degrees of freedom of a molecule of dry air, and the diameter of all
+    [length].
     """
 
     lift: Lift
@@ -42,7 +43,7 @@ class Ascent(NamedTuple):
 
 
 class Next(IntEnum):
-    """What ends a stretch of even motion of the piston: the time asked for, its next turn, or that it is too low."""
+    """What ends an interval of constant piston velocity: the time asked for, the next setting, or too low a ceiling."""
 
     END = 0
     TURN = 1
@@ -51,7 +52,7 @@ class Next(IntEnum):
 
 @kernel
 def ahead(until, gas, ascent):
-    """Return when the piston is next to be asked, or ``until`` if that comes first [time], and which: a `Next`."""
+    """Return when the velocity of the piston must next be set, or ``until`` if that is earlier [time]; and a `Next`."""
     piston = gas.walls.piston
     stop = until
     what = Next.END
@@ -69,7 +70,7 @@ def ahead(until, gas, ascent):
 
 @kernel
 def gauges(t, number, freedom, condensed, gas, ascent):
-    """Return the `Gauges` of a gas at time t, of which so much energy [energy] is that of the liquid."""
+    """Return the `Gauges` of a gas at time t; ``condensed`` is the energy of the liquid [energy]."""
     box, tallies, piston = gas.box, gas.tallies, gas.walls.piston
     open_height = piston[0] + piston[1] * (t - piston[2]) - ascent.diameter
     share = box.length_x - (ascent.diameter if box.inverse_x == 0.0 else 0.0)
@@ -97,9 +98,9 @@ def gauges(t, number, freedom, condensed, gas, ascent):
 
 @kernel
 def replan_under(lowest, now, gas, modes):
-    """Plan anew, at time ``now``, the moves of all that may meet the ceiling, or that were to meet it.
+    """Predict anew, at time ``now``, the next moves of all molecules that may meet the ceiling, or were to meet it.
 
-    Below ``lowest``, the lowest place of the ceiling before it is asked again, a molecule leaves its slot first.
+    A molecule whose slot ends below ``lowest``, the lowest height of the ceiling until it is set again, is skipped.
     """
     for i in range(gas.molecules.size):
         if modes.phases and math.isinf(gas.molecules[i].clock):
@@ -119,7 +120,7 @@ def replan_under(lowest, now, gas, modes):
 
 @kernel
 def turn(t, at, gas, ascent, modes):
-    """Give the piston its next velocity at time t, the gas being as ``at`` says; tell whether the cells still fit."""
+    """Set the velocity of the piston at time t for the gauges ``at``; return whether the cells still fit the box."""
     piston = gas.walls.piston
     velocity = ceiling_velocity(at, ascent.lift)
     ceiling = piston[0] + piston[1] * (t - piston[2])

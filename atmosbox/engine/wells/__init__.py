@@ -1,7 +1,7 @@
-"""Molecules that attract each other, from event to event: a square well about each of them. Read from top to bottom.
+"""Molecules that attract each other, with a square well around each; event-driven. Read from top to bottom.
 
-`attraction`           how far and how deep the wells are, pair of species by pair; a bath that draws velocities anew
-`vicinity`             whom a molecule can meet soon, and whose well it is in
+`attraction`           range and depth of the wells for each pair of species; a bath that draws velocities anew
+`vicinity`             lists of the neighbours that a molecule can meet soon, and of those in its well
 `well_events`          captures, releases, and the loop over events
 `attracting_parcelset` the box of such molecules, advanced exactly
 `attracting_reference` the same model, slow and simple: the tests compare with it

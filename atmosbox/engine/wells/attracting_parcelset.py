@@ -1,4 +1,4 @@
-"""The parcel of molecules that attract each other, advanced exactly: a gas that condenses to a liquid."""
+"""The parcel of molecules that attract each other, advanced exactly: a gas that can condense to a liquid."""
 
 from typing import ClassVar, Unpack
 
@@ -27,24 +27,24 @@ _KINDS = 64
 class AttractingParcelSet(ParcelSet):
     """A set of molecules that attract each other, with its box, advanced exactly.
 
-    What it is given besides, and what it tells, is described at `Parcel`. Its potential energy is that of the wells and
+    Its other parameters, and its properties, are described at `Parcel`. Its potential energy is that of the wells and
     of gravity.
 
     Parameters
     ----------
     well
-        How far and how strongly they attract each other.
+        Range and depth of the attraction.
     species : (molecule,)
-        Whole numbers from 0: rows of the tables of the well. All molecules are alike by default.
+        Whole numbers from 0: rows of the tables of the well. All molecules are of species 0 by default.
     strength
-        The depth of all wells, over that of their law; it may be changed while time passes.
+        Factor of the depth of all wells; it may be changed during the run.
     bath
         A heat bath that draws velocities anew, or none.
 
     Raises
     ------
     RefusedError
-        If a piston or rotation is asked for, a periodic side is too short for the wells, or a table does not fit.
+        If there is a piston or rotation, a periodic side is too short for the wells, or a table does not fit.
 
     References
     ----------
@@ -52,7 +52,7 @@ class AttractingParcelSet(ParcelSet):
 
     Examples
     --------
-    Two molecules that meet at a relative speed of 2 are captured, collide, part, and climb out of the well again:
+    Two molecules that meet at a relative speed of 2 are captured, collide, move apart, and leave the well again:
 
     >>> pair = AttractingParcelSet(
     ...     [[4, 5, 5], [7, 5, 5]], [[1, 0, 0], [-1, 0, 0]], length=(10, 10, 10), well=SquareWell(1.5, 1.0)
@@ -126,7 +126,7 @@ class AttractingParcelSet(ParcelSet):
         self._wells.depth[:] *= self._strength
 
     def _lay_out(self) -> None:
-        """Make the lists of all molecules, and plan every event anew."""
+        """Make the lists of all molecules, and predict all events anew."""
         n = len(self._fields)
         self._filled = self.ceiling
         reach = float(self._wells.distance.max(initial=0.0))
@@ -179,36 +179,36 @@ class AttractingParcelSet(ParcelSet):
 
     @property
     def _clocks(self) -> Array:
-        """When the bath acts."""
+        """The time of the next draw of the bath."""
         clock: Array = self._bath.clock
         return clock
 
     def memory(self) -> int:
-        """Return the bytes that molecules, events, lists and calendar take."""
+        """Return the memory of molecules, events, lists and calendar [bytes]."""
         arrays = [self._molecules, self._events, self._calendar.time, self._calendar.winner, self._kinds.table]
         arrays += [part for part in (*self._vicinity, *self._wells) if isinstance(part, np.ndarray)]
         return sum(int(a.nbytes) for a in arrays)
 
-    # ------------------------------------------------------------------ what it tells
+    # ------------------------------------------------------------------ the state
 
     def energy(self) -> tuple[float, float, float]:
-        """Return kinetic, rotational and potential energy now [energy]: that of gravity and of the wells."""
+        """Return kinetic, rotational and potential energy now [energy]; potential: of gravity and of the wells."""
         kinetic, rotational, potential = super().energy()
         return kinetic, rotational, potential + self.well_energy
 
     @property
     def well_energy(self) -> float:
-        """Potential energy of all pairs that are in each other's well now, 0 or below [energy]."""
+        """Potential energy of all pairs that are inside their wells now, 0 or below [energy]."""
         return -float(np.sum(self._wells.depth * self._wells.number)) if self._wells.number.any() else 0.0
 
     @property
     def number_of_wells(self) -> int:
-        """How many pairs are in each other's well now."""
+        """Number of pairs that are inside their wells now."""
         return int(self._wells.number.sum())
 
     @property
     def well_events(self) -> dict[str, int]:
-        """Numbers of captures, releases, bounces in the well, and velocities drawn anew since the start."""
+        """Numbers of captures, releases, bounces in a well, and velocities drawn anew since the start."""
         names = ("captures", "releases", "bounces", "drawn")
         return {name: int(count) for name, count in zip(names, self._wells.count, strict=True)}
 
@@ -223,7 +223,7 @@ class AttractingParcelSet(ParcelSet):
         return float(self._bath.heat[0])
 
     def pairs(self) -> NDArray[np.int64]:
-        """Return the pairs that are in each other's well now, (pair, 2), the lower number first."""
+        """Return the pairs that are inside their wells now, (pair, 2), the lower index first."""
         n, stride = len(self._fields), self._vicinity.stride
         entry = self._vicinity.entry.reshape(n, stride)
         listed = np.arange(1, stride)[None, :] <= entry[:, :1]
@@ -233,10 +233,10 @@ class AttractingParcelSet(ParcelSet):
         return np.stack([first[lower], second[lower]], axis=1)
 
     def neighbours(self) -> NDArray[np.int64]:
-        """Return in how many wells each molecule is now, (molecule,)."""
+        """Return the number of neighbours that each molecule has inside its well now, (molecule,)."""
         return np.bincount(self.pairs().reshape(-1), minlength=len(self._fields))
 
-    # ------------------------------------------------------------------ what may be changed
+    # ------------------------------------------------------------------ changes during a run
 
     @property
     def attraction_work(self) -> float:
@@ -245,14 +245,14 @@ class AttractingParcelSet(ParcelSet):
 
     @property
     def strength(self) -> float:
-        """The depth of the wells, over that of their law."""
+        """Factor of the depth of all wells."""
         return self._strength
 
     def set_strength(self, strength: float) -> None:
-        """Let all wells have another depth from now on: this many times that of their law.
+        """Set the depth of all wells from now on: a factor of the depth that `SquareWell` gives.
 
-        No molecule moves in that moment, but those in wells lie deeper or less deep; the ledger has it as
-        `attraction_work`.
+        No molecule moves at that moment, but the potential energy of the pairs in wells changes; the ledger holds the
+        change as `attraction_work`.
 
         Raises
         ------
@@ -274,7 +274,7 @@ class AttractingParcelSet(ParcelSet):
         self._replan(self._gas(), self._now)
 
     def set_bath_kT(self, kT: float) -> None:
-        """Keep the random bath at another temperature [energy] from now on; a schedule that it had is forgotten.
+        """Set the temperature of the random bath [energy] from now on; it replaces the bath's schedule.
 
         Raises
         ------

@@ -1,8 +1,8 @@
-r"""The definition of the model with attraction, slow and obvious: what `attracting_parcelset` must agree with.
+r"""The definition of the model with attraction, slow and simple: `attracting_parcelset` must agree with it.
 
-As in `reference`, everything that lies ahead is worked out from scratch before every event. Which pairs are inside
-their wells is a plain set. Inside, the gap :math:`\lambda^2 \sigma^2 - |r + v t|^2` to the edge of the well is a
-parabola too, one that always closes.
+As in `reference`, all possible events are computed from scratch before every event. The pairs inside
+their wells are a plain set. Inside, the gap :math:`\lambda^2 \sigma^2 - |r + v t|^2` to the edge of the well is a
+parabola too, and it always closes.
 """
 
 import itertools
@@ -29,7 +29,7 @@ _KINDS = {"contact": CORE, "capture": CAPTURE, "release": RELEASE}
 class AttractingReference(Reference):
     """A box of a few molecules that attract each other.
 
-    Its further events are "capture", "release" and "drawn", a velocity that the bath draws anew.
+    Its additional kinds of events are "capture", "release" and "drawn": the bath draws a velocity anew.
 
     Parameters
     ----------
@@ -83,11 +83,11 @@ class AttractingReference(Reference):
             self.draws_at = self.time - float(log_of_normal(uniform(self.random))) / rate
 
     def energy(self) -> float:
-        """Return kinetic and potential energy together, that of the wells included [energy]."""
+        """Return the sum of kinetic and potential energy, that of the wells included [energy]."""
         return super().energy() - sum(float(self.depth[pair]) for pair in self.inside)
 
     def ahead(self) -> list[Event]:
-        """Return every event that lies ahead if no other came before it, the soonest first."""
+        """Return all possible events, each as if no other came before it, in order of time."""
         drawn = [Event(self.draws_at, "drawn", 0, 0)] if self.draws_at < math.inf else []
         return sorted([*super().ahead(), *drawn])
 

@@ -1,4 +1,4 @@
-"""What a box of molecules that attract each other is given besides: its wells, and a bath of random velocities."""
+"""The additional parameters of a box of attracting molecules: its wells, and a bath of random velocities."""
 
 import math
 from dataclasses import dataclass
@@ -20,20 +20,20 @@ _WIDEST = 5.0
 
 @dataclass(frozen=True)
 class SquareWell:
-    """How far and how strongly molecules attract each other.
+    """Range and depth of the attraction between molecules.
 
     Parameters
     ----------
     range
-        Where the well ends, in contact distances of the pair: lambda, from 1 to 5.
+        Radius of the well in units of the contact distance of the pair: lambda, from 1 to 5.
     depth
-        How deep it is [energy], 0 or above.
+        Depth of the well [energy], 0 or above.
 
-    Either may be a symmetric table, (species, species). Where a range is 1 or a depth 0, the pair are hard spheres.
+    Either may be a symmetric table, (species, species). With a range of 1 or a depth of 0, the pair are hard spheres.
 
     Examples
     --------
-    Vapour that attracts itself, and air that neither attracts it nor itself:
+    Vapour molecules that attract each other, and air molecules that neither attract vapour nor each other:
 
     >>> SquareWell(range=1.5, depth=[[1.0, 0.0], [0.0, 0.0]]).depth
     [[1.0, 0.0], [0.0, 0.0]]
@@ -45,14 +45,14 @@ class SquareWell:
 
 @dataclass(frozen=True)
 class RandomBath:
-    """A heat bath without walls: now and then it draws the velocity of a molecule anew.
+    """A heat bath without walls: at random times it draws the velocity of a molecule anew.
 
     Parameters
     ----------
     kT
-        Its temperature [energy], a number or a schedule.
+        Temperature of the bath [energy], a number or a schedule.
     rate
-        How often it does so with each molecule, on average [1/time].
+        Average number of such draws per molecule and time [1/time].
 
     References
     ----------
@@ -64,10 +64,10 @@ class RandomBath:
 
 
 class Wells(NamedTuple):
-    """The wells as the kernels know them.
+    """The wells in the form that the kernels take.
 
-    ``core``, ``edge`` and ``depth : (kind, kind)``: see `square_well.Well`; ``distance : (kind, kind)`` is the edge
-    [length]. ``number : (kind, kind)``: how many pairs of a lower and a higher kind are inside their wells now.
+    ``core``, ``edge`` and ``depth : (kind, kind)``: see `square_well.Well`; ``distance : (kind, kind)`` is the radius
+    [length]. ``number : (kind, kind)``: the pairs of a lower and a higher kind that are inside their wells now.
     ``count : (4,)`` captures, releases, bounces, velocities drawn anew by the bath; ``stress : (axis,)`` sums of
     r_a dp_a over all events of pairs since the start [energy].
     """
@@ -82,10 +82,11 @@ class Wells(NamedTuple):
 
 
 class Bath(NamedTuple):
-    """The bath as the kernels know it.
+    """The bath in the form that the kernels take.
 
-    ``clock : (1,)`` when it acts next [time, local]; ``rate`` how often it does with each molecule [1/time]; the
-    polygon of its temperature as that of a wall, see `state.Walls`; ``heat : (1,)`` what it has given [energy].
+    ``clock : (1,)``: the time of the next draw [time, local]; ``rate``: draws per molecule and time [1/time];
+    ``schedule``, ``schedule_time``, ``schedule_kT``: its temperature as that of a wall, see `state.Walls`;
+    ``heat : (1,)``: the energy that it has given [energy].
     """
 
     clock: Any
@@ -97,7 +98,7 @@ class Bath(NamedTuple):
 
 
 def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
-    """Return range and depth as tables, (species, species), or refuse; a table may hold more species than are there.
+    """Return range and depth as tables, (species, species), after checks; larger tables are cut to that size.
 
     Raises
     ------
@@ -132,7 +133,7 @@ def well_table(well: SquareWell, species: int) -> tuple[Array, Array]:
 
 
 def new_wells(well: SquareWell, species: NDArray[np.int64], radius: Array) -> Wells:
-    """Return the wells of kinds of molecules: ``species : (kind,)`` and ``radius : (kind,)`` [length].
+    """Return the wells of the kinds of molecules: ``species : (kind,)`` and ``radius : (kind,)`` [length].
 
     Examples
     --------
@@ -159,7 +160,7 @@ def new_wells(well: SquareWell, species: NDArray[np.int64], radius: Array) -> We
 
 
 def new_bath(bath: RandomBath | None) -> Bath:
-    """Return a bath, checked; without one, nothing that ever acts.
+    """Return a bath for the kernels, after checks; without a bath, one that never acts.
 
     Examples
     --------

@@ -1,20 +1,21 @@
-r"""Whom a molecule can meet soon: its vicinity, a list of neighbours; and of each neighbour, whether it is in its well.
+r"""The vicinity of a molecule: a list of the neighbours it can meet soon, and for each, whether it is inside the well.
 
-Every molecule has a **shell**, a sphere about the place where it stood when its list was made (its anchor). While both
+Every molecule has a **shell**, a sphere about the place where it was when its list was made (its anchor). While both
 are within their shells, two molecules whose anchors are farther apart than
 
 .. math:: \lambda\sigma + s_i + s_j
 
-cannot reach the edge of each other's well. So each lists those that are nearer, searches for contacts among these
-alone, and makes its list anew when it leaves its shell; the lists of the others are changed along with it, so that each
-of a pair always lists the other or neither does. A shell is narrow where molecules are crowded, and wide in a thin
-gas::
+cannot reach the edge of each other's well. So the list of a molecule holds those that are nearer, and it searches for
+contacts among them alone. When a molecule leaves its shell, its list is made anew; the lists of the others are changed
+with it, so that either both molecules of a pair list each other or neither does. A shell is narrow where molecules are
+crowded, and wide in a thin gas::
 
     list of i    | n | 2 j + 1 | 2 k | ...        j is in the well of i, k is near but outside
 
-The last bit of an entry is the memory of the law: an event of the pair sets it in both lists, and nothing else does.
+The last bit of an entry remembers whether the pair is inside its well: only an event of the pair changes it, in both
+lists.
 
-Anchors are filed in cells, each a chain from molecule to molecule, that are looked through when a list is made.
+Anchors are sorted into cells, each a linked chain of molecules, which are searched when a list is made.
 
 References
 ----------
@@ -41,20 +42,20 @@ __all__ = [
 _WIDTHS = 12
 _RATIO = 0.85
 _NEIGHBOURS = 16
-"""Measured: with so many neighbours, or few more, a dense liquid goes fastest."""
+"""Intended number of neighbours; measured: a dense liquid is fastest with this number, or slightly more."""
 _FALL = 0.125
-"""Which part of a shell is kept for the fall in gravity, so that its end is found on a straight line."""
+"""Fraction of a shell's radius reserved for the fall in gravity, so that a straight line gives the time to leave it."""
 _END = -1
 
 
 class Vicinity(NamedTuple):
-    """Shells, lists and cells, as the kernels know them.
+    """Shells, lists and cells in the form that the kernels take.
 
     ``entry : (molecule * stride,)``: the lists. ``anchor : (molecule, 4)``: x, y, z and the radius of the shell
-    [length]; ``width : (width,)`` the radii to choose from, the widest first. ``cell``, ``next`` and ``previous :
+    [length]; ``width : (width,)``: the radii to choose from, the widest first. ``cell``, ``next`` and ``previous :
     (molecule,)`` and ``first : (cell,)``: chains of molecules, -1 at both ends. ``mark`` and ``found : (molecule,)``,
-    ``gap : (molecule,)`` [length^2]: scratch. ``reach`` is the farthest edge of any pair [length]; ``number_*`` and
-    ``inverse_*`` the number of cells along an axis, and one over their width [1/length].
+    ``gap : (molecule,)`` [length^2]: working memory. ``reach`` is the largest edge of any pair [length]; ``number_*``
+    and ``inverse_*`` the number of cells along an axis, and one over their width [1/length].
     """
 
     entry: Any
@@ -80,7 +81,7 @@ class Vicinity(NamedTuple):
 def new_vicinity(
     sides: NDArray[np.float64], periodic: tuple[bool, bool, bool], number: int, reach: float, *, planar: bool
 ) -> Vicinity:
-    """Return empty lists for so many molecules that feel each other over so far at most [length].
+    """Return empty lists for ``number`` molecules whose attraction reaches as far as ``reach`` at most [length].
 
     Examples
     --------
@@ -124,7 +125,7 @@ def new_vicinity(
 
 @kernel
 def time_to_leave_shell(i, at, gas, modes):
-    """Return how long molecule i, which is where ``at`` says, stays within its shell at least [time from now]."""
+    """Return for how long molecule i, whose `Motion` is ``at``, surely stays within its shell [time from now]."""
     anchor = gas.vicinity.anchor
     rx, ry, rz = at.x - anchor[i, 0], at.y - anchor[i, 1], at.z - anchor[i, 2]
     radius = anchor[i, 3]
@@ -144,13 +145,13 @@ def time_to_leave_shell(i, at, gas, modes):
 
 @kernel
 def is_inside(entry):
-    """Tell whether the neighbour of an entry is in the well."""
+    """Return whether the neighbour of an entry is inside the well."""
     return entry & 1 == 1
 
 
 @kernel
 def _place_of(i, j, vicinity):
-    """Return where in memory the entry of j stands in the list of i, -1 if it does not."""
+    """Return where in memory the list of i has its entry of j, -1 if it has none."""
     start = (i * vicinity.stride) & POSITIVE
     place = -1
     for q in range(start + 1, start + 1 + np.int64(vicinity.entry[start])):
@@ -161,14 +162,14 @@ def _place_of(i, j, vicinity):
 
 @kernel
 def set_inside(i, j, inside, vicinity):
-    """Note in both lists whether i and j are in each other's well."""
+    """Store in both lists whether i and j are inside each other's well."""
     vicinity.entry[_place_of(i, j, vicinity)] = 2 * j + (1 if inside else 0)
     vicinity.entry[_place_of(j, i, vicinity)] = 2 * i + (1 if inside else 0)
 
 
 @kernel
 def _append(i, entry, vicinity):
-    """Write an entry at the end of the list of molecule i."""
+    """Add an entry at the end of the list of molecule i."""
     start = (i * vicinity.stride) & POSITIVE
     n = np.int64(vicinity.entry[start]) + 1
     vicinity.entry[start + n] = entry
@@ -177,7 +178,7 @@ def _append(i, entry, vicinity):
 
 @kernel
 def _strike(i, j, vicinity):
-    """Strike j from the list of molecule i."""
+    """Remove j from the list of molecule i."""
     start = (i * vicinity.stride) & POSITIVE
     vicinity.entry[_place_of(i, j, vicinity)] = vicinity.entry[start + np.int64(vicinity.entry[start])]
     vicinity.entry[start] -= 1
@@ -185,13 +186,13 @@ def _strike(i, j, vicinity):
 
 @kernel
 def _cell_along(x, inverse, number):
-    """Return the cell of a coordinate along an axis; what is beyond the ends counts to the last one."""
+    """Return the cell of a coordinate along an axis; a coordinate beyond an end belongs to the cell at that end."""
     return min(max(np.int64(math.floor(x * inverse)), 0), number - 1)
 
 
 @kernel
 def _leave_cell(i, vicinity):
-    """Take molecule i out of its cell."""
+    """Remove molecule i from its cell."""
     before, after = np.int64(vicinity.previous[i]), np.int64(vicinity.next[i])
     if before >= 0:
         vicinity.next[before] = after
@@ -203,7 +204,7 @@ def _leave_cell(i, vicinity):
 
 @kernel
 def enter(i, x, y, z, vicinity):
-    """File molecule i, whose anchor is at x, y, z, in its cell."""
+    """Put molecule i, whose anchor is at x, y, z, into its cell."""
     cx = _cell_along(x, vicinity.inverse_x, vicinity.number_x)
     cy = _cell_along(y, vicinity.inverse_y, vicinity.number_y)
     cz = _cell_along(z, vicinity.inverse_z, vicinity.number_z)
@@ -222,7 +223,7 @@ def enter(i, x, y, z, vicinity):
 
 @kernel
 def _span(x, reach, inverse, number, turns):
-    """Return the first cell along an axis within reach of a coordinate, and how many; cells go on across a border."""
+    """Return the first cell within reach of a coordinate along an axis, and how many; a periodic axis has no ends."""
     low = np.int64(math.floor((x - reach) * inverse))
     high = np.int64(math.floor((x + reach) * inverse))
     if not turns:
@@ -236,13 +237,13 @@ def _span(x, reach, inverse, number, turns):
 
 @kernel
 def _around(cell, number):
-    """Return a cell along an axis brought back among so many; it may be one turn beyond."""
+    """Return the number of a cell along an axis of ``number`` cells, which may be one period outside it."""
     return cell + number if cell < 0 else (cell - number if cell >= number else cell)
 
 
 @kernel
 def _gather(i, x, y, z, gas, modes):
-    """Note all molecules that could stand in the list of i with the widest shell; return how many."""
+    """Collect all molecules that could be in the list of i if its shell were the widest; return how many."""
     vicinity, box = gas.vicinity, gas.box
     anchor = vicinity.anchor
     reach = vicinity.reach + 2.0 * vicinity.width[0]
@@ -269,7 +270,7 @@ def _gather(i, x, y, z, gas, modes):
 
 @kernel
 def _shell_for(number, vicinity):
-    """Return the radius of the shell of a molecule that so many could be near to [length]: fewer if it is narrow."""
+    """Return the radius of the shell for a molecule with ``number`` candidates [length]: narrow if they are many."""
     widest = vicinity.reach + 2.0 * vicinity.width[0]
     chosen = vicinity.width[vicinity.width.size - 1]
     for k in range(vicinity.width.size - 1, -1, -1):
@@ -291,13 +292,13 @@ def well_of(i, j, gas, modes):
 
 @kernel
 def _turns_back(x, length, inverse):
-    """Return what to take off a coordinate to bring it into a periodic box [length]: none between walls."""
+    """Return what to subtract from a coordinate to bring it into a periodic box [length]; 0 between walls."""
     return length * math.floor(x * inverse) if inverse > 0.0 else 0.0
 
 
 @kernel
 def _lists(i, j, gap, shell, gas, modes):
-    """Tell whether i, with such a shell, and j list each other: ``gap`` is how far their anchors are, squared."""
+    """Return whether i, with this shell, and j list each other: ``gap`` is the squared distance of their anchors."""
     vicinity = gas.vicinity
     limit = vicinity.reach
     if modes.mixed:
@@ -308,7 +309,7 @@ def _lists(i, j, gap, shell, gas, modes):
 
 @kernel
 def bring_back(i, at, gas):
-    """Bring molecule i, which is where ``at`` says, back into a periodic box; return its `Motion` there."""
+    """Bring molecule i, whose `Motion` is ``at``, back into a periodic box; return its `Motion` there."""
     box, molecule = gas.box, gas.molecules[i]
     dx = _turns_back(at.x, box.length_x, box.inverse_x)
     dy = _turns_back(at.y, box.length_y, box.inverse_y)
@@ -321,16 +322,16 @@ def bring_back(i, at, gas):
 
 @kernel
 def renew(i, at, fresh, gas, modes):
-    """Make the list of molecule i anew, which is where ``at`` says, and a shell about it.
+    """Make the list of molecule i, whose `Motion` is ``at``, and its shell anew.
 
     Parameters
     ----------
     i, at
         The molecule and its `Motion`, within the box: see `bring_back`.
     fresh
-        Whether a pair that is new to the lists may be inside its well: at the start of all.
+        Whether the distance decides if a pair that is new to the lists is inside its well; only at the start.
     gas, modes
-        All the rest.
+        All data of the engine, and the flags of the scene.
 
     Returns
     -------
@@ -340,7 +341,7 @@ def renew(i, at, fresh, gas, modes):
     vicinity = gas.vicinity
     gathered = _gather(i, at.x, at.y, at.z, gas, modes)
     shell = _shell_for(gathered, vicinity)
-    # who of them is listed, and do all lists have room?
+    # which of them are listed, and do all lists have room?
     number = 0
     full = False
     for q in range(gathered):
@@ -368,7 +369,7 @@ def renew(i, at, fresh, gas, modes):
                     inside = vicinity.gap[q] < well.edge and well.edge > well.core
                 _append(j, 2 * i + (1 if inside else 0), vicinity)
             vicinity.mark[j] = 3 + (1 if inside else 0)
-        # those that are listed no more
+        # those that are no longer listed
         for q in range(start + 1, start + 1 + before):
             j = np.int64(vicinity.entry[q]) >> 1
             if vicinity.mark[j] < 3:

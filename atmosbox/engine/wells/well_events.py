@@ -1,7 +1,7 @@
-"""The loop over events where molecules attract each other.
+"""The loop over events for molecules that attract each other.
 
-Every molecule holds one event, as in `exact`: the next core or edge that it reaches with a neighbour, the end of its
-shell, or a wall, whichever comes first. Beside them stands the bath, which draws a velocity anew at times of its own.
+Every molecule has one event, as in `exact`: the next core or edge that it reaches with a neighbour, the end of its
+shell, or a wall, whichever comes first. In addition the bath draws velocities anew at times of its own.
 """
 
 import functools
@@ -39,12 +39,12 @@ from atmosbox.engine.wells.vicinity import (
 __all__ = ["WellGas", "specialise"]
 
 SHELL = CONTACT + 4
-"""What comes first: 0 to 5 a wall, 6 to 8 `CORE`, `CAPTURE` and `RELEASE` of a pair, 10 the end of the shell."""
+"""Which event comes first: 0 to 5 a wall, 6 to 8 `CORE`, `CAPTURE` or `RELEASE` of a pair, 10 the end of the shell."""
 _BATH = 3
 
 
 class WellGas(NamedTuple):
-    """All that these kernels work on: see `state.Gas`."""
+    """All data of these kernels: see `state.Gas`."""
 
     molecules: Any
     events: Any
@@ -60,7 +60,7 @@ class WellGas(NamedTuple):
 
 @kernel
 def _next_wall(i, at, gas, modes):
-    """Return when molecule i next hits a wall [time from now], ``inf`` if there is none, and which."""
+    """Return when molecule i next hits a wall [time from now], ``inf`` if never, and the number of the wall."""
     box = gas.box
     _, radius, _ = kind_of(i, gas, modes)
     time = math.inf
@@ -83,7 +83,7 @@ def _next_wall(i, at, gas, modes):
 
 @kernel
 def _plan(i, t, at, gas, modes):
-    """Work out all that lies ahead of molecule i, which is where ``at`` says at time t; write it down."""
+    """Predict the next event of molecule i, whose `Motion` at time t is ``at``, and enter it in the calendar."""
     vicinity, event = gas.vicinity, gas.events[i]
     time, what = _next_wall(i, at, gas, modes)
     after = time_to_leave_shell(i, at, gas, modes)
@@ -113,7 +113,7 @@ def _plan(i, t, at, gas, modes):
 
 @kernel
 def _meet(i, j, t, at, which, gas, modes):
-    """Resolve what a pair does at its core or edge; return the `Motion` of both after it."""
+    """Resolve the event of a pair at its core or edge; return the `Motion` of both after it."""
     wells, tallies = gas.wells, gas.tallies
     other = motion_at(j, t, gas, modes)
     r = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, gas.box, modes)
@@ -145,7 +145,7 @@ def _meet(i, j, t, at, which, gas, modes):
 
 @kernel
 def _draw_anew(t, gas, modes):
-    """Let the bath draw the velocity of some molecule anew at time t; return which, and its `Motion` after it."""
+    """Draw the velocity of a random molecule anew at time t; return its number, and its `Motion` after it."""
     bath, state = gas.bath, gas.tallies.random
     number = gas.molecules.size
     i = min(int(uniform(state) * number), number - 1)
@@ -167,14 +167,14 @@ def _draw_anew(t, gas, modes):
 
 @kernel
 def time_until_bath(number, gas):
-    """Return how long until the bath acts next on one of so many molecules [time from now]."""
+    """Return the time until the bath acts on one of ``number`` molecules [time from now]."""
     rate = gas.bath.rate * number
     return -log_of_normal(uniform(gas.tallies.random)) / rate if rate > 0.0 else math.inf
 
 
 @kernel
 def _fetch_ahead(gas):
-    """Fetch what the runners-up of the tournament will need: see `exact`."""
+    """Fetch into the cache the data of the molecules whose events may come next: see `exact`."""
     for node in range(2, 8):
         i = np.int64(gas.calendar.winner[node])
         prefetch(gas.molecules, i)
@@ -184,7 +184,7 @@ def _fetch_ahead(gas):
 
 @kernel
 def proceed(gas, until, most, modes):
-    """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
+    """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and their number."""
     tallies = gas.tallies
     done = 0
     status = Status.BUSY
@@ -227,7 +227,7 @@ def proceed(gas, until, most, modes):
                     stale += 1 if j != i else 0
                     j = -1
         done += 1
-        # both plan anew; in one loop, so that it is compiled once
+        # the events of both are predicted anew; in one loop, so that the code is compiled once
         m = i
         while True:
             _plan(m, t, at, gas, modes)
@@ -248,7 +248,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def place(gas, now):
-        """Make the lists of all molecules at the start, time ``now``, unless one is too short; let them plan."""
+        """Make the lists of all molecules at time ``now`` and have their events predicted; stop at a full list."""
         vicinity = gas.vicinity
         vicinity.first[:] = -1
         vicinity.cell[:] = -1
@@ -278,13 +278,13 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel(entry=True)
     def advance(gas, until, most):
-        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` and how many."""
+        """Resolve events up to time ``until``, at most ``most`` of them; return a `Status` as a number and how many."""
         status, done = proceed(gas, until, most, modes)
         return status.value, done
 
     @kernel(entry=True)
     def replan(gas, now):
-        """Let all molecules plan anew at time ``now``."""
+        """Have the events of all molecules predicted anew at time ``now``."""
         for i in range(gas.molecules.size):
             call(i, now, gas)
 

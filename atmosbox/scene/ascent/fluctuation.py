@@ -105,7 +105,6 @@ def vapour_covariance(cloud: Cloud, samples: int) -> Array:
     gone = np.zeros((len(none), 2))
     gone[:, 0] = -1.0
     # deviation from theory's vapour at the pressure that the gas then has
-
     pressure = cloud.warms - np.array([1.0, 0.0]) / cloud.gas[:, None]
     seen = gone - cloud.vapour_slope[:, None] * pressure
     return _covariance(

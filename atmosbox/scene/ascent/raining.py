@@ -140,8 +140,7 @@ def walk(cloud: Cloud) -> Walk:
         a = min(max((surplus - excess) / spread, -_FAR), _FAR)
         often, density = _normal(a)
         falls = spread * max(a * often + density, 0.0)
-    # within a step R and its mean relax exponentially towards their steady values
-
+        # within a step R and its mean relax exponentially towards their steady values
         passes = cloud.rains * often * steps[k]
         part = passes * _mean(passes)
         moves = np.array([[1.0, warms[k]], [-part * dries[k], 1.0 - part]])

@@ -1,8 +1,7 @@
-"""Which engine advances the molecules, and with which options.
+"""The engine that advances the molecules, and its options.
 
 An engine is chosen by its name, and its options by their values after a colon, as in
-``stepped:delta=0.02,motion=euler``. The same words stand on the command line, in a settings file and in
-the output.
+``stepped:delta=0.02,motion=euler``. The command line, a settings file and the output all use this form.
 """
 
 from atmosbox.scene.engines.declared import ENGINES, Engine

@@ -1,4 +1,4 @@
-"""Every engine as it is declared: its name, its options, and the class of its boxes."""
+"""The declaration of every engine: its name, its options, and the class of its boxes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["ENGINES", "Engine"]
 
 @dataclass(frozen=True)
 class Engine:
-    """An engine as it is declared.
+    """The declaration of an engine.
 
     Parameters
     ----------
@@ -27,19 +27,19 @@ class Engine:
     summary
         What it does, in one line.
     parcel
-        Returns the class of its parcels; nothing of the engine is imported before.
+        Function that returns the class of its parcels; nothing of the engine is imported before it is called.
     parameters
         Its options.
     ideal
         Whether the pressure is n kT, without Z: its molecules have no excluded volume.
     reference
-        Where its method is published.
+        Publication of its method.
     moist
-        Returns the class of its parcels with a liquid in them, if it has one.
+        Function that returns the class of its parcels with a liquid in them, if there is one.
     attracting
-        Returns the class of its parcels of molecules that attract each other, if it has one.
+        Function that returns the class of its parcels of molecules that attract each other, if there is one.
     stirred
-        Returns the class of its columns that are stirred, if it has one.
+        Function that returns the class of its stirred columns, if there is one.
     """
 
     name: str
@@ -185,4 +185,4 @@ ENGINES: Mapping[str, Engine] = MappingProxyType(
         )
     }
 )
-"""The engines by name, the one that is right to rounding first."""
+"""The engines by name; the first is exact up to rounding."""

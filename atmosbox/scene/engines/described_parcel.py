@@ -1,4 +1,4 @@
-"""A box that is checked and described but never advanced, for what is told of a scene before a run."""
+"""A box that is checked and described but never advanced, for descriptions of a scene before a run."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ __all__ = ["DescribedParcel"]
 
 
 class DescribedParcel(Parcel):
-    """Molecules in a box that no engine has laid out: nothing is compiled for it, and it cannot advance.
+    """Molecules in a box without an engine: nothing is compiled for it, and it cannot advance.
 
-    Whatever `Parcel` itself refuses is refused; that molecules overlap is not seen.
+    It refuses whatever `Parcel` itself refuses, but does not notice molecules that overlap.
 
     Parameters
     ----------
     liquid
-        The liquid in the box, of which nothing is asked.
+        The liquid in the box; it is not used.
     well, species, strength, bath
-        What molecules that attract each other have besides, of which nothing is asked either.
+        The attraction of molecules that attract each other; not used either.
     stirring
-        How the air is stirred, of which nothing is asked either.
+        How the air is stirred; not used either.
 
     Examples
     --------
@@ -56,7 +56,7 @@ class DescribedParcel(Parcel):
         self._molecules = Snapshot(0.0, position, velocity, rotational_energy)
 
     def snapshot(self) -> Snapshot:
-        """Return all molecules as they are at the start."""
+        """Return all molecules in their state at the start."""
         return self._molecules
 
     def advance(self, until: float, watch: Callable[[float], Any] | None = None) -> None:
@@ -68,10 +68,10 @@ class DescribedParcel(Parcel):
         return sum(int(np.asarray(part).nbytes) for part in self._molecules)
 
     def _drive(self) -> None:
-        """Leave the piston at rest: its driver would compile what it computes."""
+        """Leave the piston at rest, because its driver would compile kernels."""
 
     def _piston_turned(self) -> None:
-        """Need nothing: no event was predicted."""
+        """Do nothing: no event was predicted."""
 
     def _field_changes(self, gravity: float) -> None:
         self._gravity = gravity

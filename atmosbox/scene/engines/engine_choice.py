@@ -1,4 +1,4 @@
-"""The engine that is asked for, with its options: checked once."""
+"""The engine that a user or a scene chooses, with its options, checked once."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["EXACT", "FEW", "EngineChoice", "choose", "names", "suited", "used"]
 
 FEW = 5000
-"""Up to so many molecules a scene whose gas is thin runs on the exact engine: see `suited`."""
+"""Largest number of molecules with which a scene of thin gas runs on the exact engine: see `suited`."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class EngineChoice:
     options
         The options that were given, by name; the engine has its own defaults for the rest.
     described
-        Whether its boxes are only described: checked, but never advanced, so that nothing has to be compiled.
+        Whether its boxes are only described: checked, but never advanced, so that nothing is compiled.
 
     Examples
     --------
@@ -51,7 +51,7 @@ class EngineChoice:
     described: bool = False
 
     def __str__(self) -> str:
-        """Return the words that ask for it."""
+        """Return the text that chooses this engine."""
         known = {parameter.name: parameter for parameter in self.engine.parameters}
         options = ",".join(f"{name}={known[name].typed(value)}" for name, value in self.options.items())
         return self.engine.name + (f":{options}" if options else "")
@@ -67,21 +67,21 @@ class EngineChoice:
         return self.engine.ideal or self.options.get("collisions") is False
 
     def scatter(self, length: Sequence[float], diameter: ArrayLike, rng: Source, **options: Any) -> NDArray[np.float64]:
-        """Return centres at random in a box: `atmosbox.engine.random_positions`, for a box that `make` is to make."""
+        """Return random centres in a box that `make` is to make; see `atmosbox.engine.random_positions`."""
         from atmosbox.engine import random_positions
 
         return random_positions(length, diameter, rng, apart=not self.described, **options)
 
     def make(self, position: ArrayLike, velocity: ArrayLike, **box: Any) -> Parcel:
-        """Return a parcel of this engine: what a scene calls in place of `atmosbox.engine.ParcelSet`.
+        """Return a parcel of this engine; a scene calls this in place of `atmosbox.engine.ParcelSet`.
 
         Raises
         ------
         RefusedError
-            If the engine cannot do what the box asks for.
+            If the engine cannot do what the box requires.
         SettingError
-            If there is a ``liquid`` in the box, a ``well`` about its molecules, or ``stirring``, and the engine
-            knows none.
+            If the box has a ``liquid``, a ``well`` about its molecules, or ``stirring``, and the engine has no class
+            for it.
         """
         kind: Callable[[], Callable[..., Parcel]] = self.engine.parcel
         if "liquid" in box:
@@ -121,7 +121,7 @@ def names() -> tuple[str, ...]:
 
 
 def choose(text: str | EngineChoice) -> EngineChoice:
-    """Return the engine that a text asks for.
+    """Return the engine that a text names.
 
     Parameters
     ----------
@@ -159,11 +159,11 @@ def choose(text: str | EngineChoice) -> EngineChoice:
 
 
 def suited(molecules: int) -> str:
-    """Return the engine that suits so many molecules of a thin gas: the exact one for few, dsmc for more than `FEW`.
+    """Return the engine that suits a thin gas of ``molecules``: the exact one for few, dsmc for more than `FEW`.
 
-    What dsmc leaves out, the volume of molecules, is less than chance in a thin gas; it takes a quarter of the time or
-    less, and so has time for more molecules, which scatter less. Few molecules are watched one by one, and should meet
-    where they are seen to meet.
+    The excluded volume, which dsmc leaves out, is less than the statistical error in a thin gas. As dsmc takes a
+    quarter of the time or less, it can have more molecules, which scatter less. Few molecules are watched one by one,
+    and should collide where they are seen to touch.
 
     Examples
     --------
@@ -186,4 +186,4 @@ def used(dataset: xr.Dataset) -> EngineChoice:
 
 
 EXACT = EngineChoice(ENGINES["exact"])
-"""The engine that a scene runs on unless it names another, or another is asked for."""
+"""The engine of a scene that names no other, unless the user asks for another."""

@@ -1,4 +1,4 @@
-"""Vapour and liquid in exchange until both rates are equal: the theory that the scenes of it share."""
+"""Vapour and liquid that exchange molecules until both rates are equal: the theory that these scenes share."""
 
 from atmosbox.scene.exchange.drop_growth import DropGrowth, DropKind
 from atmosbox.scene.exchange.emission import energy_of_those_that_leave, temperature_of_those_that_left

@@ -1,4 +1,4 @@
-"""Drops of two kinds in a closed box of moist air, by theory: they grow and shrink, and share the vapour."""
+"""Drops of two kinds in a closed box of moist air, according to theory: they grow and shrink, and share the vapour."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class DropKind:
-    """Drops that are alike: how many, with how many dissolved particles, around a core of which volume [m^3]."""
+    """Drops that are alike: their number, the dissolved particles in each, and the volume of its core [m^3]."""
 
     count: int
     particles: float
@@ -30,13 +30,13 @@ class DropKind:
 class DropGrowth:
     r"""Drops that share the vapour of a box, at one temperature, by the law of Hertz and Knudsen.
 
-    A drop whose radius is drawn w times too large catches vapour on its area a, and loses as much as is in balance with
-    the humidity :math:`S_n` over it,
+    A drop whose radius is drawn w times too large catches vapour on its area a. It loses as many molecules as the
+    humidity :math:`S_n` in balance with it would supply,
 
     .. math:: \dot n = J\, [a_n S - a_{n-1} S_n], \qquad S = (W - \textstyle\sum n) / W_s
 
-    with the flux J of saturated vapour, all the water W of the box and the vapour :math:`W_s` that saturates the room
-    that the drops leave.
+    with the flux J of saturated vapour, the number W of all molecules of water in the box, and the number :math:`W_s`
+    of molecules of vapour that saturates the space outside the drops.
 
     Parameters
     ----------
@@ -45,15 +45,15 @@ class DropGrowth:
     kinds
         The kinds of drops.
     water
-        How many molecules of water are in each drop at the start.
+        Number of molecules of water in each drop at the start.
     width
-        How many times wider the drops are than real ones, w.
+        Ratio w of the width of the drops in the box to that of real drops.
     tension
         Surface tension [N/m].
 
     Examples
     --------
-    Without salt drops of sixty molecules vanish at 250 % of humidity:
+    Without salt, drops of sixty molecules evaporate completely at a humidity of 250 %:
 
     >>> growth = DropGrowth(MoistBox(6000, 293.15, 1e4, 2.5), (DropKind(2, 0.0, 3e-29),), 60, 3.0, 0.0727)
     >>> number, humidity = growth.path(np.array([0.0, 1e-7]))
@@ -72,18 +72,18 @@ class DropGrowth:
         return BOLTZMANN * self.box.temperature
 
     def radius(self, number: ArrayLike, kind: DropKind) -> Array:
-        """Return the real radius of a drop of so many molecules [m]."""
+        """Return the real radius of a drop of ``number`` molecules [m]."""
         return law.drop_radius(number, law.WATER_VOLUME, kind.core)
 
     def area(self, number: ArrayLike, kind: DropKind) -> Array:
-        """Return the area on which the centres of molecules meet a drop [m^2]."""
+        """Return the area on which the centres of molecules hit a drop [m^2]."""
         area: Array = 4.0 * np.pi * (self.width * self.radius(number, kind) + 0.5 * DRY_AIR.diameter) ** 2
         return area
 
     def over(self, number: ArrayLike, kind: DropKind) -> Array:
-        """Return the humidity over a drop: that of n - 1/2 molecules, between which and one fewer it changes.
+        """Return the humidity in balance with a drop, taken at n - 1/2 molecules, halfway between n - 1 and n.
 
-        A drop so wide also pushes the gas away from the volume that it gains (Poynting).
+        A drop in the box is so wide that it also pushes the gas away from the volume that it gains (Poynting).
         """
         n = np.asarray(number, np.float64)
         half = np.maximum(n - 0.5, 0.0)
@@ -98,16 +98,16 @@ class DropGrowth:
 
     @functools.cached_property
     def flux(self) -> float:
-        """How much saturated vapour meets an area [1/(m^2 s)]."""
+        """Flux of saturated vapour that hits an area [1/(m^2 s)]."""
         return float(law.hertz_knudsen_flux(self.box.temperature))
 
     @property
     def _all(self) -> float:
-        """How many molecules of water there are in all."""
+        """Number of all molecules of water, in vapour and drops."""
         return self.box.vapour + self.water * sum(kind.count for kind in self.kinds)
 
     def humidity(self, number: Array) -> Array:
-        """Return the relative humidity when the drops of each kind hold so many molecules: ``number : (kind, ...)``."""
+        """Return the relative humidity when each drop of a kind holds ``number : (kind, ...)`` molecules."""
         volume = (self.box.side * self.box.scale.length) ** 3
         vapour, room = np.full(number.shape[1:], float(self._all)), np.ones(number.shape[1:])
         for n, kind in zip(number, self.kinds, strict=True):
@@ -118,7 +118,7 @@ class DropGrowth:
         return share
 
     def rates(self, number: Array, humidity: ArrayLike) -> Array:
-        """Return how many molecules a drop of each kind gains per time [1/s], in air of a humidity."""
+        """Return how many molecules a drop of each kind gains per time [1/s], at a relative humidity."""
         air, gained = np.asarray(humidity, np.float64), []
         for n, kind in zip(number, self.kinds, strict=True):
             lost = self.area(np.maximum(n - 1.0, 0.0), kind) * self.over(n, kind)
@@ -139,11 +139,11 @@ class DropGrowth:
         return number, self.humidity(number)
 
     def scatter(self, time: Array, number: Array, humidity: Array) -> tuple[Array, Array, Array]:
-        r"""Return how far chance spreads the drops of the first kind: two variances and a time, each ``(time,)``.
+        r"""Return how far fluctuations spread the drops of the first kind: two variances and a time, each ``(time,)``.
 
-        A drop is hit and left at random, :math:`2 J a S` times per time. The mean of c drops comes back, within the
-        time :math:`\tau`, because the vapour that they lack is missing in the air; that each differs from their mean
-        only the law of Koehler holds back, or drives on:
+        Molecules hit and leave a drop at random, :math:`2 J a S` times per unit of time. The mean of c drops returns
+        within the time :math:`\tau`, because vapour in the drops is missing in the air. Only the law of Koehler
+        restores, or amplifies, the difference of a drop from the mean:
 
         .. math:: \frac1\tau = J a \left[\frac{c}{W_s} + \frac{dS_n}{dn}\right], \qquad
                   \dot V_m = \frac{2 J a S}{c} - \frac{2 V_m}{\tau}, \qquad
@@ -152,7 +152,7 @@ class DropGrowth:
         Returns
         -------
         (ndarray, ndarray, ndarray)
-            Variance of the mean number of molecules, that of the differences from it, and the time to come back [s].
+            Variance of the mean number of molecules, variance of the differences from it, relaxation time [s].
         """
         kind, n = self.kinds[0], number[0]
         steep = 0.5 * (self.over(n + 1.0, kind) - self.over(np.maximum(n - 1.0, 0.0), kind))
@@ -167,6 +167,6 @@ class DropGrowth:
 
 
 def _relaxed(value: float, gained: float, rate: float, step: float) -> float:
-    """Return what dV/dt = gained - rate V makes of a value in a step of time."""
+    """Return the solution of dV/dt = gained - rate V after a step of time, from a value at its start."""
     decayed = -np.expm1(-rate * step)
     return float(value * (1.0 - decayed) + (gained / rate * decayed if rate else gained * step))

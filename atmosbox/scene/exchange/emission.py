@@ -1,4 +1,4 @@
-"""Molecules that leave a pool: with which energy, and how warm the pool was then."""
+"""Molecules that leave a pool: their energy, and the temperature of the pool when they left."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ __all__ = ["energy_of_those_that_leave", "temperature_of_those_that_left"]
 def temperature_of_those_that_left(dataset: xr.Dataset) -> float:
     """Return the mean temperature of the liquid at the moments when molecules left it [K]; NaN if none did.
 
-    A pool that is lost now and then is made of a molecule or two that came from the gas, and has its temperature.
+    If the liquid has no temperature in some frames, that of the gas is taken: a pool that disappears now and then
+    consists of a molecule or two that came from the gas, and has its temperature.
     """
     always = bool(np.isfinite(dataset.liquid_temperature.values).all())
     warm = (dataset.liquid_temperature if always else dataset.gas_temperature).values
@@ -30,7 +31,7 @@ def temperature_of_those_that_left(dataset: xr.Dataset) -> float:
 
 
 def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int) -> tuple[Headline, ...]:
-    """Return the mean energy of those that leave, if many have left a pool of many.
+    """Return the mean energy of the molecules that leave, if many have left a pool of many molecules.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
     start
         The air over its pool.
     few
-        How many are too few.
+        Below this number, molecules or pool are too few.
     """
     left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
     if min(left, start.pool) < few or not np.isfinite(dataset.liquid_temperature.values).all():

@@ -1,4 +1,4 @@
-"""Moist air in a closed box of one temperature, by theory: what saturates it, and how soon."""
+"""Moist air in a closed box of one temperature, according to theory: what saturates it, and how soon."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class MoistBox:
     Parameters
     ----------
     molecules
-        How many there are, of air and of vapour.
+        Number of molecules, of air and of vapour together.
     temperature, pressure
         Of the walls [K], and of the gas at the start [Pa].
     humidity
@@ -35,7 +35,7 @@ class MoistBox:
 
     Examples
     --------
-    What condenses is what is too much; the fewer molecules there are, the more they scatter about that:
+    The excess over saturation condenses; with fewer molecules it fluctuates more:
 
     >>> box = MoistBox(10_000, 293.15, 1e5, 1.5)
     >>> box.vapour, round(box.full)
@@ -80,51 +80,51 @@ class MoistBox:
 
     @property
     def full(self) -> float:
-        """How many molecules of vapour saturate the air, as far as pressure tells."""
+        """Number of molecules of vapour that saturates the air, by the ratio of the pressures."""
         return self.molecules * self.saturated / self.pressure
 
     @property
     def vapour(self) -> int:
-        """How many molecules of vapour there are at the start."""
+        """Number of molecules of vapour at the start."""
         return vapour_molecules(self.molecules, self.humidity * self.saturated, self.pressure)
 
     @functools.cached_property
     def share(self) -> float:
-        """Mean vapour pressure over that of saturation: a little less than 1, if so few molecules can saturate it."""
+        """Mean vapour pressure over that of saturation: below 1 if there is hardly enough water to saturate the air."""
         return self.share_at(self.temperature)
 
     def share_at(self, temperature: float) -> float:
-        """Return the same when the walls of this box have another temperature [K]: then its water may not suffice."""
+        """Return `share` for walls of another temperature [K]: there the water may not suffice for saturation."""
         room = (self.side * self.scale.length) ** 3 / self._packing[1]
         full = float(law.saturation_vapor_pressure(temperature)) * room / (BOLTZMANN * temperature)
         return law.isothermal_vapor_number(self.vapour, temperature, room).mean / full
 
     @property
     def flux(self) -> float:
-        """How many molecules meet the liquid per area and time once they have settled [1/(m^2 s)]."""
+        """Number of molecules that hit the liquid per area and time in equilibrium [1/(m^2 s)]."""
         return self.flux_at(self.temperature)
 
     def flux_at(self, temperature: float) -> float:
-        """Return the same when the walls of this box have another temperature [K]."""
+        """Return `flux` for walls of another temperature [K]."""
         return self.share_at(temperature) * float(law.hertz_knudsen_flux(temperature))
 
     def over_drops(self, liquid: ArrayLike, drops: ArrayLike, ball: float) -> NDArray[np.float64]:
-        r"""Return the vapour pressure over drops at rest, over that of saturation.
+        r"""Return the vapour pressure over drops in equilibrium, over that of saturation.
 
         A drop that takes up a molecule pushes the gas away from the volume v that the molecule fills, which includes
         the volume excluded to the centres of others. That work raises the vapour pressure (Poynting),
 
         .. math:: e = e_s\, e^{n v} \frac{L + 1}{L + D} .
 
-        Real molecules fill too little for that to show: drops s times too wide fill s^3 times too much. The last
-        factor counts the ways to share L molecules out among D drops, some of which have none to give.
+        The volume of real molecules is too small to show this: drops s times too wide have s^3 times the volume. The
+        last factor counts the ways to divide L molecules among D drops; an empty drop has none to lose.
 
         Parameters
         ----------
         liquid, drops : (time,)
-            How many molecules L are in how many drops D.
+            Number L of molecules in the drops, and number D of drops.
         ball
-            Radius of the ball that a molecule fills, and of a nucleus [diameter].
+            Radius of the sphere that a molecule fills, and of a nucleus [diameter].
 
         Examples
         --------
@@ -143,9 +143,9 @@ class MoistBox:
     def memory(self, faces: float) -> float:
         r"""Return the correlation time of the number of molecules of vapour [s].
 
-        A surplus must find liquid, :math:`4V/A\bar c`, but its latent heat must leave the droplets with the air that
-        hits them, and the air with the walls: until then the liquid is too warm to keep it. A hit takes 3 kT along.
-        With the share x of the vapour and :math:`\ell = L/kT`,
+        Surplus vapour must reach the liquid, :math:`4V/A\bar c`; in addition its latent heat must pass from the
+        droplets to the air that hits them, and from the air to the walls: until then the liquid is too warm to keep the
+        molecules. A hit carries 3 kT. With the share x of the vapour and :math:`\ell = L/kT`,
 
         .. math:: \frac{4 V}{A \bar c_v} + \frac{x \ell^2}{3} \frac{4 V}{\bar c_a} \left[\frac1A + \frac1{A_w}\right].
 

@@ -1,4 +1,4 @@
-"""Air over a pool at constant pressure, by theory: its equilibrium, and how long it takes to get there."""
+"""Air over a pool at constant pressure, according to theory: its equilibrium, and the time to reach it."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 __all__ = ["AirOverPool"]
 
 FLATNESS = 0.3
-"""Height of the box over its width: the flatter, the oftener every molecule meets the pool."""
+"""Height of the box over its width: in a flatter box every molecule hits the pool more often."""
 CLOSING = 5.0
-"""Within how many mean free times the piston closes a gap of pressure, unless sound needs a third of that."""
+"""Time in which the piston closes a gap in pressure [mean free times], at least three times what sound needs."""
 AIR_HEAT = 3.5
 """Heat capacity of a molecule of air at constant pressure, in k."""
 
-_stiffness = getattr(stiffness, "py_func", stiffness)  # asked once: not worth compiling
+_stiffness = getattr(stiffness, "py_func", stiffness)  # called once: not worth compiling
 
 
 @dataclass
@@ -37,11 +37,11 @@ class AirOverPool:
     Parameters
     ----------
     molecules
-        How many there are in the gas at the start, of air and of vapour.
+        Number of molecules in the gas at the start, of air and of vapour together.
     pool
-        How many there are in the liquid at the start.
+        Number of molecules in the liquid at the start.
     diameter
-        Of a molecule [m].
+        Diameter of a molecule [m].
     temperature, pressure, vapour_pressure
         At the start [K, Pa, Pa].
     ideal
@@ -54,8 +54,8 @@ class AirOverPool:
     vapour, air
         Numbers of molecules at the start.
     free_time, exchange, closing, settling
-        Mean free time; how long a molecule of vapour takes to meet the pool; how long the piston takes to close a gap
-        of pressure; and the time to equilibrium [reduced time].
+        Mean free time; mean time until a molecule of vapour hits the pool; time in which the piston closes a gap in
+        pressure; and time to equilibrium [reduced time].
     """
 
     molecules: int
@@ -91,12 +91,12 @@ class AirOverPool:
 
     @property
     def end(self) -> law.EvaporationEquilibrium:
-        """Where a large parcel ends: the balance of enthalpy."""
+        """Final state of a large parcel, from the balance of enthalpy."""
         return law.evaporation_equilibrium(self.pressure, self.temperature, self.air, self.vapour, self.pool)
 
     @functools.cached_property
     def rest(self) -> law.IsobaricWater:
-        """What a parcel of so few molecules comes to on average."""
+        """Mean final state of a parcel of so few molecules."""
         return law.isobaric_water(self.pressure, self.temperature, self.air, self.vapour, self.pool)
 
     @property
@@ -105,7 +105,7 @@ class AirOverPool:
         return float(self.sides[0] * self.sides[1]) * self.scale.length**2
 
     def vapour_pressure_at(self, temperature: float) -> float:
-        """Return the vapour pressure between walls of a temperature [K]: saturation, or all the water there is [Pa].
+        """Return the vapour pressure between walls of a temperature [K]: saturation, or that of all the water [Pa].
 
         Examples
         --------
@@ -119,13 +119,13 @@ class AirOverPool:
         return min(float(law.saturation_vapor_pressure(temperature)), self.pressure * water / (water + self.air))
 
     def rate(self, vapour_pressure: NDArray[np.float64] | float, temperature: NDArray[np.float64] | float) -> Any:
-        """Return how many molecules of vapour meet the pool per time [1/s]."""
+        """Return the number of molecules of vapour that hit the pool per time [1/s]."""
         flux = law.hertz_knudsen_flux(temperature)
         return flux * vapour_pressure / law.saturation_vapor_pressure(temperature) * self.floor
 
     @property
     def latent(self) -> float:
-        """Latent heat of a molecule at the end, over kT: also by how many per cent e_s rises with one of T."""
+        """Latent heat of a molecule at the end, over kT; also d ln e_s / d ln T."""
         return law.BINDING_TEMPERATURE / self.rest.temperature - law.LIQUID_HEAT_CAPACITY + law.VAPOR_HEAT_CAPACITY
 
     @property
@@ -136,12 +136,12 @@ class AirOverPool:
         return gas + law.LIQUID_HEAT_CAPACITY * max(self.pool + self.vapour - rest.vapor, 0.0)
 
     def loss(self, time: float) -> float:
-        r"""Return how much heat the piston may have taken by a time [reduced], in kelvins of all there is.
+        r"""Return how much heat the piston may have taken until a time [reduced], as cooling of the whole parcel [K].
 
-        It moves when the pressure has changed, which is a little late: while it recedes the pressure is above that
-        outside, and more work is done than is needed; while it closes in, less. Of a change S of ln p, at once, that
-        costs :math:`S^2 / 2 \Gamma` of p V. The noise that the heat between pool and air makes in ln p costs its
-        variance over :math:`\Gamma`, again within each time that the piston needs.
+        The piston moves a little after the pressure has changed: while it recedes, the inner pressure is above the
+        outer one, and the gas does more work than it needs; while the piston closes in, less. A sudden change S of ln p
+        costs :math:`S^2 / 2 \Gamma` of p V. The fluctuations of ln p that the heat exchange between pool and air causes
+        cost their variance over :math:`\Gamma`, once in each time that the piston needs.
         """
         rest = self.rest
         later = self.air + rest.vapor
@@ -154,8 +154,9 @@ class AirOverPool:
         return kelvin
 
     def walk(self, time: float) -> float:
-        r"""Return by how much chance lets that heat scatter from run to run [K].
+        r"""Return the standard deviation of that heat from run to run, as temperature [K].
 
-        The variance of work is twice what is lost of it, in kT (Jarzynski 1997, doi:10.1103/PhysRevLett.78.2690).
+        The variance of the work is twice the work lost, in units of kT (Jarzynski 1997,
+        doi:10.1103/PhysRevLett.78.2690).
         """
         return math.sqrt(2.0 * self.rest.temperature * self.loss(time) / self.heat_capacity)

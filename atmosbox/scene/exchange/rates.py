@@ -1,4 +1,4 @@
-"""How the scenes of vapour and liquid are shown."""
+"""The panel that shows how vapour and liquid approach equilibrium."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ __all__ = ["history"]
 def history(
     title: str, curves: dict[str, str], label: str, unit: str = "", *, parts: int, headline: str = "", theory: str = ""
 ) -> Panel:
-    """Return a panel of curves over the logarithm of time, for all happens at first.
+    """Return a panel of curves over the logarithm of time, because most of the change happens at the start.
 
     Parameters
     ----------
     title
-        What it shows, as a sentence.
+        Title of the panel, a sentence.
     curves
-        Names of variables, and what they are called.
+        Names of variables, with the label of each.
     label, unit
-        Of the vertical axis.
+        Label and unit of the vertical axis.
     parts
-        Into how many equal parts of the axis of time the curves are averaged.
+        Number of equal parts of the axis of time over which the curves are averaged.
     headline
-        Name of the number that is written into it.
+        Name of the number that is written into the panel.
     theory
-        What the theory of the first curve is called; none if empty.
+        Label of the theory of the first curve; empty for none.
 
     Examples
     --------

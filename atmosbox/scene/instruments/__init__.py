@@ -1,7 +1,7 @@
-"""Instruments: what a scene measures, each one a class that samples the molecules and keeps the readings.
+"""Instruments: what a scene measures. Each is a class that samples the molecules and keeps the readings.
 
-A scene carries only the instruments that it needs. Each is shown the box several times a frame (``sample``) and
-at the end of every frame (``end_frame``); asked at any time (``readings``), it gives what it has, in SI
+A scene has only the instruments that it needs. The run shows the box to each of them several times a frame (``sample``)
+and at the end of every frame (``end_frame``); ``readings`` returns at any time what has been measured so far, in SI
 units, by the names that `atmosbox.file.variables` declares.
 """
 

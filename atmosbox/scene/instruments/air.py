@@ -46,7 +46,7 @@ class Air:
     Parameters
     ----------
     barometer
-        The walls whose pressure is that of the air: ``all`` of them, or the ``floor``.
+        The walls that measure the air pressure: ``all`` of them, or the ``floor``.
     """
 
     def __init__(self, barometer: str = "all") -> None:
@@ -112,8 +112,8 @@ class Air:
         if not self._rows:
             return Readings()
         columns = {name: np.array([row[name] for row in self._rows]) * units.get(name, 1) for name in self._rows[0]}
-        if not columns["numerical_heat"].any():  # most schemes make none
+        if not columns["numerical_heat"].any():  # most ways of advancing make none
             del columns["numerical_heat"]
-        if not columns["work_by_gravity"].any():  # few boxes have it changed while they run
+        if not columns["work_by_gravity"].any():  # gravity changes during the run in few boxes only
             del columns["work_by_gravity"], columns["gravity"]
         return Readings(columns)

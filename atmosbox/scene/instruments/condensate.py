@@ -1,4 +1,4 @@
-"""Drops of molecules that attract each other: who belongs to one, and what energy and pressure they have."""
+"""Drops of molecules that attract each other: which molecules form a drop, and their energy and pressure."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from atmosbox.scene.units import Scale
 __all__ = ["CROWDED", "Clusters", "drops_of"]
 
 CROWDED = 5
-"""In how many wells a molecule must be to count as liquid; one of the vapour is in one or two, one in a drop in ten."""
+"""Number of wells in which a molecule counts as liquid: in vapour a molecule is in one or two, in a drop in ten."""
 
 
 def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:
     """Return the drop of each molecule, 0 for the largest, and -1 for a molecule of the vapour.
 
-    Molecules in `CROWDED` wells or more are liquid; those in each other's well are of one drop, and so is a molecule
-    at its surface that is in the well of one of them.
+    Molecules in `CROWDED` wells or more are liquid; two of them in each other's well belong to the same drop. A
+    molecule at the surface, in the well of one of them, belongs to that drop as well.
 
     Parameters
     ----------
     pairs : (pair, 2)
-        Who is in whose well.
+        Pairs of molecules that are in each other's well.
     number
-        How many molecules there are.
+        Number of molecules.
 
     Returns
     -------
     (molecule,) ndarray
-        Numbers of drops.
+        Number of the drop of each molecule.
 
     Examples
     --------
@@ -66,12 +66,12 @@ def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:
 class Clusters:
     """The largest drop, the free vapour, the energy of attraction, the heat of the bath, the pressure inside.
 
-    The pressure is that of the motion and of what pairs hand on, :math:`p = n k T + W / 3 V`; it needs no wall.
+    The pressure is the sum of the kinetic part and the virial part, :math:`p = n k T + W / 3 V`; it needs no wall.
 
     Parameters
     ----------
     molecules
-        How many of the molecules attract each other, the first ones.
+        Number of molecules that attract each other; they are the first ones.
     """
 
     def __init__(self, molecules: int) -> None:
@@ -86,7 +86,7 @@ class Clusters:
         self._kT.append(temperature(parcel, snapshot))
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Count the drops, and read what has been summed up."""
+        """Count the drops, and read the sums of the frame."""
         n = self._molecules
         drop = drops_of(parcel.pairs(), parcel.number)[:n]
         lasted = parcel.time - self._time

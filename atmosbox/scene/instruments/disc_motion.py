@@ -1,4 +1,4 @@
-"""Every disc of a plane gas, and the accounts of their energy and momentum."""
+"""Every disc of a plane gas, and the balance of their energy and momentum."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ Array = NDArray[np.float64]
 
 
 class Discs:
-    """Every disc of a plane gas, the energies of the light and the heavy half, and the momentum account.
+    """Every disc of a plane gas, the energies of the light and the heavy half, and the balance of momentum.
 
-    Where a wall was warmed by hand, its heat is no change of the energy; and from then on the momentum account is NaN.
+    Heat from a wall that was warmed by hand does not count as a change of energy; from then on the residual of the
+    momentum is NaN.
     """
 
     def __init__(self) -> None:
@@ -38,7 +39,7 @@ class Discs:
         """Need no sample between frames."""
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Remember all discs."""
+        """Store all discs."""
         outward = parcel.wall_impulse
         self._given.append(np.array([outward[0] - outward[1], outward[2] - outward[3], outward[4] - outward[5]]))
         self._heat.append(float(parcel.wall_heat.sum()))
@@ -49,7 +50,7 @@ class Discs:
         self._mass, self._diameter, self._length = parcel.mass, parcel.diameter, parcel.length
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the discs and their accounts."""
+        """Return the discs and the balance of their energy and momentum."""
         if not self._position:
             return Readings()
         velocity = np.array(self._velocity)
@@ -58,7 +59,7 @@ class Discs:
         p = np.array(self._momentum)
         missing = (p - np.array(self._given)) - (p[0] - self._given[0])
         heat = np.array(self._heat) - self._heat[0]
-        # a warm wall pushes sideways, too, which no account has
+        # a warm wall pushes sideways, too, and that impulse is not counted
         residual = np.where(np.logical_or.accumulate(self._warmed), np.nan, np.sqrt(np.sum(missing**2, axis=1)))
         size = math.sqrt(2.0 * float(self._mass.sum()) * float(total[0])) or 1.0
         order = np.argsort(self._mass, kind="stable")

@@ -1,4 +1,4 @@
-"""The drops that can be seen: how many, how large."""
+"""The visible drops: their number and sizes."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ __all__ = ["DropSizes"]
 class DropSizes:
     """The number of drops, the radius of the largest, and the area of all on which molecules hit them.
 
-    Molecules hit a drop when their centres are half a diameter from it. The area is the mean over the samples within a
-    frame, the other two are those at its end.
+    A molecule hits a drop when its centre is half a diameter from the surface of the drop. The area is the mean over
+    the samples within a frame; number and radius are those at its end.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class DropSizes:
         self._rows: list[tuple[float, float, float]] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Sum the areas."""
+        """Sum the areas of the drops."""
         reach = parcel.drops()[1] + 0.5 * float(parcel.diameter[0])
         self._area.append(4.0 * np.pi * float(np.sum(reach**2)))
 

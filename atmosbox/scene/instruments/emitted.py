@@ -1,4 +1,4 @@
-"""With which energy molecules leave the liquid."""
+"""The energies of the molecules that leave the liquid."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ __all__ = ["Leaving"]
 
 
 class Leaving:
-    """The share of the molecules that evaporate by energy, above that of a molecule at rest in the liquid.
+    """Histogram of the energies of the molecules that evaporate, counted from a molecule at rest in the liquid.
 
-    Where the pool has been covered by hand, also how much of it was open at the end of each frame.
+    Where the pool has been covered by hand, also which share of it was open at the end of each frame.
 
-    That is the binding energy and what they fly and rotate with outside. Below the binding energy none leaves, and
-    the bins there stay empty. All that have left since the start are counted: each is independent of the others, so
-    that the standard error of a share q of n is sqrt(q (1 - q) / n).
+    This energy is the binding energy plus the translational and rotational energy outside the liquid. No molecule
+    leaves with less than the binding energy, and the bins below it stay empty. All molecules that have left since the
+    start are counted. They are independent of each other, so that the standard error of a share q of n is
+    sqrt(q (1 - q) / n).
 
     Parameters
     ----------
     binding_energy
-        What it takes to pull a molecule out of the liquid [reduced energy].
+        Energy that pulls a molecule out of the liquid [reduced energy].
     merged
-        How many of the engine's bins make one.
+        Number of the engine's bins that are merged into one.
     """
 
     def __init__(self, binding_energy: float, merged: int = 2) -> None:
@@ -42,13 +43,13 @@ class Leaving:
         """Need no sample of single molecules."""
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Read how many have left with which energy, and how much of the surface is open."""
+        """Read the energies of the molecules that have left, and how much of the surface is open."""
         self._open.append(float(parcel._reservoir.rates[STICKING]))
         edges, counts = parcel.emitted_energy
         self._edges, self._counts = edges[:: self._merged], counts.reshape(-1, self._merged).sum(axis=1)
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the histogram, from no energy at all on; see `Instrument`."""
+        """Return the histogram, which begins at zero energy; see `Instrument`."""
         width = float(self._edges[1])
         below = np.linspace(0.0, self._binding, max(round(self._binding / width), 1), endpoint=False)
         edges = np.concatenate([below, self._binding + self._edges]) * scale.energy

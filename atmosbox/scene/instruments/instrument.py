@@ -1,4 +1,4 @@
-"""What every instrument does, and what it gives."""
+"""The methods that every instrument has, and the type of its readings."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ class Readings(dict[str, Any]):
 
 
 class Instrument(Protocol):
-    """What every instrument does."""
+    """The methods that every instrument has."""
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Read off what a frame takes its mean of."""
+        """Take one sample of what is averaged over a frame."""
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Read off what stands at the end of a frame, and finish its means."""
+        """Read what is measured at the end of a frame, and finish the means of the frame."""
 
     def readings(self, scale: Scale, settle: int) -> Readings:
         """Return what has been measured; averages leave out the first ``settle`` frames."""

@@ -20,12 +20,12 @@ _BLOCKS = 20
 class Layers:
     """Density, temperature and pressure of layers of equal thickness between floor and ceiling.
 
-    The pressure is that of the motion and of the contacts: n kT + virial / d V in d dimensions, 3 or 2.
+    The pressure is the sum of the kinetic part and the collision part: n kT + virial / d V in d dimensions, 3 or 2.
 
     Parameters
     ----------
     number
-        How many layers; the box must count its virial by as many.
+        Number of layers; the box must count its virial in as many layers.
     memory
         Correlation time of the energy of the column [reduced time], see `atmosbox.scene.statistics.average_beside`.
     """
@@ -46,12 +46,12 @@ class Layers:
         self._dimensions = 3.0
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Count the molecules of each layer and the energy of their disordered motion."""
+        """Count the molecules of each layer and sum the energy of their disordered motion."""
         self._sum += np.stack(layer_sample(parcel, snapshot, self._number))
         self._looks += 1
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Close the sums of a frame."""
+        """Finish the sums of a frame."""
         lasted = parcel.time - self._time
         self._lasted = lasted
         rate = (parcel.virial - self._virial) / lasted
@@ -67,7 +67,7 @@ class Layers:
         self._dimensions = 2.0 if parcel.planar else 3.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the profiles with their standard errors, of the deviations from the mean state to first order."""
+        """Return the profiles with their standard errors, to first order in the deviations from the mean state."""
         frames = np.array(self._frames[settle:])
         edges = np.linspace(0.0, self._height, self._number + 1) * scale.length
         out = Readings(height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1))

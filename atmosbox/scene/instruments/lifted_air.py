@@ -1,4 +1,4 @@
-"""A parcel on its way up, and its environment."""
+"""A parcel on its ascent, and its environment."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["REFERENCE_PRESSURE", "Environment", "Lift"]
 Array = NDArray[np.float64]
 _BLOCKS = 20
 REFERENCE_PRESSURE = 1e5
-"""Pressure at which air has its potential temperature [Pa]."""
+"""Pressure to which the potential temperature refers [Pa]."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,11 @@ class Environment:
 
 
 class Lift:
-    r"""A parcel on its way up: temperature and pressure of parcel and environment against height.
+    r"""A parcel on its ascent: temperature and pressure of parcel and environment against height.
 
-    The temperature is that of all energy, which has no noise at rest. Two things scatter from run to run: the
-    work that the piston exchanged, which adds up, and what the barometer says at the moment, which does not.
+    The temperature is that of the whole energy of the parcel, which does not fluctuate in a box at rest. Two things
+    scatter from run to run: the work that the piston has exchanged, which accumulates, and the momentary reading of the
+    barometer, which does not.
 
     Parameters
     ----------
@@ -59,27 +60,28 @@ class Lift:
 
     Notes
     -----
-    The work shows in the entropy per molecule of spheres of density n and temperature T, with the measured
-    :math:`(Z - 1)/n = b + c n`,
+    The work changes the entropy per molecule. For spheres of density n and temperature T, with the measured
+    :math:`(Z - 1)/n = b + c n`, it is
 
     .. math:: s / k = (f/2) \ln T - \ln n - b n - c n^2 / 2 ,
 
-    which an adiabat would keep. A finite speed makes it drift, and chance makes it walk at random. Both come from
-    what the gas remembers of its last expansion, during a mean free time, so that drift and variance grow alike,
+    which is constant on an adiabat. At a finite speed it drifts, and fluctuations add a random walk. Both come from the
+    memory that the gas has of its last expansion, during a mean free time, so that drift and variance grow in
+    proportion to
 
     .. math:: w = \int \left( \frac{d \ln n}{dt} \right)^2 \frac{dt}{n \sqrt{T}} ,
 
-    and the variance, N times, is twice the drift [1]_. The variance is measured by the steps from one of 20 blocks of
-    the ascent to the next, minus their share of the drift; w tells how much of it has been gathered by when. To it
-    comes the variance of the barometer, that of Z about the straight line.
+    and the variance, times N, is twice the drift [1]_. The variance is measured by the steps from one of 20 blocks of
+    the ascent to the next, minus their share of the drift; w tells which part of it has accumulated at each time. The
+    variance of the barometer, that of Z about the straight line, is added.
 
-    Against the scatter of 24 to 144 runs each the error is right within 20 %, as well as these can tell, from 400
-    mean free times on. In faster ascents sound has no time to die out within a block, and the error is too large:
-    1.4 times at 200 and at 50 mean free times, twice at 20.
+    Compared with the scatter of 24 to 144 runs each, the error is right within 20 %, the precision of that comparison,
+    from 400 mean free times on. In faster ascents sound has no time to decay within a block, and the error is too
+    large: 1.4 times at 200 and at 50 mean free times, twice at 20.
 
     References
     ----------
-    .. [1] Jarzynski, C. (1997), doi:10.1103/PhysRevLett.78.2690: work lost on the way is half the variance of
+    .. [1] Jarzynski, C. (1997), doi:10.1103/PhysRevLett.78.2690: the work that is dissipated is half the variance of
        the work, over kT.
     """
 
@@ -136,11 +138,11 @@ class Lift:
 
 
 def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, freedom: float) -> Array:
-    """Return how far chance takes (f/2 + 1) ln T - ln p of a rising parcel, by time; see `Lift`.
+    """Return the standard deviation of (f/2 + 1) ln T - ln p of a rising parcel at each time; see `Lift`.
 
     Examples
     --------
-    Three moments at least are needed:
+    At least three moments are needed:
 
     >>> two = np.array([1.0, 2.0])
     >>> _entropy_spread(two, two, two, two, 5.0)
@@ -163,7 +165,7 @@ def _entropy_spread(time: Array, kT: Array, pressure: Array, density: Array, fre
     if not share.sum() > 0.0:
         return np.full(len(time), math.nan)
     chance = step - step.sum() * share / share.sum()
-    # what is left of the variance of a step once both its ends are means
+    # share of the variance of a step that is left when both its ends are means of blocks
     smoothing = (2.0 + 1.0 / length**2) / 3.0
     walk = np.sum(chance**2) / (smoothing * (share.sum() - np.sum(share**2) / share.sum())) * gathered
     return np.asarray(np.sqrt(walk + np.var(barometer, ddof=2)))

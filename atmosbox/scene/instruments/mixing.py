@@ -1,4 +1,4 @@
-"""Two gases that mix: how far they are from being one, and the entropy of mixing, counted."""
+"""Two gases that mix: how far they have mixed, and the entropy of mixing, counted."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ Array = NDArray[np.float64]
 Counts = NDArray[np.integer]
 
 MOMENTS = {"early": 0.1, "middle": 0.5, "late": 2.0}
-"""When the share of one gas is drawn across the box, in mixing times."""
+"""Moments at which the share of one gas is drawn across the box, in mixing times."""
 PRIOR = 2.0
-"""How many molecules, where theory expects them, are added to those of a bin for the error of its share."""
+"""Number of molecules, divided as theory expects, that are added to those of a bin for the error of its share."""
 
 
 class Mixing:
-    r"""The slowest mode of the difference of two gases, the entropy of mixing, and where both are at some moments.
+    r"""The slowest mode of the difference of two gases, the entropy of mixing, and both profiles at some moments.
 
     Parameters
     ----------
     right : (molecule,)
         Which molecules began on the right.
     moments
-        When to look where the gases are, by the names of `MOMENTS` [reduced time]: at the end of the frame that comes
-        nearest.
+        Moments of the profiles, by the names of `MOMENTS` [reduced time]; each is taken at the end of the nearest
+        frame.
     bins
-        Into how many equal parts the box is divided along x.
+        Number of equal parts into which the box is divided along x.
 
     Notes
     -----
-    The mode is :math:`A = \langle s \cos (\pi x / L) \rangle`, s = 1 for one gas and -1 for the other, x as far as
-    centres reach, over its value :math:`2/\pi` for two gases that are apart.
+    The mode is :math:`A = \langle s \cos (\pi x / L) \rangle` over its value :math:`2/\pi` for two gases that are
+    apart, with s = 1 for one gas and -1 for the other, and x measured over the length that centres can reach.
 
-    The entropy is counted in bins, :math:`-\sum_b \frac{n_b}{N} \sum_a c_{ab} \ln c_{ab}`. Few molecules in a bin look
-    more orderly than they are: where K gases have been found among n molecules, :math:`(K - 1) / 2n` is added [1]_.
+    The entropy is counted in bins, :math:`-\sum_b \frac{n_b}{N} \sum_a c_{ab} \ln c_{ab}`. A bin with few molecules
+    looks more ordered than it is: if K gases have been found among n molecules, :math:`(K - 1) / 2n` is added [1]_.
 
     References
     ----------
@@ -93,8 +93,8 @@ class Mixing:
         for name, (_, left, both) in self._shares.items():
             expected, scatter = expected_share(self._bins, MOMENTS[name])
             found[f"left_gas_share_{name}"] = left / np.where(both > 0.0, both, math.nan)
-            # two molecules where they are expected, so that a bin of one gas alone has an error, too, but not too large
-            # a one; what they take from the scatter of the others is given back
+            # two molecules as theory expects them are added, so that a bin of one gas alone has an error, too, but not
+            # too large a one; the factor corrects the scatter that they take from the other molecules
             guess = (left + PRIOR * expected) / (both + PRIOR)
             counted = np.maximum(both, 1.0) * (1.0 - both / (both + PRIOR) ** 2)
             found[f"left_gas_share_{name}_se"] = np.sqrt(scatter * guess * (1.0 - guess) / counted)
@@ -103,7 +103,7 @@ class Mixing:
 
 @functools.cache
 def expected_share(bins: int, passed: float) -> tuple[Array, Array]:
-    """Return the share of the left gas after so many mixing times, and its scatter over that of independent draws."""
+    """Return the share of the left gas after some mixing times, and its variance over that of independent draws."""
     return law.mixed_share(np.linspace(0.0, 1.0, bins + 1), passed), law.mixed_share_scatter(bins, passed)
 
 
@@ -112,7 +112,7 @@ def entropy_of_counts(left: Counts, right: Counts) -> float:
 
     Examples
     --------
-    Gases that are apart have none; one molecule of each in a bin looks like ln 2, and is taken for a little more:
+    Gases that are apart have none; one molecule of each in a bin gives ln 2 plus the correction for few molecules:
 
     >>> entropy_of_counts(np.array([9, 0]), np.array([0, 9])), round(entropy_of_counts(np.array([1]), np.array([1])), 4)
     (0.0, 0.9431)

@@ -1,4 +1,4 @@
-"""A parcel of moist air on its way, and its environment."""
+"""A parcel of moist air on its ascent, and its environment."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ Array = NDArray[np.float64]
 
 
 class MoistLift:
-    r"""A parcel of moist air on its way: temperature and pressure of parcel and environment against height.
+    r"""A parcel of moist air on its ascent: temperature and pressure of parcel and environment against height.
 
-    Both are means over the samples within a frame; of the pressure, its logarithm. The number of molecules of vapour is
-    never constant, nor is the temperature: each molecule that condenses warms the others. The error is that of the
-    mean of a frame, from the theory of such fluctuations: within one run, what has gathered by chance cannot be told
-    from what the finite rate has done.
+    Temperature and pressure are means over the samples within a frame; for the pressure, of its logarithm. The number
+    of molecules of vapour fluctuates all the time, and so does the temperature: each molecule that condenses warms the
+    others. The standard error is that of the mean of a frame and comes from the theory of such fluctuations, because a
+    single run cannot tell accumulated fluctuations from the finite-rate error.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class MoistLift:
         Temperatures [K] that theory expects along a sequence of pressures [Pa], in the order in which they are met.
     scatter
         Standard deviations of the means of frames, as shares of the temperature, for the pressures of the environment
-        [Pa] in the middle of them.
+        [Pa] in the middle of the frames.
     """
 
     def __init__(

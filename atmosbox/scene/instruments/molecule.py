@@ -1,4 +1,4 @@
-"""Where every molecule is, and in what kind of box."""
+"""Positions and velocities of all molecules, and the kind of box they are in."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 LAWS = ("specular", "periodic", "heat_bath", "piston", "pool")
-"""What a wall may be, in the order of the numbers that the engine and the file give these laws."""
+"""What a wall may be, in the order of the numbers that the engine and the file give to these laws."""
 
 
 def wall_laws(parcel: Any) -> tuple[str, ...]:
-    """Return what each of the six walls is, in the order x low, x high, y low, y high, z low, z high.
+    """Return the law of each of the six walls, in the order x low, x high, y low, y high, z low, z high.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def wall_laws(parcel: Any) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Of `LAWS`.
+        Names from `LAWS`.
 
     Examples
     --------
@@ -46,11 +46,11 @@ def wall_laws(parcel: Any) -> tuple[str, ...]:
 
 
 class Molecules:
-    """Places and velocities of all molecules and the box they are in, for ``--save-molecules``.
+    """Positions and velocities of all molecules and the box they are in, for ``--save-molecules``.
 
-    A molecule that is in the liquid has neither place nor velocity, and reads NaN. Where there is water, the readings
-    say which molecules are water, and where drops are that can be seen. Where molecules attract each other, they say
-    how many neighbours each has.
+    A molecule in the liquid has neither position nor velocity; both are NaN. Where there is water, the readings say
+    which molecules are water, and where the visible drops are. Where molecules attract each other, the readings give
+    the number of neighbours of each.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Molecules:
         """Need no sample between frames."""
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Keep all molecules, in single precision, the drops and how large the box is."""
+        """Store all molecules in single precision, the drops and the size of the box."""
         present = parcel.present
         position = np.full((present.size, 3), np.nan, np.float32)
         velocity = np.full((present.size, 3), np.nan, np.float32)
@@ -90,11 +90,11 @@ class Molecules:
         if not self._laws:
             self._laws, self._moist = wall_laws(parcel), hasattr(parcel, "vapour")
             self._mass, self._diameter = np.full(present.size, np.nan), np.full(present.size, np.nan)
-        if np.isnan(self._mass).any():  # only water may never have been in the gas
+        if np.isnan(self._mass).any():  # molecules of water that have never been in the gas
             self._mass[present], self._diameter[present] = parcel.mass, parcel.diameter
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return places, velocities and speeds, what each molecule is, and the box."""
+        """Return positions, velocities and speeds, the kind of each molecule, and the box."""
         if not self._position:
             return Readings()
         mass, diameter = self._mass * scale.mass, self._diameter * scale.length

@@ -1,4 +1,4 @@
-"""Drops with salt in them beside drops of pure water: how large they are, and the humidity that they feel."""
+"""Drops with salt in them beside drops of pure water: their sizes, and the humidity around them."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ __all__ = ["Nuclei"]
 class Nuclei:
     """The number of molecules in each drop, the mean radius of those with and of those without salt, and the humidity.
 
-    The sizes are those at the end of a frame. The humidity is the mean over its samples: the vapour pressure in
-    the room that the drops leave, over that of saturation at their own temperature. At that of the gas, by which
-    relative humidity is meant, it scatters far more.
+    The sizes are those at the end of a frame. The humidity is the mean over its samples: the vapour pressure in the
+    space outside the drops, over the saturation vapour pressure at the temperature of the liquid. With the temperature
+    of the gas, which defines relative humidity, it would scatter far more.
 
     Parameters
     ----------
     width
-        How many times wider the drops of the box are than real ones; radii are given of real ones.
+        Ratio of the width of the drops in the box to that of real drops; radii are those of real drops.
     radius
-        Radii at which theory is asked for the humidity over a drop [m].
+        Radii for which theory gives the humidity over a drop [m].
     """
 
     def __init__(self, width: float, radius: ArrayLike) -> None:
@@ -41,7 +41,7 @@ class Nuclei:
         self._mean: list[list[float]] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Measure the vapour."""
+        """Measure the vapour pressure."""
         reach = parcel.drops()[1] + 0.5 * float(parcel.diameter[0])
         room = 1.0 - 4.0 / 3.0 * math.pi * float(np.sum(reach**3)) / parcel.volume
         self._looks.append((vapour_pressure(parcel, gas_kT(parcel)) / room, parcel.liquid_kT))

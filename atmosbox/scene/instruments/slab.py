@@ -21,24 +21,24 @@ Array = NDArray[np.float64]
 _BIN = 0.25
 _BLOCKS = 10
 _INSIDE, _OUTSIDE = 3.0, 4.0
-"""How far from the middle of its surface, in diameters, liquid and vapour count as such."""
+"""Least distance from the middle of the surface at which a layer counts as liquid, and as vapour [diameter]."""
 
 
 def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Tell which layers are well within the liquid, and which well outside of it.
+    """Tell which layers are well inside the liquid, and which are well outside.
 
     Parameters
     ----------
     height, density : (layer,)
-        Of layers of equal thickness [diameter, diameter^-3]; the liquid is in the middle of a periodic box, else on
-        the floor.
+        Middle and density of layers of equal thickness [diameter, diameter^-3]; the liquid is in the middle of a
+        periodic box, else on the floor.
     periodic
-        Which of the two it is.
+        Whether the box is periodic.
 
     Returns
     -------
     (ndarray, ndarray)
-        Both (layer,); none is chosen if there are no two sorts of them.
+        Both (layer,); all False if liquid and vapour cannot be told apart.
 
     Examples
     --------
@@ -61,17 +61,18 @@ def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDAr
 
 
 class Slab:
-    r"""Densities and energies of the liquid and of the vapour beside it, the pressure across, the surface tension.
+    r"""Densities and energies of the liquid and of the vapour beside it, the normal pressure, the surface tension.
 
-    A slab in a periodic box drifts, because a random bath keeps no momentum: heights are counted so that the middle of
-    its mass stands in the middle of the box. The pressure across the surface is the same in both, :math:`p = n k T +
-    W_{zz} / V`, and the surface tension is by how much that along the surface falls short of it,
-    :math:`\gamma = (W_{zz} - \tfrac12 (W_{xx} + W_{yy})) / 2 A t` for two surfaces [1]_.
+    A slab in a periodic box drifts, because a heat bath with random kicks does not conserve momentum: heights are
+    measured so that the middle of the liquid is in the middle of the box. The pressure normal to the surface,
+    :math:`p = n k T + W_{zz} / V`, is the same in liquid and vapour. The surface tension measures by how much the
+    pressure along the surface is lower, :math:`\gamma = (W_{zz} - \tfrac12 (W_{xx} + W_{yy})) / 2 A t` for two
+    surfaces [1]_.
 
     Parameters
     ----------
     molecules
-        How many of the molecules attract each other, the first ones.
+        Number of molecules that attract each other; they are the first ones.
 
     References
     ----------
@@ -92,7 +93,7 @@ class Slab:
         self._periodic = True
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Count molecules, and the wells they are in, by height."""
+        """Count by height the molecules, and the wells they are in."""
         self._height = float(parcel.length[2])
         self._area = float(parcel.length[0] * parcel.length[1])
         self._periodic = bool(parcel.periodic[2])
@@ -113,7 +114,7 @@ class Slab:
         self._kT.append(temperature(parcel, snapshot))
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Close the sums of a frame."""
+        """Finish the sums of a frame."""
         lasted = parcel.time - self._time
         stress = (parcel.stress - self._stress) / lasted
         volume = float(parcel.volume)
@@ -136,7 +137,8 @@ class Slab:
         height = 0.5 * (edges[1:] + edges[:-1])
         volume = self._area * self._height / layers
         late = frames[settle:]
-        # surfaces wander and the number in the vapour is remembered for many frames: ten long blocks tell by how much
+        # the surfaces move and the number in the vapour stays correlated over many frames: ten long blocks give the
+        # error
         blocks = min(_BLOCKS, len(late) // 2)
         density, error = (each / volume for each in overlapping_average(late[:, 0], blocks))
         found = Readings(

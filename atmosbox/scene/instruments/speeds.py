@@ -1,4 +1,4 @@
-"""How fast the molecules are."""
+"""The speeds of the molecules."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _BLOCKS = 20
 
 
 class Speeds:
-    """The share of molecules by speed, and their mean speed in each frame.
+    """Histogram of the speeds of the molecules, and their mean speed in each frame.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Speeds:
         self._frames: list[Array] = []
 
     def wider(self, factor: float) -> Speeds:
-        """Return an instrument with as many bins that reaches so many times as far, and has seen nothing.
+        """Return an empty instrument with the same number of bins and all bounds multiplied by ``factor``.
 
         Examples
         --------
@@ -45,13 +45,13 @@ class Speeds:
         return Speeds(self._edges * factor)
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Count by speed."""
+        """Count the molecules by speed."""
         self._counts += speed_counts(snapshot, self._edges)
         self._seen += parcel.number
         self._sum += float(np.sqrt((snapshot.velocity**2).sum(axis=1)).sum())
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
-        """Close the counts of a frame."""
+        """Finish the counts of a frame."""
         self._frames.append(self._counts / max(self._seen, 1) / np.diff(self._edges))
         self._mean.append(self._sum / max(self._seen, 1))
         self._counts = np.zeros_like(self._counts)

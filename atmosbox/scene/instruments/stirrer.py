@@ -1,4 +1,4 @@
-"""What stirs a column: its work, and the lapse rate that comes of it."""
+"""The stirring of a column: its work, and the lapse rate that it produces."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 def weighted_slope(x: Array, y: Array, weight: Array) -> float:
-    """Return the slope of the straight line that is closest to points of some weight.
+    """Return the slope of the straight line through points with weights, by least squares.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def weighted_slope(x: Array, y: Array, weight: Array) -> float:
 class Stirrer:
     """The work of a stirrer since the start, and the lapse rate of the air between two heights, frame by frame.
 
-    The lapse rate is the slope of the line through the temperatures of layers, each with the weight of its molecules.
+    The lapse rate is the slope of the line through the temperatures of the layers, weighted by degrees of freedom.
 
     Parameters
     ----------
@@ -49,12 +49,12 @@ class Stirrer:
         self._rows: list[tuple[float, float]] = []
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Add up the energy of the disordered motion, and the degrees of freedom that share it."""
+        """Sum the energy of the disordered motion and the degrees of freedom of each layer."""
         _, energy, freedom = layer_sample(parcel, snapshot, self._layers)
         self._sum += energy, freedom
 
     def end_frame(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Read the slope off the sums of a frame, and the work off the box."""
+        """Compute the slope from the sums of a frame, and read the work."""
         edges = np.linspace(0.0, float(parcel.length[2]), self._layers + 1)
         inside = (edges[:-1] >= self._between[0]) & (edges[1:] <= self._between[1])
         energy, freedom = self._sum

@@ -14,11 +14,11 @@ from atmosbox.scene.units import Scale
 
 __all__ = ["Water", "gas_kT", "vapour_pressure"]
 
-_CRITICAL = 647.0  # K; above it nothing saturates
+_CRITICAL = 647.0  # K; there is no saturation above it
 
 
 def gas_kT(parcel: Parcel) -> float:
-    """Return the temperature of all molecules of the gas by all their energy, rotation included [energy].
+    """Return the temperature of the gas from all energy of its molecules, rotation included [energy].
 
     Examples
     --------
@@ -30,7 +30,7 @@ def gas_kT(parcel: Parcel) -> float:
 
 
 def vapour_pressure(parcel: Any, kT: float) -> float:
-    """Return the share of the vapour in the pressure n k T Z [energy/length^3]."""
+    """Return the partial pressure of the vapour, its share of n k T Z [energy/length^3]."""
     density = parcel.open_density
     if not density > 0.0:
         return 0.0
@@ -43,9 +43,9 @@ def vapour_pressure(parcel: Any, kT: float) -> float:
 
 
 class Water:
-    """Vapour pressure and relative humidity, the liquid and its temperature, and the two rates.
+    """Vapour pressure and relative humidity, the liquid and its temperature, and both rates of phase change.
 
-    All are means over the samples within a frame; the numbers of molecules are those at its end.
+    All are means over the samples within a frame, but the numbers of molecules are those at its end.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Water:
         self._last = (0.0, 0, 0)
 
     def sample(self, parcel: Any, snapshot: Snapshot) -> None:
-        """Read vapour pressure and temperatures, and how much of the water is what."""
+        """Read vapour pressure and temperatures, and the amounts of vapour, liquid and rain."""
         kT = gas_kT(parcel)
         air = parcel.number - parcel.vapour
         shares = ((each / air if air else math.nan) for each in (parcel.vapour, parcel.liquid, parcel.rained))

@@ -1,8 +1,8 @@
 """What the figure of a scene shows, as plain data.
 
-A scene names the variables of its file that belong on a graph and says how to look at them; it draws nothing.
-The panels travel with the run as one JSON string (the attribute ``atmosbox_panels``), so that a file can be
-drawn long afterwards, on a machine that has neither the scene nor the engine.
+A scene names the variables of its file that belong on a graph, and the form of the graph; it draws nothing. The panels
+are stored with the run as one JSON string (the attribute ``atmosbox_panels``), so that a file can be drawn long
+afterwards, on a machine that has neither the scene nor the engine.
 """
 
 from atmosbox.scene.panels.line import ROLES, Line

@@ -26,7 +26,7 @@ class Line:
         units are shown. "heat_from_wall[z_low]" is the part of a variable at one label, here of the dimension
         wall.
     label : str
-        What the legend calls the curve.
+        Label of the curve in the legend.
     role : {"data", "theory", "environment", "reference"}
         ``data`` was measured (solid, with its error band), ``theory`` calculated (dashed, dark),
         ``environment`` belongs to the environment of a parcel (dash-dotted), ``reference`` is a broad, pale line to
@@ -66,5 +66,5 @@ class Line:
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Names of the variables that the curve is made of."""
+        """Names of the variables that the curve needs."""
         return tuple(name for name in (self.x, self.y, self.error, self.minus) if name is not None)

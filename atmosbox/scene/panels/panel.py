@@ -28,25 +28,25 @@ ATMOSPHERE_VARIABLES = (
     "cloud_base",
     "vapor_molecule_count",
 )
-"""What the picture of an atmosphere shows of the parcel beside its height, where the run measures it."""
+"""Variables of the parcel that the picture of an atmosphere shows in addition to its height, if the run has them."""
 DISC_VARIABLES = ("disc_position", "disc_velocity", "disc_diameter", "disc_mass")
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One graph of a scene's figure: its curves, its axes and the units in which they are read.
+    """One graph of a scene's figure: its curves, its axes and their units.
 
     Parameters
     ----------
     kind : {"line", "profile", "histogram", "discs", "skewt", "atmosphere"}
-        ``line``: the measured variable up the page, for instance against time. ``profile``: height or
-        pressure up the page, the measured variable along it. ``histogram``: the data as steps between the
-        bounds of their bins. ``discs``: the molecules of a flat box themselves, from the variables
-        `DISC_VARIABLES`; it has no lines. ``skewt``: temperatures over pressure in a skew-T log-p diagram, whose
-        axes are always in degC and hPa. CAPE and CIN are shaded between the first measured curve and the first
-        of the environment: areas between *temperatures*, as is the custom, although the numbers CAPE and CIN are
-        those of virtual temperatures. ``atmosphere``: the parcel on its way, over the ground or over mountains, with
-        its cloud and its rain; its one line is the height of the parcel over time.
+        ``line``: the measured variable up the page, for instance against time. ``profile``: height or pressure up the
+        page, the measured variable along it. ``histogram``: the data as steps between the bounds of their bins.
+        ``discs``: the molecules of a flat box themselves, from the variables `DISC_VARIABLES`; it has no lines.
+        ``skewt``: temperatures over pressure in a skew-T log-p diagram, whose axes are always in degC and hPa. CAPE and
+        CIN are shaded between the first measured curve and the first of the environment: areas between *temperatures*,
+        as is the custom, although the numbers CAPE and CIN are those of virtual temperatures. ``atmosphere``: the
+        parcel on its ascent, over the ground or over mountains, with its cloud and its rain; its one line is the height
+        of the parcel over time.
     title : str
         What the graph shows, in a few words.
     lines : tuple of Line
@@ -54,21 +54,21 @@ class Panel:
     x_label, y_label : str
         The quantities on the axes, without units; empty for the ``long_name`` of the first curve's variable.
     x_unit, y_unit : str
-        The units that the axes are read in ("hPa", "degC", "km", "nm", ...); empty for the units of the file.
+        The units of the axes ("hPa", "degC", "km", "nm", ...); empty for the units of the file.
     x_scale, y_scale : {"linear", "log"}
         The scales of the axes.
     x_invert, y_invert : bool
         Whether an axis decreases to the right or upward, as pressure does.
     averages : int
-        Into how many equal parts of the x axis measured curves of a ``line`` panel are averaged, so that noise does
-        not crowd the far end of a logarithmic axis; 0 draws every value.
+        Number of equal parts of the x axis in which measured curves of a ``line`` panel are averaged, so that noise
+        does not fill the far end of a logarithmic axis; 0 draws every value.
     note : str
         A sentence under the title.
     headlines : tuple of str
         Names of the headline numbers of the run whose misfit is written into this panel.
     marks : tuple of str
         Names of single numbers of the file, pressures that are marked in a ``skewt`` panel if the run has found
-        them. CAPE is shaded between those called "lfc" and "el", CIN below "lfc".
+        them. CAPE is shaded between the marks "lfc" and "el", CIN below "lfc".
 
     Raises
     ------
@@ -126,7 +126,7 @@ class Panel:
             raise ValueError(f"the panel {self.title!r} shows temperatures in a skew-T, and no differences of them.")
 
     def _set_skewt_axes(self) -> None:
-        """Give the panel the axes of a skew-T, which has no others."""
+        """Give the panel the axes of a skew-T, the only ones allowed."""
         defaults = {field.name: field.default for field in fields(self)}
         for name, value in SKEWT_AXES.items():
             if getattr(self, name) not in (value, defaults[name]):

@@ -16,7 +16,7 @@ _FORMAT = 1
 
 
 def to_json(panels: Iterable[Panel]) -> str:
-    """Return the panels of a figure as the text that a file carries.
+    """Return the panels of a figure as the text that is stored in a file.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def to_json(panels: Iterable[Panel]) -> str:
     Returns
     -------
     str
-        JSON, in ASCII. What has its default value is left out.
+        JSON, in ASCII. Fields with their default values are left out.
 
     Examples
     --------
@@ -37,7 +37,7 @@ def to_json(panels: Iterable[Panel]) -> str:
 
 
 def from_json(text: str) -> tuple[Panel, ...]:
-    """Return the panels that a file carries.
+    """Return the panels from the text that is stored in a file.
 
     Parameters
     ----------
@@ -52,12 +52,11 @@ def from_json(text: str) -> tuple[Panel, ...]:
     Raises
     ------
     ValueError
-        If the text is no JSON, or was written by something else or by a version that words panels
-        differently.
+        If the text is no JSON, or was written by another program or by a version with another format.
 
     Examples
     --------
-    What was written comes back the same:
+    Reading restores what was written:
 
     >>> air = Line("elapsed_time", "air_temperature", "air")
     >>> panels = (Panel("line", "Temperature", (air,), y_unit="degC"),)
@@ -89,7 +88,7 @@ def _panel(record: object) -> Panel:
 
 
 def _values(what: str, record: object, kind: type[Line] | type[Panel]) -> dict[str, Any]:
-    """Return a record as arguments of its class, or say which field is missing or foreign."""
+    """Return a record as arguments of its class; raise ValueError for a missing or an unknown field."""
     if not isinstance(record, dict):
         raise ValueError(f"a {what} is written as {type(record).__name__}, not as a record.")
     known = {field.name: field.default is MISSING for field in fields(kind)}

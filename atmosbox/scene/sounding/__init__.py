@@ -1,11 +1,11 @@
-"""Soundings: what is measured of the air above a place, what that says of a parcel, and one made by a formula.
+"""Soundings: the measured profile above a place, what it means for a lifted parcel, and an analytic profile.
 
 ============== =========================================================================
 file           what is in it
 ============== =========================================================================
 profile        the sounding itself: pressure, temperature, dewpoint from the ground up
 column         the names and units of its columns
-plausibility   what no sounding can be, and what is doubtful
+plausibility   what no sounding can be, and what is doubtful in one
 tabulated      from the columns of a file to a sounding: units, missing values, order
 reading        opens a file and recognises its format
 wyoming        the University of Wyoming's tables, as text or as a web page
@@ -14,7 +14,7 @@ bufkit         the soundings of a forecast
 sharppy        SHARPpy's text
 delimited      CSV and the like
 profile_netcdf profiles as xarray and MetPy write them
-analytic       Weisman and Klemp's formula for the air before a thunderstorm
+analytic       Weisman and Klemp's formula for the environment of a thunderstorm
 hydrostatics   the heights of levels
 lifted_parcel  LCL, LFC, EL, CAPE, CIN and precipitable water, by MetPy
 ============== =========================================================================

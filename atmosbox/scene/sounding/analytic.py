@@ -1,4 +1,4 @@
-"""The air before a thunderstorm, by a formula: the sounding of Weisman and Klemp."""
+"""The analytic sounding of Weisman and Klemp for the environment of a thunderstorm."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def weisman_klemp(
 
     Below the tropopause, with s = (z / z_tr)^(5/4), the potential temperature is theta_0 + (theta_tr - theta_0) s
     and the relative humidity 1 - 3 s / 4; above it they are theta_tr exp(g (z - z_tr) / (c_p T_tr)) and 1/4.
-    Near the ground the mixing ratio is constant, and of all choices it changes CAPE most.
+    Near the ground the mixing ratio is constant; of all parameters it changes CAPE most.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def weisman_klemp(
     surface_pressure
         Pressure at the ground [Pa].
     surface_potential_temperature
-        theta_0 at the ground; at 1000 hPa it is the temperature there [K].
+        theta_0 at the ground; at a surface pressure of 1000 hPa it is the temperature there [K].
     tropopause_height, tropopause_potential_temperature, tropopause_temperature
         z_tr [m], theta_tr [K] and T_tr [K].
 
@@ -59,14 +59,14 @@ def weisman_klemp(
     SettingError
         If a number is not finite or outside the limits.
     SoundingError
-        If the numbers, each possible by itself, make no atmosphere together.
+        If the numbers, each possible by itself, do not describe an atmosphere together.
 
     Notes
     -----
     The hydrostatic equation is that of the Exner function, d pi / dz = -g / (c_p theta_v), with the virtual potential
-    temperature of the same sounding, integrated by midpoints of 10 m. Saturation is with respect to liquid water
-    at all temperatures and follows Bolton's formula, whose inverse gives the dewpoint [2]_. In hydrostatic balance,
-    343 K at 12 km is a temperature of 217 K, not quite the T_tr of 213 K, which only sets the slope above.
+    temperature of the same sounding, integrated by the midpoint rule in steps of 10 m. Saturation is with respect to
+    liquid water at all temperatures and follows Bolton's formula, whose inverse gives the dewpoint [2]_. In hydrostatic
+    balance, 343 K at 12 km is a temperature of 217 K, not quite the T_tr of 213 K, which only sets the slope above.
 
     The paper's own measure of CAPE gives about 2200 J/kg for 14 g/kg. MetPy's ``surface_based_cape_cin`` gives
     1880 J/kg, and a CIN of -48 J/kg.
@@ -96,7 +96,7 @@ def weisman_klemp(
     }
     for name, value in given.items():
         low, high, unit = _LIMITS[name]
-        if not low <= value <= high:  # NaN is neither
+        if not low <= value <= high:  # also true for NaN
             raise SettingError(name, value, "is not what the formula is for", f"give {low:g} to {high:g} {unit}")
     height = np.linspace(0.0, _TOP, (_LEVELS - 1) * _STEPS + 1)
     share = (np.minimum(height, tropopause_height) / tropopause_height) ** 1.25
@@ -129,7 +129,7 @@ _LIMITS = {
 
 
 def _balance(height: Floats, theta: Floats, humidity: Floats, cap: float, ground: float) -> tuple[Floats, Floats]:
-    """Return pressure and mixing ratio in hydrostatic balance, one depending on the other."""
+    """Return pressure and mixing ratio in hydrostatic balance; each depends on the other."""
     power = _HEAT / _DRY_GAS
     step = float(height[1] - height[0])
 

@@ -1,8 +1,8 @@
-"""BUFKIT: the soundings of a forecast for one place, hour by hour, as weather services of the USA exchange them.
+"""BUFKIT: hourly forecast soundings for one place, a format that weather services of the USA exchange.
 
-``SNPARM`` names the columns, a block that begins with ``STID`` holds one hour, and the values of a level may fill
-several lines: they are counted, not laid out. Pressure stands in hPa, height in m, temperature and dewpoint in degrees
-Celsius, and -9999.00 for what is missing (GEMPAK's ``namsnd`` and its table of parameters).
+``SNPARM`` names the columns, and a block that begins with ``STID`` holds one hour. The values of a level may fill
+several lines: they are told apart by their number, not by their position. Pressure is in hPa, height in m, temperature
+and dewpoint in degrees Celsius; -9999.00 means a missing value (GEMPAK's ``namsnd`` and its table of parameters).
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
     lines
         The lines of the file.
     file
-        The file as an error names it.
+        The name of the file in messages.
     name
-        The name of the ascent where the text gives none.
+        The name of the ascent if the text has none.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
 def _head(
     lines: Sequence[str], columns: list[str], stations: list[tuple[int, re.Match[str]]], file: str
 ) -> tuple[int, str, int]:
-    """Return where the first sounding begins, its name, and the line of its first level."""
+    """Return the line where the first sounding begins, its name, and the line of its first level."""
     start = stations[0][0] if stations else 0
     head = stations[0][1] if stations else None
     # forecasts of some models name their stations by the number alone

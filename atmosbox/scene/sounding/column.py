@@ -1,4 +1,4 @@
-"""What a sounding measures: the names its four columns go by, their units, and what is plausible for them."""
+"""The four columns of a sounding: their names, their units, and their plausible values."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["QUANTITIES", "REQUIRED", "Measure", "asked_units", "number", "stated
 
 
 class Measure(NamedTuple):
-    """A measured quantity: its SI unit, the usual names best first, the units to guess from, and its limits [SI]."""
+    """A measured quantity: its SI unit, the usual names, best first, the units to try, and its limits [SI]."""
 
     si: str
     names: tuple[str, ...]
@@ -54,7 +54,7 @@ QUANTITIES: dict[str, Measure] = {
 }
 """The four columns of a sounding."""
 REQUIRED = ("pressure", "temperature", "dewpoint")
-"""The columns without which there is no sounding."""
+"""The columns that every sounding needs."""
 
 _HEIGHTS = {"gpm": "m", "m msl": "m", "m asl": "m", "geopotential meters": "m", "geopotential_meters": "m"}
 _BRACKETS = re.compile(r"(.+?)\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]")
@@ -65,19 +65,19 @@ _INFINITE = re.compile(r"(?i)[+-]?inf(?:inity)?")
 
 
 def _plain(name: str) -> str:
-    """Return a column's name as it is compared; of single letters the case counts, for t may be the time."""
+    """Return a column's name in the form for comparison; case counts in single letters, because t may be the time."""
     name = re.sub(r"[\s.\-]+", "_", name.strip().strip("\"'").strip())
     return name if len(name) == 1 else name.casefold()
 
 
 def _unit(text: str) -> Unit | None:
-    """Return a unit however it is spelled, or None."""
+    """Return a unit from any of its spellings, or None."""
     text = text.strip()[:40]
     return known_unit(_HEIGHTS.get(text.casefold(), text)) or known_unit(text.casefold()) if text else None
 
 
 def _split(cell: str) -> tuple[str, str | None]:
-    """Return the name and the unit in a cell of a header, such as "pressure [hPa]", "T_K" or "Td"."""
+    """Return the name and the unit in a header cell, such as "pressure [hPa]", "T_K" or "Td"."""
     cell = cell.strip()[:200]
     known = {name for measure in QUANTITIES.values() for name in measure.names}
     if bracketed := _BRACKETS.fullmatch(cell):
@@ -89,24 +89,24 @@ def _split(cell: str) -> tuple[str, str | None]:
 
 
 def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, str | None]]:
-    """Return where each quantity stands in a table, and in which unit.
+    """Return the column of each quantity in a table, and its unit.
 
     Parameters
     ----------
     header
         The names of the columns, with or without units.
     where
-        The file and the line of the header, for the sentence of an error.
+        The file and the line of the header, for messages.
 
     Returns
     -------
     dict
-        The number of its column and the unit written there, or None, for every quantity that was found.
+        For every quantity that was found, the number of its column and the unit written there, or None.
 
     Raises
     ------
     SoundingError
-        If two columns claim the same quantity by the same name.
+        If two columns have the same name for the same quantity.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def stated_columns(header: Sequence[str], where: str) -> dict[str, tuple[int, st
 
 
 def _fits(unit: str | None, measure: Measure) -> bool:
-    """Return whether a unit, if one is written, can be that of a quantity."""
+    """Return whether a unit, if there is one, can be that of a quantity."""
     known = _unit(unit) if unit else None
     return known is None or known.si == measure.si
 
@@ -141,14 +141,14 @@ def unit_of(quantity: str, text: str | None, where: str) -> Unit:
     quantity
         One of :data:`QUANTITIES`.
     text
-        The unit as it is written; None or empty where none is.
+        The unit as it is written; None or empty if there is none.
     where
-        The file and the line, for the sentence of an error.
+        The file and the line, for messages.
 
     Raises
     ------
     SoundingError
-        If there is no unit, none of that name, or one of something else.
+        If there is no unit, an unknown one, or one of another quantity.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def unit_of(quantity: str, text: str | None, where: str) -> Unit:
 
 
 def asked_units(units: Mapping[str, str] | None) -> dict[str, str]:
-    """Return the units that a user gave, after a look at each.
+    """Return the units that a user gave, after a check of each.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def asked_units(units: Mapping[str, str] | None) -> dict[str, str]:
     Raises
     ------
     UnitError
-        If a name is not one of them, or a unit not one of that quantity.
+        If a name is not one of them, or a unit does not belong to the quantity.
 
     Examples
     --------
@@ -198,16 +198,16 @@ def asked_units(units: Mapping[str, str] | None) -> dict[str, str]:
 
 
 def number(token: str, quantity: str, where: str) -> float:
-    """Return the number in a cell, NaN where it says that the value is missing.
+    """Return the number in a cell, NaN if the cell marks a missing value.
 
     Parameters
     ----------
     token
-        The text of the cell. Missing is an empty one, NaN, NA, null, M, dashes, slashes or asterisks.
+        The text of the cell. Empty, NaN, NA, null, M, dashes, slashes and asterisks mark a missing value.
     quantity
-        What is measured, for the sentence of an error.
+        What is measured, for messages.
     where
-        The file and the line, likewise.
+        The file and the line, for messages.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Tables with one level a line: CSV with commas, semicolons, tabs or blanks between the columns."""
+"""Tables with one level per line: CSV with commas, semicolons, tabs or blanks between the columns."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DEEPEST_HEADER = 60  # lines above the table, such as a station's description
 
 
 def _split(line: str, separator: str | None) -> list[str]:
-    """Return the cells of a line; blanks separate where there is no separator."""
+    """Return the cells of a line; if there is no separator, they are separated by blanks."""
     if separator is None:
         return line.split()
     try:
@@ -29,15 +29,15 @@ def _split(line: str, separator: str | None) -> list[str]:
 
 
 def _found(cells: Sequence[str]) -> int:
-    """Return how many of the required columns are named in these cells."""
+    """Return how many of the required columns these cells name."""
     try:
         return len(set(stated_columns(cells, "")) & set(REQUIRED))
-    except SoundingError:  # one of them is there twice
+    except SoundingError:  # two cells name the same one
         return len(REQUIRED)
 
 
 def _header(lines: Sequence[str]) -> tuple[int, str | None, list[str]] | None:
-    """Return the line that names the columns, the separator and the names; a comment serves if no other does."""
+    """Return the line that names the columns, its separator and the names; a comment only if no other line does."""
     claims: list[tuple[int, bool, int, str | None, list[str]]] = []
     for i, line in enumerate(lines[:_DEEPEST_HEADER]):
         if len(line) > _LONGEST_HEADER:
@@ -70,14 +70,14 @@ def recognised(lines: Sequence[str]) -> bool:
 def parse(lines: Sequence[str], file: str, name: str) -> Table:
     """Return the columns below the line that names them.
 
-    The units stand with the names, or alone in the next line. Lines that start with # are comments.
+    The units are written with the names, or alone in the next line. Lines that start with # are comments.
 
     Parameters
     ----------
     lines
         The lines of the file.
     file
-        The file as an error names it.
+        The name of the file in messages.
     name
         The name of the ascent.
 
@@ -120,7 +120,7 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
 
 
 def _is_units(row: Mapping[str, str]) -> bool:
-    """Return whether a row holds units: words that are neither numbers nor marks of missing ones."""
+    """Return whether a row holds units: words that are neither numbers nor marks of a missing value."""
     words = 0
     for quantity, cell in row.items():
         try:

@@ -1,4 +1,4 @@
-"""How high the levels of a sounding are, from the weight of the air between them."""
+"""The heights of the levels of a sounding, from the weight of the air between them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ __all__ = ["hydrostatic_height"]
 def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
     r"""Return the height of each level above the lowest one, in hydrostatic balance.
 
-    Moist air is light, so that the hypsometric equation dz = -(R_d T_v / g) d ln p takes the virtual temperature [1]_.
+    Moist air is light; so the hypsometric equation dz = -(R_d T_v / g) d ln p uses the virtual temperature [1]_.
 
     Parameters
     ----------
     sounding
-        The ascent; its own heights, if it has any, are not looked at.
+        The ascent; its own heights, if it has any, are ignored.
 
     Returns
     -------
@@ -29,7 +29,7 @@ def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
 
     Notes
     -----
-    The integral from level to level is the trapezoid in ln p, that of MetPy's ``thickness_hydrostatic``.
+    The integral from level to level is the trapezoidal rule in ln p, as in MetPy's ``thickness_hydrostatic``.
 
     References
     ----------
@@ -37,7 +37,7 @@ def hydrostatic_height(sounding: Sounding) -> NDArray[np.float64]:
 
     Examples
     --------
-    Half of the air lies below some 5.5 km:
+    About half of the air lies below 5.5 km:
 
     >>> air = Sounding([1000e2, 850e2, 700e2, 500e2, 300e2], [288, 279, 270, 253, 230], [278, 270, 260, 240, 210])
     >>> round(float(hydrostatic_height(air)[3]), -2)

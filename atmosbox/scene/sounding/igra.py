@@ -1,7 +1,7 @@
 """The Integrated Global Radiosonde Archive of NOAA, version 2: columns of fixed width below a header.
 
-The layout is that of ``igra2-data-format.txt`` of the archive, doi:10.7289/V5X63K0Q. Pressure stands in Pa, height in
-m, temperature and dewpoint depression in tenths of a degree; -9999 stands for what is missing, -8888 for what failed a
+The layout is that of ``igra2-data-format.txt`` of the archive, doi:10.7289/V5X63K0Q. Pressure is in Pa, height in m,
+temperature and dewpoint depression in tenths of a degree; -9999 means a missing value, -8888 one that failed a quality
 check.
 """
 
@@ -26,7 +26,7 @@ _SHORTEST = 39
 
 
 def recognised(lines: Sequence[str]) -> bool:
-    """Return whether a text begins with such a header.
+    """Return whether a text begins with a header of IGRA.
 
     Examples
     --------
@@ -44,9 +44,9 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
     lines
         The lines of the file.
     file
-        The file as an error names it.
+        The name of the file in messages.
     name
-        The name of the ascent; the header gives a better one.
+        Not used: the header gives a better name.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
 
     Examples
     --------
-    A level of the surface at 972 hPa with 24.3 degC and a dewpoint 5.1 K below:
+    A level at the surface, 972 hPa, with 24.3 degC and a dewpoint 5.1 K below:
 
     >>> head = "#USM00072357 2014 09 10 00 2301    1 ncdc-gts ncdc-gts  352211   -974647"
     >>> row = "21  0000  97200B  345B  243B-9999    51   160    51 "
@@ -90,7 +90,7 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
 
 
 def _number(line: str, quantity: str, where: str) -> float:
-    """Return the whole number in a field, NaN where it is missing."""
+    """Return the integer in a field, NaN if it is missing."""
     start, end = _FIELDS[quantity]
     text = line[start:end].strip()
     if len(line) < _SHORTEST or not re.fullmatch(r"-?\d+", text):

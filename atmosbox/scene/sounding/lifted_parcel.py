@@ -1,4 +1,4 @@
-"""What a sounding says of a parcel lifted from the ground, in MetPy's numbers."""
+"""The levels and energies of a parcel that is lifted from the ground in a sounding, computed by MetPy."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Indices:
-    """What becomes of a parcel lifted from the lowest level of a sounding.
+    """Levels and energies of a parcel that is lifted from the lowest level of a sounding.
 
     Parameters
     ----------
@@ -73,13 +73,13 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
     sounding
         The ascent.
     which_lfc
-        Which level of free convection is meant where there are several, in MetPy's word: "top" (MetPy's own
-        choice), "bottom", "wide" or "most_cape".
+        Which level of free convection is reported if there are several, in MetPy's words: "top" (MetPy's default),
+        "bottom", "wide" or "most_cape".
 
     Returns
     -------
     Indices
-        The numbers in SI units. What does not exist is None, but CAPE and CIN are then 0.
+        The numbers in SI units. A level that does not exist is None, but CAPE and CIN are 0.
 
     Raises
     ------
@@ -91,10 +91,10 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
     Notes
     -----
     The numbers are those of MetPy's ``lcl``, ``lfc``, ``el``, ``surface_based_cape_cin`` and ``precipitable_water``.
-    MetPy's LFC and EL are where the *temperatures* of parcel and air cross, as lines do on a skew-T, while its
-    CAPE and CIN are of *virtual* temperatures and of the lowest LFC of those [1]_. So there can be CAPE without an
-    LFC, or an EL without CAPE. From the lowest LFC to the highest EL, a stable layer between counts against CAPE;
-    where the sounding ends below the EL, CAPE goes up to its end.
+    MetPy's LFC and EL are where the *temperatures* of parcel and environment cross, as lines do on a skew-T, while its
+    CAPE and CIN belong to *virtual* temperatures and to the lowest LFC of those [1]_. So there can be CAPE without an
+    LFC, or an EL without CAPE. From the lowest LFC to the highest EL, a stable layer in between reduces CAPE; if the
+    sounding ends below the EL, CAPE is summed up to its end.
 
     References
     ----------
@@ -104,7 +104,7 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
 
     Examples
     --------
-    Moist air below cold air: a parcel that is lifted a kilometre makes cloud, and above 1.6 km it rises by itself.
+    Moist air below cold air: a parcel that is lifted a kilometre forms a cloud, and above 1.6 km it rises by itself.
 
     >>> from atmosbox.scene.sounding.analytic import weisman_klemp
     >>> found = indices(weisman_klemp())

@@ -1,6 +1,6 @@
-"""What no ascent can be: values in the wrong unit, levels out of order, gaps.
+"""Checks of soundings: values in the wrong unit, levels out of order, gaps.
 
-Every refusal is one sentence that says where the value stands, what it is and what to do.
+Every refusal is one sentence that says where the value is, what it is and what to do.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ __all__ = [
 ]
 
 FEWEST_LEVELS = 5
-"""The fewest levels that make a curve."""
+"""Smallest number of levels of a sounding."""
 LARGEST_GAP = 250e2
-"""Pressure that may lie between two levels: the mandatory ones are up to 200 hPa apart [Pa]."""
+"""Largest difference in pressure between two levels: the mandatory levels are up to 200 hPa apart [Pa]."""
 GAP_CEILING = 300e2
-"""Pressure above whose surface gaps do not matter [Pa]."""
+"""Pressure below which gaps do not matter, in the upper part of the sounding [Pa]."""
 ROUNDING = 0.05
-"""How far the dewpoint may lie above the temperature by rounding [K]."""
+"""How far rounding may put the dewpoint above the temperature [K]."""
 STEEPEST = 2.0
-"""How much colder than along the dry adiabat a level may be than the one below it [K]; what is more, mixes at once."""
+"""How much colder a level may be than the dry adiabat from the level below [K]; steeper layers mix at once."""
 STEEPEST_AT_GROUND = 6.0
-"""The same within 50 hPa of the ground, where the sun heats it faster than the air can mix [K]."""
+"""The same within 50 hPa of the ground, where the sun heats the air faster than it can mix [K]."""
 STRONGEST_INVERSION = 15.0
 """How much warmer a level may be than the one below it, above the lowest 150 hPa and below the 100 hPa surface [K]."""
 DOUBTFUL_GAP = 200e2
-"""Pressure between two levels, below the 300 hPa surface, over which much may be missed [Pa]."""
+"""Difference in pressure between two levels, below the 300 hPa surface, above which the sounding is doubtful [Pa]."""
 LOWEST_TOP = 300e2
-"""Pressure at which an ascent should have ended at the lowest; storms reach higher [Pa]."""
+"""Highest pressure at which a sounding should end; storms reach higher [Pa]."""
 _GROUND_LAYER = 50e2
 _LOWEST_LAYER = 150e2
 _STRATOSPHERE = 100e2
@@ -56,7 +56,7 @@ Place = Callable[[int], str]
 
 
 def in_si(values: Floats, unit: Unit) -> Floats:
-    """Return values of a unit in the SI.
+    """Return values in SI units.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def in_si(values: Floats, unit: Unit) -> Floats:
 
 
 def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
-    """Return the first level whose value lies outside the limits, if its unit is this one; None if none does."""
+    """Return the first level whose value is outside the limits if its unit is this one; None if there is none."""
     measure, si = QUANTITIES[quantity], in_si(values, unit)
     wrong = np.flatnonzero((si < measure.low) | (si > measure.high))
     if wrong.size:
@@ -85,23 +85,23 @@ def _first_implausible(quantity: str, values: Floats, unit: Unit) -> int | None:
 
 
 def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> None:
-    """Refuse values that the atmosphere does not have, and say which unit they look like.
+    """Refuse values that do not occur in the atmosphere, and name the unit that they look like.
 
     Parameters
     ----------
     quantity
         One of :data:`~atmosbox.scene.sounding.column.QUANTITIES`.
     values : (level,)
-        The values in `unit`, NaN where they are missing; at least one is not.
+        The values in `unit`, NaN where they are missing; at least one is a number.
     unit
-        The unit in which they are understood.
+        The unit in which they are read.
     place
-        Says where a level stands.
+        Function that returns the place of a level in the file.
 
     Raises
     ------
     SoundingError
-        If a value lies outside the limits of the quantity, or the largest pressure is none of the ground.
+        If a value is outside the limits of the quantity, or the largest pressure cannot be that of a ground.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def widest_gap(pressure: Floats) -> tuple[float, int]:
     Returns
     -------
     tuple of float and int
-        The difference in pressure [Pa], and the number of the level below the gap.
+        The difference in pressure [Pa], and the index of the level below the gap.
 
     Examples
     --------
@@ -155,7 +155,7 @@ def widest_gap(pressure: Floats) -> tuple[float, int]:
 
 
 def doubts(pressure: Floats, temperature: Floats) -> list[str]:
-    """Return what makes an ascent doubtful, though it could be, a sentence each.
+    """Return what is doubtful in a possible sounding, one sentence each.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def doubts(pressure: Floats, temperature: Floats) -> list[str]:
 
     Examples
     --------
-    A level of 300 hPa with 0 degC, where -43.5 degC was meant:
+    A level at 300 hPa with 0 degC instead of -43.5 degC:
 
     >>> p = np.array([1000e2, 850e2, 700e2, 500e2, 400e2, 300e2, 250e2])
     >>> for sentence in doubts(p, 273.15 + np.array([20.0, 12.0, 3.0, -17.0, -29.0, 0.0, -52.0])):
@@ -209,18 +209,18 @@ def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, height
     Parameters
     ----------
     pressure, temperature, dewpoint : (level,)
-        The levels from the ground up, nothing missing [Pa, K, K].
+        The levels from the ground up, complete [Pa, K, K].
     height : (level,)
         Height, or None [m].
     place
-        Says where a level stands.
+        Function that returns the place of a level in the file.
 
     Raises
     ------
     SoundingError
-        If they are fewer than five, if the pressure does not decrease from each to the next, if a dewpoint is
-        above its temperature, if more than 250 hPa below the 300 hPa surface have no level, if heights do
-        not increase, or if they do not fit the pressures to 10 %.
+        If there are fewer than five levels, if the pressure does not decrease from each to the next, if a dewpoint is
+        above its temperature, if there is a gap of more than 250 hPa below the 300 hPa surface, if heights do not
+        increase, or if they differ from those of the pressures by more than 10 %.
 
     Examples
     --------
@@ -263,7 +263,7 @@ def check_levels(pressure: Floats, temperature: Floats, dewpoint: Floats, height
 
 
 def _check_height(pressure: Floats, temperature: Floats, height: Floats, place: Place) -> None:
-    """Refuse heights that do not increase, or that are not those of the pressures."""
+    """Refuse heights that do not increase, or that do not fit the pressures."""
     fix = "correct it, or leave the heights out"
     if (falling := np.flatnonzero(np.diff(height) <= 0.0)).size:
         i = int(falling[0]) + 1

@@ -1,4 +1,4 @@
-"""The sounding itself: what a balloon, or a formula, says of the air above a place."""
+"""The sounding itself: the state of the air above a place, from a balloon or from a formula."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ class Sounding:
     temperature : (level,)
         Temperature [K].
     dewpoint : (level,)
-        Dewpoint with respect to liquid water, not above the temperature; one that rounding put up to 0.05 K above it
-        becomes the temperature [K].
+        Dewpoint with respect to liquid water, not above the temperature; if rounding has put it up to 0.05 K above the
+        temperature, it is set to the temperature [K].
     height : (level,)
-        Geopotential height above sea level, or above what the source counts from; None where it gives none [m].
+        Geopotential height above sea level, or above the zero of the source; None if the source has none [m].
     name
-        Which ascent it is.
+        The name of the ascent.
     source
         Where it comes from: the file and its format, or the paper.
     remarks
-        What reading has left out or filled in, a sentence each.
+        What reading has left out or filled in, one sentence each.
 
     Raises
     ------
     SoundingError
-        If the columns differ in length, if a value is not finite or not one of the atmosphere, or if the levels do
-        not make an ascent (see :func:`atmosbox.scene.sounding.plausibility.check_levels`).
+        If the columns differ in length, if a value is not finite or does not occur in the atmosphere, or if the levels
+        do not make an ascent (see :func:`atmosbox.scene.sounding.plausibility.check_levels`).
 
     Notes
     -----
-    The arrays are copies that cannot be written to.
+    The arrays are read-only copies.
 
     Examples
     --------
@@ -82,14 +82,14 @@ class Sounding:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What makes the ascent doubtful, though it could be, a sentence each."""
+        """What is doubtful in the ascent though it is possible, one sentence each."""
         return tuple(doubts(self.pressure, self.temperature))
 
     def _place(self, level: int) -> str:
         return f"{shown(self.name)}, level {level + 1}"
 
     def _column(self, name: str, values: ArrayLike) -> Floats:
-        """Return a copy of a column, or raise SoundingError if it is not one of finite numbers."""
+        """Return a copy of a column, or raise SoundingError if it is not a row of finite numbers."""
         try:
             column = np.array(values, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):

@@ -1,4 +1,4 @@
-"""Profiles in netCDF, as xarray and MetPy leave them."""
+"""Profiles in netCDF files, as xarray and MetPy write them."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def parse(path: str | os.PathLike[str], file: str, name: str) -> Table:
     path
         The file.
     file
-        The file as an error names it.
+        The name of the file in messages.
     name
-        The name of the ascent where the file has no title.
+        The name of the ascent if the file has no title.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def _table(dataset: xr.Dataset, file: str, name: str) -> Table:
             )
     profiles = {quantity: _squeezed(variables[key]) for quantity, key in found.items()}
     pressure = profiles["pressure"]
-    if "height" in profiles and profiles["height"].dims != pressure.dims:  # that of a thermometer, say
+    if "height" in profiles and profiles["height"].dims != pressure.dims:  # such as the height of a thermometer
         del profiles["height"]
     for quantity, variable in profiles.items():
         if variable.ndim != 1 or variable.size > _MOST_VALUES:
@@ -128,7 +128,7 @@ def _table(dataset: xr.Dataset, file: str, name: str) -> Table:
 
 
 def _found(variables: dict[str, xr.Variable], file: str) -> dict[str, str]:
-    """Return the variable of each quantity: by standard_name, or else by its own name."""
+    """Return the variable of each quantity, found by standard_name, or else by its own name."""
     keys = list(variables)
     named = stated_columns([f"{key} [{variables[key].attrs.get('units', '')}]" for key in keys], file)
     found = {quantity: keys[i] for quantity, (i, _) in named.items()}
@@ -141,11 +141,11 @@ def _found(variables: dict[str, xr.Variable], file: str) -> dict[str, str]:
 
 
 def _squeezed(variable: xr.Variable) -> xr.Variable:
-    """Return a variable without its dimensions of size one, its data still in the file."""
+    """Return a variable without its dimensions of size one; its data are still in the file."""
     return variable.isel({dim: 0 for dim, size in variable.sizes.items() if size == 1})
 
 
 def _unit(variable: xr.Variable) -> str | None:
-    """Return the unit of a variable, None where it has none."""
+    """Return the unit of a variable, None if it has none."""
     unit = variable.attrs.get("units")
     return None if unit is None else str(unit)

@@ -1,4 +1,4 @@
-"""Reading a file of any format: open, recognise by content, read, check."""
+"""Reading a file of any format: open it, recognise the format by the content, read, check."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from atmosbox.scene.sounding.tabulated import Table, sounding_of
 __all__ = ["LARGEST_FILE", "MOST_LINES", "read"]
 
 LARGEST_FILE = 16 * 2**20
-"""Size of a file above which it is not even opened; a sounding has some kilobytes [byte]."""
+"""Largest size of a file that is opened; a sounding has some kilobytes [byte]."""
 
 MOST_LINES = 100_000
-"""Lines above which a text is not looked at; a report every second makes some 6000."""
+"""Largest number of lines of a text that is read; a report every second makes some 6000."""
 
 _FIX = "give a sounding as Wyoming, IGRA, BUFKIT or SHARPpy text, CSV or netCDF"
 _BINARY = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
@@ -34,22 +34,22 @@ _MARKS = {
 def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -> Sounding:
     r"""Return the sounding in a file, from the ground up.
 
-    The format is recognised by the content: a table of the University of Wyoming, as text or as the page of the
-    web; a file of IGRA, version 2, or of BUFKIT, of which the first sounding is taken; SHARPpy's text; a table with
-    named columns (CSV); netCDF with the variables that MetPy's users have.
+    The format is recognised by the content: a table of the University of Wyoming, as text or as its web page; a file of
+    IGRA, version 2, or of BUFKIT, of which the first sounding is read; SHARPpy's text; a table with named columns
+    (CSV); netCDF with variables as users of MetPy name them.
 
     Parameters
     ----------
     path
         The file.
     units
-        Units of ``pressure``, ``temperature``, ``dewpoint`` and ``height`` where the file states none, or wrong
-        ones; what is given here prevails.
+        Units of ``pressure``, ``temperature``, ``dewpoint`` and ``height``, for a file that states none or wrong ones;
+        they override those of the file.
 
     Returns
     -------
     Sounding
-        The ascent. See :func:`atmosbox.scene.sounding.tabulated.sounding_of` for what is done about missing values.
+        The ascent. See :func:`atmosbox.scene.sounding.tabulated.sounding_of` for the treatment of missing values.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def read(path: str | os.PathLike[str], units: Mapping[str, str] | None = None) -
         If it is empty or has more than 100 000 lines, is in no known format, lacks a column or a unit, or if its
         levels do not make an ascent.
     UnitError
-        If `units` names another column, or a unit that is none of it.
+        If `units` names another column, or a unit of another quantity.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def _content(source: Path, file: str) -> bytes:
 
 
 def _text(content: bytes, file: str) -> str:
-    """Return the text of a file, in UTF-8 or else latin-1, or in UTF-16 if it says so."""
+    """Return the text of a file, in UTF-8 or else latin-1, or in UTF-16 if it begins with its mark."""
     for mark, problem in _MARKS.items():
         if content.startswith(mark):
             raise SoundingError(f"{file} {problem}.")
@@ -123,7 +123,7 @@ def _text(content: bytes, file: str) -> str:
 
 
 def _parsed(lines: list[str], file: str, name: str) -> Table:
-    """Return the columns of a text in whichever format it is."""
+    """Return the columns of a text in any of the formats."""
     if len(lines) > MOST_LINES:
         raise SoundingError(f"{file} has {len(lines)} lines, far more than a sounding: {_FIX}.")
     if igra.recognised(lines):

@@ -1,4 +1,4 @@
-"""Soundings as SHARPpy and its predecessors exchange them: %TITLE%, %RAW%, lines of numbers, %END%."""
+"""The text format of SHARPpy and its predecessors: %TITLE%, %RAW%, lines of numbers, %END%."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _UNITS = {"pressure": "hPa", "temperature": "degC", "dewpoint": "degC", "height"
 
 
 def _line_of(mark: str, lines: Sequence[str]) -> int | None:
-    """Return the number of the line that is a mark, or None."""
+    """Return the index of the line that consists of a mark, or None."""
     return next((i for i, line in enumerate(lines) if line.strip().upper() == mark), None)
 
 
 def recognised(lines: Sequence[str]) -> bool:
-    """Return whether a text is of this format.
+    """Return whether a text has this format.
 
     Parameters
     ----------
@@ -39,16 +39,16 @@ def recognised(lines: Sequence[str]) -> bool:
 
 
 def parse(lines: Sequence[str], file: str, name: str) -> Table:
-    """Return the columns between %RAW% and %END%; -9999 stands for what is missing.
+    """Return the columns between %RAW% and %END%; -9999 means a missing value.
 
     Parameters
     ----------
     lines
         The lines of the file.
     file
-        The file as an error names it.
+        The name of the file in messages.
     name
-        The name of the ascent where the text gives none.
+        The name of the ascent if the text has none.
 
     Raises
     ------

@@ -18,7 +18,7 @@ __all__ = ["DRY_DEPRESSION", "Table", "sounding_of"]
 DRY_DEPRESSION = 30.0
 """Dewpoint depression of air above the highest level with a dewpoint, as weather services coded dry air [K]."""
 _REMARKABLE_GAP = 150e2  # Pa
-_LOW_MARK = -999.0  # what stands at or below it is no measurement of anything
+_LOW_MARK = -999.0  # at or below it a number marks a missing value
 _HIGH_MARKS = (999.0, 999.9, 999.99, 9999.0, 9999.9, 99999.0, 99999.9)  # of temperature and dewpoint
 
 Floats = NDArray[np.float64]
@@ -26,26 +26,26 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Table:
-    """The columns of a file as they stand in it.
+    """The columns of a file as they are written in it.
 
     Parameters
     ----------
     file
-        The file as an error names it.
+        The name of the file in messages.
     kind
         The format.
     name
-        Which ascent it is.
+        The name of the ascent.
     values
         For each quantity its column (level,) in the file's unit, NaN where a value is missing.
     units
-        For each quantity its unit as written, None where none is.
+        For each quantity its unit as written, None if there is none.
     places
-        Where each level stands in the file.
+        The place of each level in the file.
     head
-        Where the columns are named.
+        The place where the columns are named.
     remarks
-        What reading has left out so far, a sentence each.
+        Remarks on what reading has left out so far, one sentence each.
     """
 
     file: str
@@ -60,7 +60,7 @@ class Table:
 
 @dataclass(frozen=True)
 class _Levels:
-    """Levels in SI units and where each stands."""
+    """Levels in SI units, and the place of each in the file."""
 
     columns: dict[str, Floats]
     places: NDArray[np.str_]
@@ -70,7 +70,7 @@ class _Levels:
 
 
 def _known_columns(table: Table) -> tuple[dict[str, Floats], dict[str, str]]:
-    """Return the columns in their units, marks of missing values turned into NaN, and the units."""
+    """Return the columns in their units, with NaN in place of marks of missing values, and the units."""
     columns, units = {}, {}
     for quantity in QUANTITIES:
         if quantity not in table.values:
@@ -88,14 +88,14 @@ def _known_columns(table: Table) -> tuple[dict[str, Floats], dict[str, str]]:
 
 
 def _lacking(quantity: str) -> str:
-    """Return what to do about a column that is not there."""
+    """Return what a user can do about a missing column."""
     if quantity == "dewpoint":
         return "name its column dewpoint, or make it of the relative humidity by MetPy"
     return f"name its column {quantity}"
 
 
 def _complete(levels: _Levels, file: str) -> tuple[_Levels, list[str]]:
-    """Return the levels from the ground up, without those that lack what they need, and what to remark."""
+    """Return the levels from the ground up, without incomplete ones, and the remarks on what was left out."""
     remarks = []
     whole = ~np.isnan(levels.columns["pressure"]) & ~np.isnan(levels.columns["temperature"])
     if left_out := int(np.count_nonzero(~whole)):
@@ -120,7 +120,7 @@ def _complete(levels: _Levels, file: str) -> tuple[_Levels, list[str]]:
 
 
 def _filled(levels: _Levels) -> tuple[_Levels, list[str]]:
-    """Return the levels with dry air above the highest dewpoint, heights for all or none, and what to remark."""
+    """Return the levels with dry air above the highest dewpoint, and heights for all or none; and the remarks."""
     columns, remarks = dict(levels.columns), []
     dry = np.isnan(columns["dewpoint"])
     if dry.any():
@@ -147,15 +147,15 @@ def sounding_of(table: Table) -> Sounding:
     Parameters
     ----------
     table
-        What a reader found.
+        The columns that a reader found.
 
     Returns
     -------
     Sounding
-        The levels from the ground up. A level without pressure or temperature is left out, and so is one without
-        dewpoint below another that has it, as MetPy does. Above the highest dewpoint, where radiosondes cease
-        to report it, the dewpoint is taken 30 K below the temperature. A level that is given twice is
-        taken once. What was done stands in the remarks.
+        The levels from the ground up. A level without pressure or temperature is left out, and so is a level without
+        dewpoint below another that has one, as in MetPy. Above the highest dewpoint, where radiosondes cease to report
+        it, the dewpoint is set 30 K below the temperature. Of a level that is given twice, one is left out. The remarks
+        list all this.
 
     Raises
     ------
@@ -192,7 +192,7 @@ def sounding_of(table: Table) -> Sounding:
     def place(level: int) -> str:
         return f"{table.file}, {levels.places[level]}"
 
-    for quantity, column in levels.columns.items():  # another level may be the lowest now
+    for quantity, column in levels.columns.items():  # another level may be the lowest one now
         check_plausible(quantity, column, QUANTITIES[quantity].si, place)
     check_levels(pressure, temperature, dewpoint, height, place)
     name = shown(" ".join(table.name.split())) or table.file

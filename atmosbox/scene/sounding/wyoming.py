@@ -1,4 +1,4 @@
-"""The tables of the University of Wyoming, as text or as the page of the web they were saved from."""
+"""The tables of the University of Wyoming, as text or as the web page from which they were saved."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _RULE = re.compile(r"\s*-{5,}\s*")
 
 
 def recognised(lines: Sequence[str]) -> bool:
-    """Return whether a text holds such a table.
+    """Return whether a text contains such a table.
 
     Parameters
     ----------
@@ -40,17 +40,17 @@ def recognised(lines: Sequence[str]) -> bool:
 def parse(lines: Sequence[str], file: str, name: str) -> Table:
     """Return the first table in a text.
 
-    Columns are seven characters wide and may be blank: below the ground, and above the last report of
-    humidity or wind. The indices after the table are not read.
+    Columns are seven characters wide and may be blank: below the ground, and above the last report of humidity or wind.
+    The indices after the table are not read.
 
     Parameters
     ----------
     lines
         The lines of the file.
     file
-        The file as an error names it.
+        The name of the file in messages.
     name
-        The name of the ascent where the text gives none.
+        The name of the ascent if the text has none.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
 
 
 def _cells(line: str, ends: Sequence[int], where: str) -> list[str]:
-    """Return the texts of the columns of a line: its words if none is missing, else what stands below each name."""
+    """Return the cells of a line: its words if none is missing, else the text below the name of each column."""
     words = line.split()
     if len(words) == len(ends):
         return words

@@ -1,8 +1,8 @@
-"""How accurate a run will be: a table of measured errors, and the cheapest way of running that meets a wish.
+"""How accurate a run will be: a table of measured errors, and the cheapest run that is accurate enough.
 
-Every scene that has something to compare was run through engines and settings with many seeds; the table that comes
-with atmosbox, ``accuracy.json``, holds for each of these ways the error of every headline and what a run costs,
-as a ratio to the run that the scene makes by default. ``python benchmarks/accuracy.py`` measures it anew.
+Every scene that can be compared with theory was run on several engines and with several settings, with many seeds each.
+The table that comes with atmosbox, ``accuracy.json``, holds for each of these runs the error of every headline and the
+cost, as a ratio to the scene's default run. ``python benchmarks/accuracy.py`` measures it again.
 """
 
 from atmosbox.scene.wish import TARGETS, Wish, parse

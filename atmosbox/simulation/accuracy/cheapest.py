@@ -1,4 +1,4 @@
-"""The cheapest way of running a scene that meets a wish, and what is known of a run beforehand."""
+"""The cheapest run of a scene that is accurate enough, and the errors that are expected of a run."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ __all__ = ["Expectation", "choose", "cost", "expect"]
 
 @dataclass(frozen=True)
 class Expectation:
-    """What is known beforehand of a run's errors.
+    """The errors that are expected of a run.
 
     Parameters
     ----------
     way
         The run that was measured.
     sets
-        The settings that trade accuracy for time, as they were picked.
+        The chosen values of the settings that trade accuracy for time.
     labels
-        What a table calls the headlines, by name.
+        Labels of the headlines in a table, by name.
     wish
-        What the user wished; None where the engine was given explicitly.
+        The accuracy that the user wished; None if the engine was given explicitly.
     met
         Whether the expected errors are within the wish.
     differs
-        The settings in which this run differs from those that were measured.
+        The settings in which this run differs from the one that was measured.
     """
 
     way: Measured
@@ -42,13 +42,13 @@ class Expectation:
     differs: tuple[str, ...] = ()
 
     def at(self, changed: Mapping[str, Any]) -> Expectation:
-        """Return the same for a run whose settings differ from the defaults in `changed`."""
+        """Return the expectation for a run whose settings differ from the defaults in `changed`."""
         names = sorted((changed.keys() | self.way.settings.keys()) - {"seed"})
         differs = (name for name in names if changed.get(name) != self.way.settings.get(name))
         return replace(self, differs=tuple(differs))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return it as JSON can hold it."""
+        """Return the expectation as values that JSON can hold."""
         errors = {
             name: {**error._asdict(), "total": error.total, "label": self.labels[name]}
             for name, error in self.way.errors.items()
@@ -71,7 +71,7 @@ def choose(
     settings: Mapping[str, Any] | None = None,
     tables: Mapping[str, Table] | None = None,
 ) -> Expectation:
-    """Return the cheapest way of running a scene whose expected error meets a wish.
+    """Return the cheapest measured run of a scene whose expected error is within a wish.
 
     Parameters
     ----------
@@ -80,19 +80,19 @@ def choose(
     wish
         The largest error.
     settings
-        What the user has set, by name, in so far as it differs from the scene's defaults.
+        The values that the user has set and that differ from the scene's defaults, by name.
     tables
-        What was measured, by scene; what comes with atmosbox if None.
+        The measured tables, by scene; None for those that come with atmosbox.
 
     Returns
     -------
     Expectation
-        The way that was picked. Where none meets a target that has a name it is the most accurate one, and not met.
+        The chosen run. If no run reaches a wish with a name, it is the most accurate run, and ``met`` is False.
 
     Raises
     ------
     SettingError
-        If the scene was not measured, or no way of running it is within a number; the sentence says which is best.
+        If the scene was not measured, or no run is within a wish given as a number; the sentence names the best run.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def choose(
         fix = f"leave it out, or take one of {', '.join(tables)}"
         raise SettingError("accuracy", wish.text, f"is not for {scene}, whose errors were not measured", fix)
     table = tables[scene]
-    # a run that ends before it comes to a headline meets no wish
+    # a run that ends before it reaches a headline satisfies no wish
     ways = tuple(way for way in table.same_experiment(settings or {}) if way.errors.keys() >= table.labels.keys())
     if not ways:
         problem = f"is not for {scene} with these settings, at which nothing was measured"
@@ -126,7 +126,7 @@ def choose(
         return picked(best, wish.best)
     reached = worst[id(best)] * (100.0 * wish.share if wish.absolute else wish.kelvin)
     digits = 1 - math.floor(math.log10(reached))
-    enough = math.ceil(reached * 10.0**digits) / 10.0**digits  # never less than what is reached
+    enough = math.ceil(reached * 10.0**digits) / 10.0**digits  # never less than the best run reaches
     unit = "%" if wish.absolute else "K"
     raise SettingError(
         "accuracy", wish.text,
@@ -142,7 +142,7 @@ def expect(
     changed: Mapping[str, Any],
     tables: Mapping[str, Table] | None = None,
 ) -> Expectation | None:
-    """Return what is known of an engine at some settings; None where it was not measured.
+    """Return the errors expected of an engine at some settings; None if that run was not measured.
 
     Parameters
     ----------
@@ -151,9 +151,9 @@ def expect(
     engine
         The engine with its options.
     changed
-        What differs from the scene's defaults.
+        The values that differ from the scene's defaults.
     tables
-        What was measured, by scene; what comes with atmosbox if None.
+        The measured tables, by scene; None for those that come with atmosbox.
     """
     tables = load() if tables is None else tables
     table = tables.get(scene, Table((), {}, ()))

@@ -1,4 +1,4 @@
-"""What was measured: every way of running a scene, with its cost and the errors of its headlines."""
+"""The table of measurements: every measured run of a scene, with its cost and the errors of its headlines."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ExpectedError(NamedTuple):
     """The measured error of a headline: in K if ``unit`` is K, else as a share of the theory.
 
     ``bias`` is the mean misfit to theory and ``bias_se`` its standard error, ``noise`` the standard deviation of a
-    single run, and ``theory`` what theory said [SI].
+    single run, and ``theory`` the value of the theory [SI].
     """
 
     unit: str
@@ -36,7 +36,7 @@ class ExpectedError(NamedTuple):
     def total(self) -> float:
         """Root mean square error to expect of a single run.
 
-        What is not known of the bias counts in full.
+        The standard error of the bias is included in full.
 
         Examples
         --------
@@ -46,11 +46,11 @@ class ExpectedError(NamedTuple):
         return math.hypot(self.bias, self.bias_se, self.noise)
 
     def size(self, theory: float | None) -> float:
-        """Return one unit of the error in that of a headline [SI], for what theory says in a run."""
+        """Return the factor from this error to that of a headline [SI], for the value of the theory in a run."""
         return 1.0 if self.unit == "K" else abs(theory or 0.0)
 
     def excess(self, wish: Wish) -> float:
-        """Return the error as a multiple of what a wish allows; 0 where it has no limit."""
+        """Return the error as a multiple of what a wish allows; 0 if the wish sets no limit."""
         if self.unit != "K":
             return self.total / wish.share
         relative = self.total / abs(self.theory) / wish.share if wish.absolute else 0.0
@@ -59,18 +59,18 @@ class ExpectedError(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """A way of running a scene whose errors were measured.
+    """A run of a scene whose errors were measured.
 
     Parameters
     ----------
     engine
         The engine with its options.
     settings
-        What differs from the scene's defaults.
+        The values that differ from the scene's defaults.
     cost
         Processor time of the engine, as a multiple of that in the scene's default run.
     members
-        How many runs were made.
+        Number of runs, each with its own seed.
     errors
         The error of each headline, by name.
     """
@@ -83,7 +83,7 @@ class Measured:
 
     @property
     def label(self) -> str:
-        """The words that ask for this run, but for the scene."""
+        """The engine and the settings of this run, as they are typed."""
         return ", ".join([self.engine, *(said(name, value) for name, value in self.settings.items())])
 
     def excess(self, wish: Wish) -> float:
@@ -93,18 +93,18 @@ class Measured:
 
 @dataclass(frozen=True)
 class Table:
-    """What was measured of a scene.
+    """The measurements of one scene.
 
     Parameters
     ----------
     varies
-        The settings that trade accuracy for time; every other makes a different experiment.
+        The settings that trade accuracy for time; any other setting makes a different experiment.
     labels
-        What a table calls the headlines, by name.
+        Labels of the headlines in a table, by name.
     ways
-        The ways of running it.
+        The measured runs.
     how
-        How it was measured: the version, the budget [s], the command, and the processor time of the default run [s].
+        How they were measured: the version, the budget [s], the command, and the processor time of the default run [s].
     """
 
     varies: tuple[str, ...]
@@ -114,7 +114,7 @@ class Table:
 
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> Table:
-        """Return the table that an entry of the file is."""
+        """Return the table from its entry in the file."""
         about = entry["headlines"]
         return cls(
             tuple(entry["varies"]),
@@ -136,9 +136,10 @@ class Table:
         )
 
     def same_experiment(self, settings: Mapping[str, Any]) -> tuple[Measured, ...]:
-        """Return the ways of running the experiment that a user has set, in so far as any of them tells it apart.
+        """Return the measured runs of the experiment that a user has set, as far as the table distinguishes it.
 
-        A switch or a word makes another experiment; of numbers, those count that come nearest to the user's.
+        Another switch or word makes another experiment; among different numbers, those runs count that agree in most of
+        them.
         """
         apart = {name: value for way in self.ways for name, value in way.settings.items() if name not in self.varies}
         other = {name for name, value in apart.items() if isinstance(value, bool | str)}
@@ -165,7 +166,7 @@ def load() -> Mapping[str, Table]:
 
 
 def said(name: str, value: bool | int | float | str) -> str:
-    """Return a setting in words.
+    """Return a setting as it is typed.
 
     Examples
     --------
