@@ -1,8 +1,8 @@
-"""Where molecules stand at the start, and how they move.
+"""Positions and velocities of the molecules at the start.
 
-`scatter`    at random
-`overlap`    those that overlap are pushed apart
-`clearing`   those that a drop reaches are placed anew
-`lattice`    on a lattice
-`velocity`   velocities and energies of rotation
+`scatter`    positions at random
+`overlap`    overlapping molecules are pushed apart
+`clearing`   molecules that overlap a drop get new positions
+`lattice`    positions on a lattice
+`velocity`   velocities and rotational energies
 """

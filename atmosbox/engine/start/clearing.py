@@ -1,4 +1,4 @@
-"""Molecules make room for drops: those that a drop reaches are placed anew, at random."""
+"""Molecules make room for drops: those that overlap a drop get new random positions."""
 
 import math
 
@@ -15,14 +15,14 @@ Array = NDArray[np.float64]
 
 @kernel
 def _distance(place, i, x, y, z):
-    """Return how far a point is from molecule i, or drop i [length]."""
+    """Return the distance of a point from the centre of molecule i, or of drop i [length]."""
     dx, dy, dz = place[i, 0] - x, place[i, 1] - y, place[i, 2] - z
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
 @kernel
 def _is_reached(x, y, z, centre, reach):
-    """Tell whether a drop reaches a point."""
+    """Return whether a point lies within the reach of a drop."""
     found = False
     for k in range(reach.size):
         found |= _distance(centre, k, x, y, z) < reach[k]
@@ -31,7 +31,7 @@ def _is_reached(x, y, z, centre, reach):
 
 @kernel
 def _is_taken(i, x, y, z, place):
-    """Tell whether molecule i would overlap another one at a point."""
+    """Return whether molecule i would overlap another one at a point."""
     found = False
     for j in range(place.shape[0]):
         found |= j != i and _distance(place, j, x, y, z) <= 1.0
@@ -40,7 +40,7 @@ def _is_taken(i, x, y, z, place):
 
 @kernel(entry=True)
 def clear(place, centre, reach, side, state):
-    """Place molecules anew that a drop reaches: see `clear_of_drops`; ``state : (1,)`` of the random numbers."""
+    """Give new positions to molecules within reach of a drop: see `clear_of_drops`; ``state : (1,)`` is advanced."""
     for i in range(place.shape[0]):
         x, y, z = place[i, 0], place[i, 1], place[i, 2]
         if not _is_reached(x, y, z, centre, reach):
@@ -55,7 +55,7 @@ def clear(place, centre, reach, side, state):
 
 
 def clear_of_drops(position: Array, centre: ArrayLike, reach: ArrayLike, side: float, rng: RandomNumbers) -> Array:
-    """Return places of molecules of diameter 1 between walls, those that a drop reaches anew until they are free.
+    """Return positions of molecules of diameter 1 between walls; those within reach of a drop are drawn anew.
 
     Parameters
     ----------
@@ -64,11 +64,11 @@ def clear_of_drops(position: Array, centre: ArrayLike, reach: ArrayLike, side: f
     centre : (drop, axis)
         Centres of the drops [length].
     reach : (drop,)
-        How far from that of each no centre of a molecule may be [length].
+        Distance from the centre of each drop within which no centre of a molecule may be [length].
     side
         Side of the box, a cube [length].
     rng
-        Where the random numbers come from.
+        Random numbers.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Where molecules stand at the start, on a lattice: for those too dense to be scattered."""
+"""Positions of the molecules at the start, on a lattice: for packing fractions too high for random positions."""
 
 import math
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ def lattice_positions(
     length, diameter, periodic, planar
         As in `atmosbox.engine.start.scatter.random_positions`.
     rng
-        Chooses the sites where there are more of them than molecules; the first ones are taken without it.
+        Random numbers that choose the sites if there are more sites than molecules; without it the first are taken.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def lattice_positions(
 
     Examples
     --------
-    A cube of 4 unit cells a side at the packing fraction where hard spheres have long been a crystal:
+    A cube of 4 unit cells a side, at a packing fraction at which hard spheres are a crystal:
 
     >>> sites = lattice_positions((6.0, 6.0, 6.0), np.ones(256), periodic=(True, True, True))
     >>> sites.shape, round(packing_fraction((6, 6, 6), np.ones(256)), 2)
@@ -103,5 +103,5 @@ def lattice_positions(
 
 
 def _diagonal(a: float, b: float) -> float:
-    """Return the hypotenuse over two sides; `math.hypot` may round differently elsewhere."""
+    """Return the hypotenuse over two sides; `math.hypot` is not rounded equally on all machines."""
     return math.sqrt(a * a + b * b)

@@ -1,4 +1,4 @@
-"""Molecules that overlap are pushed apart along their line of centres, until none does."""
+"""Overlapping molecules are pushed apart along their line of centres, until none overlap."""
 
 import math
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class _Spheres(NamedTuple):
-    """What is pushed: see `push_apart`; ``moved``, ``moves : (molecule,)`` who was in the last round and in this."""
+    """The data of `push_apart`; ``moved``, ``moves : (molecule,)`` which were pushed in the last round, and in this."""
 
     x: Any
     radius: Any
@@ -27,10 +27,11 @@ class _Spheres(NamedTuple):
 
 
 class _Bins(NamedTuple):
-    """Where neighbours are looked for.
+    """The bins in which neighbours are searched.
 
-    ``number``, ``origin``, ``size : (axis,)`` of the bins; ``head : (bin,)`` a molecule of each, ``follower :
-    (molecule,)`` the next one there, ``place : (molecule, axis)`` the bin of each.
+    ``number``, ``origin``, ``size : (axis,)``: number of bins, lowest coordinate and extent of all bins; ``head :
+    (bin,)`` a molecule in each bin, ``follower : (molecule,)`` the next one in the same bin, -1 for none;
+    ``place : (molecule, axis)`` the bin of each molecule.
     """
 
     number: Any
@@ -74,7 +75,7 @@ def _push_pair(i, j, gap, spheres):
     wanted = touching * (1.0 + gap)
     if distance < 1e-9 * wanted:
         dx, dy, dz, distance = wanted * 1e-3, 0.0, wanted * 1e-3, wanted * 1.5e-3
-    # a little more than needed, the larger sphere moving less
+    # a little more than needed; the larger sphere moves less
     push = 1.05 * (wanted - distance) / distance
     other, own = radius[j] * radius[j] * radius[j], radius[i] * radius[i] * radius[i]
     share = other / (own + other)
@@ -93,7 +94,7 @@ def _push_pair(i, j, gap, spheres):
 
 
 def push_apart(x: Array, radius: Array, low: Array, high: Array, turn: Array, rounds: int, gap: float) -> int:
-    """Push overlapping molecules apart, some rounds; return how many pairs were pushed in the last one.
+    """Push overlapping molecules apart in several rounds; return how many pairs were pushed in the last one.
 
     Parameters
     ----------
@@ -102,22 +103,22 @@ def push_apart(x: Array, radius: Array, low: Array, high: Array, turn: Array, ro
     radius : (molecule,)
         Radii [length].
     low, high : (molecule, axis)
-        The lowest and highest place of each centre [length].
+        Lowest and highest coordinates that each centre may have [length].
     turn : (axis,)
         Side of the box along a periodic axis, 0 along any other [length].
     rounds
-        How often all pairs are looked at, at most.
+        Largest number of rounds over all pairs.
     gap
-        What is left free between two that were pushed, as a share of their distance.
+        Gap that is left between two that were pushed, as a fraction of their distance in contact.
 
     Returns
     -------
     int
-        0 as soon as no molecules overlap any more.
+        0 as soon as no molecules overlap.
 
     Notes
     -----
-    Only pairs of which one has just moved are looked at again, so that late rounds cost little.
+    After the first round only pairs of which one has just moved are tested, so that late rounds cost little.
 
     Examples
     --------

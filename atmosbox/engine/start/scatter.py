@@ -1,6 +1,6 @@
-"""Where molecules stand at the start, at random.
+"""Positions of the molecules at the start, at random.
 
-What cannot be packed at random is refused within a second, with the reason.
+Molecules too dense for random positions are refused within a second, with the reason.
 """
 
 import math
@@ -36,26 +36,26 @@ def random_positions(
     scale_height: float | None = None,
     apart: bool = True,
 ) -> Array:
-    """Scatter molecules at random, then push apart those that overlap.
+    """Return random positions of molecules; those that overlap are pushed apart.
 
     Parameters
     ----------
     length
         The three sides of the box [length].
     diameter : (molecule,)
-        Diameters [length]; there are as many molecules as numbers here.
+        Diameters [length], one for each molecule.
     rng
         Random numbers.
     periodic
-        Which axes are periodic.
+        Whether each axis is periodic.
     planar
         Whether all centres lie in the plane y = half the box.
     top
         Only heights below this one are used [length]; the whole box by default.
     scale_height
-        Thins the molecules with height as an isothermal atmosphere does [length].
+        If given, the density decreases with height as in an isothermal atmosphere of this scale height [length].
     apart
-        Whether those that overlap are pushed apart; without it nothing is compiled, and no engine takes the result.
+        Whether overlapping molecules are pushed apart; without it nothing is compiled, but no engine takes the result.
 
     Returns
     -------
@@ -65,12 +65,12 @@ def random_positions(
     Raises
     ------
     PackingError
-        If they do not fit; regular lattices reach higher packing fractions.
+        If they do not fit at random; a regular lattice reaches higher packing fractions.
 
     Notes
     -----
-    Overlapping pairs are moved apart along their line of centres by what they overlap, again and again.
-    That reaches packing fractions of 0.56, where trying random places one by one ends at 0.38
+    Overlapping pairs are moved apart along their line of centres by the depth of the overlap, again and again.
+    That works up to packing fractions of 0.56; random places tried one by one end at 0.38
     (in a plane 0.74 and 0.55).
 
     Examples
@@ -111,7 +111,7 @@ def random_positions(
 
 
 def _too_dense(n: int, sides: Array, sigma: Array, planar: bool) -> PackingError:
-    """Return the refusal of what only a lattice could hold."""
+    """Return the refusal of a packing fraction that only a lattice could reach."""
     phi = packing_fraction(list(sides), sigma, planar=planar)
     return PackingError(
         f"{n} molecules fill {phi:.3g} of the space, too much for a random start: "

@@ -1,4 +1,4 @@
-"""How molecules move at the start: velocities, and energies of rotation; places are from `scatter` and `lattice`."""
+"""Velocities and rotational energies of the molecules at the start; positions are in `scatter` and `lattice`."""
 
 import math
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 def maxwell_velocities(
     kT: ArrayLike, mass: ArrayLike, rng: Source, *, planar: bool = False, exact: bool = False
 ) -> Array:
-    """Draw velocities of a gas at rest in equilibrium.
+    """Return random velocities of a gas at rest in equilibrium.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def maxwell_velocities(
     planar
         Whether the y velocity is zero.
     exact
-        Takes out the drift and scales the speeds so that the kinetic energy is that of kT to rounding.
+        Whether to remove the drift and to scale the speeds so that the kinetic energy is exactly that of kT.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def maxwell_velocities(
 
 
 def equal_speeds(speed: float, number: int, rng: Source, *, planar: bool = False) -> Array:
-    """Return velocities of one speed [length/time] in random directions.
+    """Return velocities of the same speed [length/time] in random directions.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def equal_speeds(speed: float, number: int, rng: Source, *, planar: bool = False
 
 
 def two_halves(position: Array, length: Sequence[float], kT: tuple[float, float]) -> Array:
-    """Return the temperature [energy] of each molecule where the two halves of the box along x differ.
+    """Return the temperature [energy] of each molecule: ``kT[0]`` in the lower half of the box along x, else ``kT[1]``.
 
     Examples
     --------
@@ -103,9 +103,9 @@ def two_halves(position: Array, length: Sequence[float], kT: tuple[float, float]
 
 
 def rotational_energies(kT: ArrayLike, rotation: ArrayLike, rng: Source) -> Array:
-    """Draw rotational energies of equilibrium [energy] of molecules with 0 to 3 rotational degrees of freedom.
+    """Return random rotational energies in equilibrium [energy], for 0 to 3 rotational degrees of freedom.
 
-    They are gamma variates of half the degrees of freedom, times kT.
+    They are gamma variates of shape half the degrees of freedom, times kT.
 
     Examples
     --------
