@@ -1,14 +1,14 @@
-"""Condensed water: a reservoir of molecules and energy, as a mist, as drops or as a pool.
+"""Condensed water: a reservoir of molecules and energy, in the form of a mist, of drops or of a pool.
 
-`substance`         what condenses, and as what
+`substance`         the condensing substance, and the forms of its liquid
 `reservoir`         the condensed molecules, and the laws of exchange
-`insertion`         where a molecule that evaporates finds a free place
-`phase`             a molecule leaves the box, or comes into it
-`moist_account`     what a box with liquid in it holds
-`moist`             from event to event, with a mist or a pool
+`insertion`         free places for molecules that evaporate
+`phase`             a molecule leaves the box, or enters it
+`moist_account`     the properties and tallies of a box with liquid
+`moist`             the loop over events, with a mist or a pool
 `moist_parcelset`   the box of moist air, advanced exactly
 `drop_shape`        drops as bodies
-`curvature`         what the surface of a drop and salt in it change
-`drop`              from event to event, with drops
+`curvature`         the effects of a drop's surface and of salt dissolved in it
+`drop`              the loop over events, with drops
 `drop_parcelset`    the box with drops, advanced exactly
 """

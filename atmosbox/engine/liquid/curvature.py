@@ -1,16 +1,17 @@
-r"""What the surface of a drop and the salt in it change: the laws of Kelvin and of Koehler, molecule by molecule.
+r"""The effects of a drop's surface and of salt in it: the laws of Kelvin and of Koehler, molecule by molecule.
 
 A drop of n molecules has the surface energy :math:`E(n) = 4 \pi \gamma r(n)^2`. When a molecule leaves, the surface
-shrinks, and :math:`\Delta E = E(n) - E(n - 1)` goes into the thermal energy U of the liquid; when one comes, the
-liquid pays it back. So :math:`U' = U + \Delta E - \varphi` is left where a molecule has left, both in the ledger and in
-the rate :math:`R` of `reservoir`: the balance stays detailed. For a large heat capacity the rate is that of a flat
-surface times :math:`e^{\Delta E / kT}`, which for many molecules is Kelvin's :math:`e^{2 \gamma v / r k T}`.
+shrinks, and :math:`\Delta E = E(n) - E(n - 1)` becomes thermal energy U of the liquid; when one enters, the
+liquid loses that energy again. So :math:`U' = U + \Delta E - \varphi` is left after a molecule has left, both in the
+ledger and in the rate :math:`R` of `reservoir`: detailed balance still holds. For a large heat capacity the rate is
+that of a flat surface times :math:`e^{\Delta E / kT}`, which for many molecules is Kelvin's
+:math:`e^{2 \gamma v / r k T}`.
 
-Of s dissolved particles and n molecules there are (n + s)! / n! s! arrangements, if neither minds who is beside it
-(an ideal solution). One molecule fewer means fewer of them, by n / (n + s): this is the activity of the water, and by
-it the rate is smaller. Both together are Koehler's law.
+There are (n + s)! / n! s! arrangements of n molecules and s dissolved particles if all arrangements have the same
+energy (an ideal solution). With one molecule fewer there are fewer arrangements, by the factor n / (n + s): this is the
+activity of the water, and the rate is smaller by this factor. Both effects together are Koehler's law.
 
-The tension is taken as independent of temperature: then the whole of it is energy, and none of it heat.
+The surface tension is assumed to be independent of temperature: then all of it is energy, and no entropy is in it.
 
 References
 ----------
@@ -28,21 +29,21 @@ __all__ = ["given_by_surface", "leaving_rates", "surface_energy"]
 
 @kernel
 def surface_energy(drops, cube, held):
-    """Return the energy of the surface of a drop [energy], from the cube of its nucleus and its molecules."""
+    """Return the surface energy of a drop [energy], from the cube of its nucleus' radius and its molecules."""
     radius = radius_of(drops, cube, held)
     return 4.0 * math.pi * drops.tension * (radius * radius)
 
 
 @kernel
 def given_by_surface(drops, k, held):
-    """Return what the surface of drop k gives when it shrinks from so many molecules to one fewer [energy]."""
+    """Return the surface energy that drop k loses when it shrinks from ``held`` molecules to one fewer [energy]."""
     cube = drops.cube[k]
     return surface_energy(drops, cube, held) - surface_energy(drops, cube, held - 1)
 
 
 @kernel
 def leaving_rates(drops, reservoir):
-    """Note how often a molecule leaves each drop [1/time]; return how often one leaves any."""
+    """Store the rate at which molecules leave each drop [1/time]; return the sum of these rates."""
     total = 0.0
     for k in range(drops.record.size):
         held = drops.held[k]

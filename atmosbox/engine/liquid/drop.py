@@ -1,13 +1,13 @@
-r"""Drops that can be seen: they fly, grow, shrink and merge, from event to event.
+r"""Visible drops: they fly, grow, shrink and merge; the loop over events.
 
-A drop is a sphere in the box like a molecule, but no contact with it is elastic. A molecule of vapour that hits one
-stays; any other leaves it again with another energy, shared as in `liquid`. All of that happens in the frame in
-which the two have no momentum: what the pair's common motion carries is kept, and so is momentum. Two drops that
-touch become one, and the energy of their approach warms the liquid.
+A drop is a sphere in the box like a molecule, but its contacts are not elastic. A vapour molecule that hits it sticks,
+always or with a probability; any other leaves it again with another energy, shared as in `reservoir`. All this is
+computed in the frame in which the pair has no momentum, so momentum is conserved, and the energy of the pair's common
+motion stays with it. Two drops that touch become one, and the energy of their approach warms the liquid.
 
-A molecule leaves some drop in proportion to the surface that it will leave behind, which makes a drop of n molecules
-lose one as often as one of n - 1 catches one: the balance is detailed again. Drops that have a surface energy, or salt
-in them, each lose molecules at a rate of their own: see `curvature`.
+The drop that a molecule leaves is drawn with a weight that is the surface after it has left. So a drop of n molecules
+loses one as often as a drop of n - 1 catches one, and detailed balance holds again. Drops with a surface energy, or
+with salt in them, each lose molecules at a rate of their own: see `curvature`.
 """
 
 import functools
@@ -40,7 +40,7 @@ _LEAVES = 1
 
 @kernel
 def _renew(t, gas, drops, reservoir):
-    """Sum the surface anew, or the rates of the drops, and draw when the next molecule leaves."""
+    """Compute the surface, or the rates of the drops, and draw the time at which the next molecule leaves."""
     if not drops.plain:
         reservoir.clock[_LEAVES] = t + wait(leaving_rates(drops, reservoir), gas.tallies.random)
         return
@@ -53,7 +53,7 @@ def _renew(t, gas, drops, reservoir):
 
 @kernel
 def _may_grow(i, j, k, t, at, gas, drops, modes):
-    """Tell whether drop k, record j, has room for one molecule more: no wall and no molecule but i is in the way."""
+    """Return whether drop k, index j, has room for one molecule more: no wall and no molecule but i is in the way."""
     box = gas.box
     radius = radius_of(drops, drops.cube[k], drops.held[k] + 1)
     if box.inverse_x == 0.0 and not radius <= at.x <= box.length_x - radius:
@@ -67,7 +67,7 @@ def _may_grow(i, j, k, t, at, gas, drops, modes):
 
 @kernel
 def _merge(i, j, t, gas, drops, reservoir, modes):
-    """Let the smaller of two drops be swallowed by the larger one; return a `Status` and the number of that one."""
+    """Merge the smaller of two drops into the larger one; return a `Status` and the index of the larger one."""
     box, table = gas.box, gas.kinds.table
     a = np.int64(gas.molecules[i].kind) - modes.drops
     b = np.int64(gas.molecules[j].kind) - modes.drops
@@ -80,7 +80,7 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
     other = table[modes.drops + b].mass
     share = other / (mass + other)
     ux, uy, uz = two.vx - one.vx, two.vy - one.vy, two.vz - one.vz
-    # the new drop stands at the centre of mass of both, as far as the walls allow
+    # the new drop is at the centre of mass of both, as far as the walls allow
     rx, ry, rz = nearest_image(two.x - one.x, two.y - one.y, two.z - one.z, box, modes)
     x, y, z = one.x + share * rx, one.y + share * ry, one.z + share * rz
     cube, held = drops.cube[a] + drops.cube[b], drops.held[a] + drops.held[b]
@@ -111,7 +111,7 @@ def _merge(i, j, t, gas, drops, reservoir, modes):
 
 @kernel
 def _hit(i, j, t, gas, drops, reservoir, modes):
-    """Let molecule i hit drop j."""
+    """Resolve a hit of molecule i on drop j: it sticks, or leaves again with another energy."""
     box, kinds, state = gas.box, gas.kinds, gas.tallies.random
     k = np.int64(gas.molecules[j].kind) - modes.drops
     mass, _, rotation = kind_of(i, gas, modes)
@@ -155,9 +155,9 @@ def _hit(i, j, t, gas, drops, reservoir, modes):
 
 @kernel
 def _emit(t, gas, drops, reservoir, modes):
-    """Let a molecule leave one of the drops, unless it has no place; return a `Status` and the drop's number."""
+    """Take a molecule out of one of the drops, unless there is no place for it; return a `Status` and that drop."""
     box, table, state = gas.box, gas.kinds.table, gas.tallies.random
-    # which drop: in proportion to the surface that the molecule leaves behind, or to the rate of each
+    # the drop: drawn in proportion to the surface that the molecule leaves behind, or to the rate of each
     k = 0
     left = uniform(state) * (reservoir.surface[0] if drops.plain else np.sum(drops.rate))
     for each in range(drops.record.size):
@@ -172,7 +172,7 @@ def _emit(t, gas, drops, reservoir, modes):
     drop = motion_at(j, t, gas, modes)
     drops.held[k] -= 1
     resize(drops, k, gas.kinds, modes)
-    # where on it: anywhere, just outside
+    # the place: anywhere on the drop, just outside
     radius = drops.molecule_radius
     distance = (table[modes.drops + k].radius + radius) * (1.0 + 1e-12)
     nz = 2.0 * uniform(state) - 1.0
@@ -212,7 +212,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
 
     @kernel(entry=True)
     def begin(gas, drops, reservoir, now):
-        """Make each drop as large as it is, and draw at time ``now`` when the next molecule leaves."""
+        """Set radius and mass of all drops, and draw at time ``now`` when the next molecule leaves."""
         gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
         for k in range(drops.record.size):
             resize(drops, k, gas.kinds, modes)
@@ -220,12 +220,12 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
 
     @kernel(entry=True)
     def advance(gas, drops, reservoir, until, most):
-        """Resolve events of molecules and drops up to time ``until``; return a `Status` and how many."""
+        """Resolve events of molecules and drops up to ``until``; return a `Status` as a number and how many."""
         gas, drops, reservoir = by_reference(gas), by_reference(drops), by_reference(reservoir)
         done = 0
         checked = 0
         while done < most:
-            # the molecules and drops go on until a drop loses one, or is met
+            # events of molecules and drops, until a molecule leaves a drop or something meets one
             due = reservoir.clock[_LEAVES]
             status, some = proceed(gas, min(until, due), most - done, modes)
             done += some + 1

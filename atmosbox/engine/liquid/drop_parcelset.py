@@ -1,4 +1,4 @@
-"""The parcel of moist air with drops that can be seen, advanced exactly."""
+"""The parcel of moist air with visible drops, advanced exactly."""
 
 import math
 
@@ -27,7 +27,7 @@ class DropParcelSet(MoistParcelSet):
 
     Examples
     --------
-    A nucleus catches the vapour that hits it, and lets it go again:
+    A nucleus catches a vapour molecule that hits it, and the molecule evaporates again:
 
     >>> from atmosbox.engine.liquid.reservoir import Substance
     >>> water = Substance(mass=1.0, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
@@ -39,11 +39,11 @@ class DropParcelSet(MoistParcelSet):
     """
 
     def _draw(self, speed: float) -> None:
-        """Draw anew when the next molecule leaves a drop."""
+        """Draw the time at which the next molecule leaves a drop."""
         self._drop_begin(self._gas(), self._drops, self._reservoir, self._now)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
-        """Write down the molecules of the gas, behind them those of the liquid, and at the end the drops."""
+        """Write the molecules of the gas into the arrays, after them those of the liquid, and then the drops."""
         liquid: Liquid = self._liquid
         if not isinstance(liquid, Drops):
             raise RefusedError("this box is for drops: give it Drops")
@@ -104,7 +104,7 @@ class DropParcelSet(MoistParcelSet):
         self._reservoir.surface[0] = 0.0
 
     def _is_vapour(self) -> NDArray[np.bool_]:
-        """Tell which molecules are as the substance of the liquid says."""
+        """Return which molecules have the properties of the substance of the liquid."""
         substance = self._liquid.substance
         alike = (self._mass == substance.mass) & (self._rotation == substance.rotation)
         return np.asarray(alike & (self._diameter == substance.diameter))
@@ -138,7 +138,7 @@ class DropParcelSet(MoistParcelSet):
         self._drop_begin, self._drop_advance = drop.specialise(self._modes)
 
     def drops(self) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Return centres [length], radii [length] and numbers of molecules of the drops there are now."""
+        """Return centres [length], radii [length] and numbers of molecules of the present drops."""
         alive = self._drops.alive == 1
         m = self._fields[self._drops.record[alive]]
         dt = self._now - m["clock"]
@@ -150,7 +150,7 @@ class DropParcelSet(MoistParcelSet):
 
     @property
     def dissolved(self) -> Array:
-        """Number of particles dissolved in each of the drops there are now."""
+        """Number of particles dissolved in each of the present drops."""
         return np.array(self._drops.solute[self._drops.alive == 1])
 
     @property
@@ -161,19 +161,19 @@ class DropParcelSet(MoistParcelSet):
 
     @property
     def merged(self) -> int:
-        """How often two drops have become one since the start."""
+        """Number of times that two drops have become one since the start."""
         return int(self._drops.merged[0])
 
     @property
     def condensed_energy(self) -> float:
-        """Energy of the liquid, of its vapour's binding, and of the surface and the flight of the drops [energy]."""
+        """Energy of the liquid, of the binding of its vapour, and of surface and motion of the drops [energy]."""
         m = self._fields[self._drops.record[self._drops.alive == 1]]
         mass = self._kinds.table["mass"][self._first_drop :][self._drops.alive == 1]
         flight = 0.5 * float(np.sum(mass * (m["vx"] ** 2 + m["vy"] ** 2 + m["vz"] ** 2)))
         return super().condensed_energy + self.surface_energy + flight
 
     def escaped(self) -> int:
-        """Return how many molecules and drops are outside the box or nowhere: none, or the engine is wrong."""
+        """Return how many molecules and drops are outside the box or have no finite position: 0 in a correct engine."""
         centre = self.drops()[0]
         lost = ~np.isfinite(centre).all(axis=1) | (centre < 0.0).any(axis=1) | (centre > self.length).any(axis=1)
         return super().escaped() + int(np.sum(lost)) + int(math.isnan(self.liquid_energy))

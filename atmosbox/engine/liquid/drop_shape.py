@@ -1,4 +1,4 @@
-"""Drops as bodies: what they hold, how large they are, and where a molecule leaves them."""
+"""Drops as bodies: their molecules, their size, and the places and directions in which molecules leave them."""
 
 import math
 from typing import Any, NamedTuple
@@ -19,14 +19,14 @@ __all__ = [
 
 
 class DropRecords(NamedTuple):
-    """What is known of the drops beside their flight.
+    """The data of the drops beside their motion.
 
-    ``record``, ``held : (drop,)`` their numbers among the molecules, and how many molecules each holds; ``cube``,
-    ``core : (drop,)`` cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)`` whether it has
-    not been swallowed; ``solute : (drop,)`` how many particles are dissolved in each, ``rate : (drop,)`` how often a
-    molecule leaves it [1/time], see `curvature`; ``merged : (1,)`` how often one has swallowed another; then cube of
-    the radius, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether drops lose
-    molecules by their surface alone.
+    ``record``, ``held : (drop,)``: their indices among the molecules, and the number of molecules in each; ``cube``,
+    ``core : (drop,)``: cube of the radius and mass of the nucleus [length^3, mass]; ``alive : (drop,)``: 0 once another
+    drop has absorbed it; ``solute : (drop,)``: number of dissolved particles in each, ``rate : (drop,)``: rate at
+    which molecules leave it [1/time], see `curvature`; ``merged : (1,)``: number of mergers; then cube of
+    the radius in a drop, mass and radius in flight of one molecule, surface tension [energy/length^2], and whether the
+    rate at which drops lose molecules depends on their surface area alone.
     """
 
     record: Any
@@ -46,13 +46,13 @@ class DropRecords(NamedTuple):
 
 @kernel
 def radius_of(drops, cube, held):
-    """Return the radius of a drop of so many molecules [length], from the cube of the radius of its nucleus."""
+    """Return the radius of a drop of ``held`` molecules [length], from the cube of the radius of its nucleus."""
     return cbrt(cube + held * drops.molecule_cube)
 
 
 @kernel
 def resize(drops, k, kinds, modes):
-    """Let drop k be as large and as heavy as what it holds."""
+    """Set radius and mass of drop k from its number of molecules."""
     kind = kinds.table[modes.drops + k]
     kind.radius = radius_of(drops, drops.cube[k], drops.held[k])
     kind.mass = drops.core[k] + drops.held[k] * drops.molecule_mass
@@ -60,9 +60,9 @@ def resize(drops, k, kinds, modes):
 
 @kernel
 def surface_left(drops, k):
-    """Return the surface from which a molecule leaves drop k, at the distance of its centre [length^2].
+    """Return the effective area from which a molecule leaves drop k, through the molecule's centre [length^2].
 
-    A light drop is hit more often than one at rest, because it flies as well, and so it loses more often.
+    A light drop is hit more often than one at rest, because it moves too; so it must lose molecules more often.
     """
     if drops.alive[k] == 0 or drops.held[k] < 1:
         return 0.0
@@ -73,7 +73,7 @@ def surface_left(drops, k):
 
 @kernel
 def about(nx, ny, nz, state):
-    """Return a direction by the cosine law about a normal."""
+    """Draw a direction by the cosine law about a normal."""
     rise = math.sqrt(uniform(state))
     across = math.sqrt(max(1.0 - rise * rise, 0.0))
     cosine, sine = circle(uniform(state))
@@ -91,7 +91,7 @@ def about(nx, ny, nz, state):
 
 @kernel
 def within(u, radius, length, inverse):
-    """Return a coordinate of a drop, moved inwards if it has grown into a wall."""
+    """Return a coordinate of a drop, moved inwards if the drop has grown into a wall."""
     return u if inverse != 0.0 else min(max(u, radius), max(length - radius, radius))
 
 

@@ -1,4 +1,4 @@
-"""Where a molecule may be inserted without overlap."""
+"""Places where a molecule can be inserted without overlap."""
 
 import math
 from enum import IntEnum
@@ -16,9 +16,9 @@ __all__ = ["Place", "find_place", "has_room", "move_to", "place_at"]
 
 
 class Place(IntEnum):
-    """Whether a molecule may stand at a place.
+    """Whether a molecule can be put at a place.
 
-    ``FREE`` it may; ``TAKEN`` it would overlap another; ``ROW_FULL`` the row of a cell must grow first.
+    ``FREE``: it can; ``TAKEN``: it would overlap another; ``ROW_FULL``: the row of a cell must grow first.
     """
 
     FREE = 0
@@ -28,7 +28,7 @@ class Place(IntEnum):
 
 @kernel
 def _is_near(j, t, x, y, z, distance, gas, modes):
-    """Tell whether the centre of molecule j is nearer to a place than a distance [length]; there is no gravity."""
+    """Return whether the centre of molecule j is nearer to a place than ``distance`` [length]; without gravity."""
     other = gas.molecules[j]
     dt = t - other.clock
     rx = x - other.x - dt * other.vx
@@ -40,7 +40,7 @@ def _is_near(j, t, x, y, z, distance, gas, modes):
 
 @kernel
 def place_at(i, t, x, y, z, gas, modes):
-    """Tell whether molecule i may stand at a place, a `Place`, and note its slots there."""
+    """Return a `Place`: whether molecule i can be put at x, y, z; store its slots there."""
     cells = gas.cells
     size, radius = size_and_radius(i, gas, modes)
     cells.slot[i, 0] = slot_at(x, size, 0, cells.last_slot_x, cells, modes)
@@ -67,7 +67,7 @@ def place_at(i, t, x, y, z, gas, modes):
 
 @kernel
 def has_room(i, j, t, at, radius, gas, modes):
-    """Tell whether drop j, which is where ``at`` says, would overlap no molecule but i if it had another radius."""
+    """Return whether drop j, whose `Motion` is ``at``, would overlap no molecule but i with another radius."""
     cells, table = gas.cells, gas.kinds.table
     size = np.int64(table[gas.molecules[j].kind].size_class)
     slots = slots_of(j, gas)
@@ -90,7 +90,7 @@ def has_room(i, j, t, at, radius, gas, modes):
 
 @kernel
 def move_to(i, x, y, z, gas, modes):
-    """Bring molecule i to the cells of another place; return that place, in a periodic box, and whether it has room."""
+    """Move molecule i to the cells of another place; return that place in the periodic box; and if rows had room."""
     cells, box = gas.cells, gas.box
     size, _ = size_and_radius(i, gas, modes)
     if box.inverse_x != 0.0:
@@ -115,15 +115,15 @@ def move_to(i, x, y, z, gas, modes):
 
 @kernel
 def _between(low, high, state):
-    """Return a coordinate between two, at random."""
+    """Draw a coordinate between two others."""
     return low + (high - low) * uniform(state)
 
 
 @kernel
 def find_place(i, t, ceiling, gas, modes):
-    """Find a place for molecule i, which is not in the box, at random; return a `Place`, and its x, y and z.
+    """Draw a place for molecule i, which is not in the box; return a `Place`, and its x, y and z [length].
 
-    With a pool it is on the floor, otherwise anywhere.
+    With a pool the place is on the floor, otherwise anywhere.
     """
     cells, box, state = gas.cells, gas.box, gas.tallies.random
     size, radius = size_and_radius(i, gas, modes)

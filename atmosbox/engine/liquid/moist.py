@@ -1,10 +1,10 @@
-"""Air with liquid water in it, from event to event: what the liquid does stands between what the molecules do.
+"""The loop over events of moist air: events of the liquid happen between the events of molecules.
 
-Three clocks run beside the calendar of the molecules: when one of them may meet the mist, when one leaves the
-liquid, and when one rains out. Each is a Poisson process, drawn anew whenever the liquid has changed, which its
-lack of memory allows. A molecule of speed w relative to the air meets the mist at the rate A w Z / 4 V; Z, the
-compressibility factor, because molecules are denser by it at any surface, as at a wall. The time is drawn for the
-fastest of all, and what is drawn is accepted in proportion to the speed.
+Beside the calendar of the molecules there are three clocks: when a molecule may meet the mist, when one leaves the
+liquid, and when one rains out. Each is a Poisson process, so it has no memory and its time may be drawn anew whenever
+the liquid has changed. A molecule of speed w relative to the air meets the mist at the rate A w Z / 4 V. Z is the
+compressibility factor: molecules are denser by this factor at any surface, as at a wall. The time is drawn for the
+largest speed of all, and a meeting is accepted with a probability proportional to the speed of its molecule.
 """
 
 import functools
@@ -46,10 +46,10 @@ _MAY_MEET, _LEAVES, _RAINS = range(3)
 
 
 class MoistAscent(NamedTuple):
-    """What the kernels know of moist air under a piston that follows a pressure.
+    """The data that the kernels need for moist air under a piston that follows a pressure.
 
-    ``dry`` what they know of any air; how many molecules of the vapour and of the liquid there are, and how many
-    rotational degrees of freedom all molecules have together.
+    ``dry``: the data for any air; ``vapours``: the number of molecules of vapour and liquid; ``rotations``: the
+    rotational degrees of freedom of all molecules together.
     """
 
     dry: Ascent
@@ -59,7 +59,7 @@ class MoistAscent(NamedTuple):
 
 @kernel
 def ceiling_at(t, gas, modes):
-    """Return how high the box is [length] and how fast its ceiling moves [length/time]."""
+    """Return the height of the box [length] and the velocity of its ceiling [length/time] at time t."""
     if modes.piston:
         piston = gas.walls.piston
         return piston[0] + piston[1] * (t - piston[2]), piston[1]
@@ -68,9 +68,9 @@ def ceiling_at(t, gas, modes):
 
 @kernel
 def _volume(t, diameter, gas, reservoir, modes):
-    """Return the volume that the centres of molecules can reach, over Z [length^3].
+    """Return the volume that centres of molecules can reach, divided by Z [length^3].
 
-    At any surface molecules are Z times as dense as in open space, as at a wall: that is what a pressure of n k T Z
+    At any surface molecules are Z times as dense as in open space, as at a wall: this is what a pressure of n k T Z
     means (Carnahan and Starling 1969, doi:10.1063/1.1672048). Z is that of spheres of one size.
     """
     box = gas.box
@@ -86,14 +86,14 @@ def _volume(t, diameter, gas, reservoir, modes):
 
 @kernel
 def renew(t, state, reservoir):
-    """Draw anew when the next molecule leaves the liquid, and when the next rains."""
+    """Draw the times at which the next molecule leaves the liquid, and at which the next one rains."""
     reservoir.clock[_LEAVES] = t + wait(evaporation_rate(reservoir), state)
     reservoir.clock[_RAINS] = t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
 
 
 @kernel
 def _next_meeting(t, gas, reservoir, modes):
-    """Draw when the next molecule may meet the mist."""
+    """Draw the time at which the next molecule may meet the mist."""
     if modes.pool:
         return
     volume = _volume(t, reservoir.diameter, gas, reservoir, modes)
@@ -104,7 +104,7 @@ def _next_meeting(t, gas, reservoir, modes):
 
 @kernel
 def _touch(i, t, at, flow, gas, reservoir, modes):
-    """Let molecule i meet the liquid, which flows upwards with the air: it stays, or leaves with another energy."""
+    """Resolve a meeting of molecule i with the liquid, which flows upwards with the air: it stays, or leaves again."""
     tallies = gas.tallies
     mass, radius, rotation = kind_of(i, gas, modes)
     spin = gas.kinds.rotational_energy[i] if modes.rotation else 0.0
@@ -113,7 +113,7 @@ def _touch(i, t, at, flow, gas, reservoir, modes):
         tallies.hits[4] += 1
         tallies.count[4] += 1
         tallies.impulse[4] -= mass * at.vz
-    # vapour sticks, always or with a chance
+    # a vapour molecule sticks, always or with some probability
     is_vapour = np.int64(gas.molecules[i].kind) == reservoir.kind
     if is_vapour and stays(reservoir, tallies.random):
         condense(reservoir, energy)
@@ -148,7 +148,7 @@ def _touch(i, t, at, flow, gas, reservoir, modes):
 
 @kernel
 def _may_meet(t, gas, reservoir, modes):
-    """Let a molecule, drawn at random, meet the mist with a chance in proportion to its speed."""
+    """Draw a molecule, and let it meet the mist with a probability proportional to its speed."""
     state = gas.tallies.random
     i = min(int(uniform(state) * gas.molecules.size), gas.molecules.size - 1)
     chance = uniform(state)
@@ -168,7 +168,7 @@ def _may_meet(t, gas, reservoir, modes):
 
 @kernel
 def _emit(t, gas, reservoir, modes):
-    """Let a molecule leave the liquid; return a `Status`."""
+    """Take a molecule out of the liquid and put it into the gas; return a `Status`."""
     state = gas.tallies.random
     i = reservoir.absent[reservoir.top[0] - 1]
     height, rise = ceiling_at(t, gas, modes)
@@ -183,7 +183,7 @@ def _emit(t, gas, reservoir, modes):
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
-        # only the last molecule can lack what the flow of the air adds: it leaves as if the air were at rest
+        # only the last molecule can lack the energy of the flow: it leaves as if the air were at rest
         vz = speed * ez
         energy = flight + spin
     leave(reservoir, energy)
@@ -199,12 +199,12 @@ def _emit(t, gas, reservoir, modes):
 
 @kernel
 def _proceed(gas, reservoir, until, most, modes):
-    """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
+    """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and their number."""
     done = 0
     checked = 0
     clock = reservoir.clock
     while done < most:
-        # the molecules go on until the liquid does something
+        # events of molecules, up to the next event of the liquid
         due = min(clock[_MAY_MEET], clock[_LEAVES], clock[_RAINS])
         status, some = proceed(gas, min(until, due), most - done, modes)
         done += some + 1
@@ -247,7 +247,7 @@ def _gauges(t, gas, reservoir, ascent):
 
 @kernel
 def _wake(t, gas, reservoir, modes):
-    """Draw the times of the liquid anew at time t if the piston is so fast that it may wake molecules at rest."""
+    """Draw the times of the liquid anew at time t if the piston may make molecules faster than was assumed for them."""
     speed = 2.0 * abs(gas.walls.piston[1])
     if speed > reservoir.bound[0]:
         reservoir.bound[0] = speed
@@ -261,7 +261,7 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
 
     @kernel(entry=True)
     def begin(gas, reservoir, now, speed):
-        """Draw the times of the liquid at time ``now``, when molecules may be as fast as ``speed`` [length/time]."""
+        """Draw the times of the liquid at time ``now``; molecules may be as fast as ``speed`` [length/time]."""
         gas, reservoir = by_reference(gas), by_reference(reservoir)
         reservoir.bound[0] = speed
         _next_meeting(now, gas, reservoir, modes)
@@ -269,14 +269,14 @@ def specialise(modes: Modes) -> tuple[Callable[..., Any], Callable[..., Any]]:
 
     @kernel(entry=True)
     def advance(gas, reservoir, until, most):
-        """Resolve events of molecules and of the liquid up to time ``until``; return a `Status` and how many."""
+        """Resolve events of molecules and of the liquid up to ``until``; return a `Status` as a number and how many."""
         gas, reservoir = by_reference(gas), by_reference(reservoir)
         status, done = _proceed(gas, reservoir, until, most, modes)
         return status.value, done
 
     @kernel(entry=True)
     def ascend(gas, reservoir, ascent, until, most):
-        """Do as ``advance`` does, and turn the piston on the way as it is due."""
+        """Do what ``advance`` does, and set the velocity of the piston whenever that is due."""
         gas, reservoir, ascent = by_reference(gas), by_reference(reservoir), by_reference(ascent)
         done = 0
         while True:

@@ -1,4 +1,4 @@
-"""What a box with liquid in it holds and tells, however it lets time pass."""
+"""The properties and tallies of a box with liquid in it, for every engine that can hold one."""
 
 import math
 
@@ -26,10 +26,10 @@ __all__ = ["MoistAccount"]
 
 
 class MoistAccount(Parcel):
-    """A box with liquid in it: what the engines have in common that can hold one.
+    """A box with liquid in it: the common part of the engines that can hold one.
 
-    Every molecule has a number. First come those that are in the box at the start, then those of the liquid; the
-    reservoir knows which of them are absent.
+    Every molecule has an index. First come those that are in the box at the start, then those of the liquid; the
+    reservoir lists which of them are absent from the box.
     """
 
     _liquid: Liquid
@@ -52,7 +52,7 @@ class MoistAccount(Parcel):
         raise RefusedError("a box with liquid has no gravity: leave it at 0")
 
     def _append_liquid(self) -> None:
-        """Append what is known of the molecules of the liquid to what is known of those of the gas."""
+        """Append the properties of the molecules of the liquid to those of the gas."""
         substance, more = self._liquid.substance, int(self._liquid.number)
         self._mass = np.append(self._mass, np.full(more, substance.mass))
         self._diameter = np.append(self._diameter, np.full(more, substance.diameter))
@@ -61,17 +61,17 @@ class MoistAccount(Parcel):
         self._same_size = bool(len(self._diameter)) and np.ptp(self._diameter) == 0.0
 
     def _open_reservoir(self, alike: NDArray[np.bool_], kind: NDArray[np.integer]) -> None:
-        """Begin the account of the liquid.
+        """Make the reservoir of the liquid.
 
-        ``alike : (kind,)`` tells which kinds are as the substance of the liquid, ``kind : (molecule,)`` of which kind
-        each molecule is.
+        ``alike : (kind,)`` tells which kinds have the properties of the substance, ``kind : (molecule,)`` is the kind
+        of each molecule.
         """
         liquid, substance = self._liquid, self._liquid.substance
         vapour = int(np.flatnonzero(alike)[0]) if alike.any() else -1
         self._vapours = int(np.sum(kind == vapour))
         cube = float(np.mean(self._diameter * self._diameter * self._diameter)) if len(kind) else 0.0
         sides = self._sides - np.where(self._periodic, 0.0, substance.diameter)
-        area = 1.0  # that of drops changes
+        area = 1.0  # the area of drops changes
         if isinstance(liquid, Mist):
             area = liquid.area
         elif isinstance(liquid, Pool):
@@ -82,16 +82,16 @@ class MoistAccount(Parcel):
         self._rotations = float(self._rotation.sum())
 
     def set_open_pool(self, share: float) -> None:
-        """Cover a part of a pool, or all of it, with a foil that lets heat pass but no water.
+        """Cover a part of a pool, or all of it, with a foil through which heat passes but no water.
 
-        Vapour sticks to the open part alone, and molecules leave from there alone: both rates are `share` times as
-        large, and the vapour pressure at which they are equal is the same. What hits the foil exchanges heat with the
-        pool as before.
+        Vapour sticks to the open part alone, and molecules leave from there alone: both rates are multiplied by
+        `share`, and the vapour pressure at which they are equal stays the same. Molecules that hit the foil exchange
+        heat with the pool as before.
 
         Parameters
         ----------
         share
-            The part that is open [1], 0 to 1.
+            The fraction of the surface that is open [1], 0 to 1.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class MoistAccount(Parcel):
         self._reservoir_changes()
 
     def _reservoir_changes(self) -> None:
-        """Take note that the liquid takes and gives at other rates from now on, where times have been drawn already."""
+        """Update times that have been drawn already, because the rates of the liquid have just changed."""
 
     @property
     def number(self) -> int:
@@ -134,17 +134,17 @@ class MoistAccount(Parcel):
 
     @property
     def condensed(self) -> int:
-        """How many molecules have come into the liquid since the start."""
+        """Number of molecules that have entered the liquid since the start."""
         return int(self._reservoir.count[CONDENSED])
 
     @property
     def evaporated(self) -> int:
-        """How many molecules have left the liquid for the vapour since the start."""
+        """Number of molecules that have left the liquid for the vapour since the start."""
         return int(self._reservoir.count[EVAPORATED])
 
     @property
     def rained(self) -> int:
-        """How many molecules have left the box as rain since the start."""
+        """Number of molecules that have left the box as rain since the start."""
         return int(self._reservoir.count[RAINED])
 
     @property
@@ -154,20 +154,20 @@ class MoistAccount(Parcel):
 
     @property
     def liquid_kT(self) -> float:
-        """Temperature of the liquid [energy], NaN where there is none and no nuclei."""
+        """Temperature of the liquid [energy], NaN if there is neither liquid nor nuclei."""
         capacity = self._reservoir.molecule_capacity * self.liquid + self._reservoir.nuclei
         return self.liquid_energy / capacity if capacity > 0.0 else math.nan
 
     @property
     def condensed_energy(self) -> float:
-        """Energy of the liquid, of its vapour's binding and of the rain [energy]."""
+        """Energy of the liquid, of the binding of its vapour, and of the rain [energy]."""
         return self._reservoir.binding_energy * self.vapour + float(
             self._reservoir.energy[THERMAL] + self._reservoir.energy[RAINED_ENERGY]
         )
 
     @property
     def present(self) -> NDArray[np.bool_]:
-        """Which of the molecules that the box has ever held are in the gas now."""
+        """Which of the molecules that the box has ever held are in the gas now, (molecule,)."""
         inside = np.ones(len(self._mass), np.bool_)
         inside[self._reservoir.absent[: self._reservoir.top[0]]] = False
         return inside
@@ -184,16 +184,16 @@ class MoistAccount(Parcel):
 
     @property
     def degrees_of_freedom(self) -> float:
-        """Translational and rotational degrees of freedom per molecule of the gas, on average."""
+        """Mean number of translational and rotational degrees of freedom of a molecule of the gas."""
         rotation = self._rotations - self._reservoir.rotation * int(self._reservoir.top[0])
         return 3.0 + rotation / max(self.number, 1)
 
     @property
     def emitted_energy(self) -> tuple[Array, NDArray[np.int64]]:
-        """Edges of energy [energy], and how many molecules left with so much beyond the binding energy."""
+        """Edges of bins of energy [energy], and the number of molecules that left with this energy beyond binding."""
         edges = self._reservoir.bin_width * np.arange(len(self._reservoir.spectrum) + 1.0)
         return edges, np.array(self._reservoir.spectrum)
 
     def _reservoir_memory(self) -> int:
-        """Return the bytes that the reservoir takes."""
+        """Return the memory of the reservoir [bytes]."""
         return int(self._reservoir.absent.nbytes + self._reservoir.spectrum.nbytes)

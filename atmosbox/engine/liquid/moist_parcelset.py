@@ -1,4 +1,4 @@
-"""The parcel of moist air, advanced exactly: molecules that condense leave the box, and come back."""
+"""The parcel of moist air, advanced exactly: molecules that condense leave the box, and evaporate into it again."""
 
 import math
 from typing import ClassVar, Unpack
@@ -22,8 +22,8 @@ _CHUNK = 200_000
 class MoistParcelSet(MoistAccount, ParcelSet):
     """A set of molecules with its box and with liquid in it, advanced exactly.
 
-    What it is given besides, and what it tells, is described at `Parcel`. The molecules that are given are in the
-    box; those in the liquid come to them. Vapour are those that are as the substance of the liquid says.
+    Its other parameters, and its properties, are described at `Parcel`. The molecules that are given are in the
+    box; those of the liquid are added to them. Molecules with mass, diameter and rotation of the substance are vapour.
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     Raises
     ------
     RefusedError
-        If a liquid is asked for in a plane gas, in gravity, or a pool on a floor that is no smooth wall.
+        If there is a liquid in a plane gas or in gravity, or a pool on a floor that is no smooth wall.
 
     Examples
     --------
-    A molecule of the liquid that is hot enough leaves it; the energy is still there:
+    A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
     >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
     >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
@@ -62,7 +62,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         self._draw(max(fastest, warm, 2.0 * abs(self.piston_velocity)))
 
     def _draw(self, speed: float) -> None:
-        """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
+        """Draw the times of the liquid anew, for molecules that may be as fast as ``speed`` [length/time]."""
         self._moist_begin(self._gas(), self._reservoir, self._now, speed)
 
     def _reservoir_changes(self) -> None:
@@ -76,12 +76,12 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         self._wake(math.sqrt(8.0 * kT / self._liquid.substance.mass))
 
     def _wake(self, speed: float) -> None:
-        """Draw anew if something now moves so fast that molecules may become faster than has been reckoned with."""
+        """Draw the times of the liquid anew if molecules may now become faster than was assumed for them."""
         if speed > float(self._reservoir.bound[0]):
             self._draw(speed)
 
     def _fill(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
-        """Write down the molecules of the gas, and behind them those of the liquid, which are not in the box."""
+        """Write the molecules of the gas into the arrays, then those of the liquid, which are not in the box."""
         substance = self._liquid.substance
         present, more = len(position), int(self._liquid.number)
         self._append_liquid()
@@ -101,7 +101,7 @@ class MoistParcelSet(MoistAccount, ParcelSet):
         return self.present
 
     def memory(self) -> int:
-        """Return the bytes that molecules, events, cells, calendar and reservoir take."""
+        """Return the memory of molecules, events, cells, calendar and reservoir [bytes]."""
         return super().memory() + self._reservoir_memory()
 
     def _proceed(self, until: float) -> tuple[Status, int]:
@@ -115,6 +115,6 @@ class MoistParcelSet(MoistAccount, ParcelSet):
 
     @property
     def _clocks(self) -> Array:
-        """When the liquid does something."""
+        """The times of the next events of the liquid."""
         clock: Array = self._reservoir.clock
         return clock

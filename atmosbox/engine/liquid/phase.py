@@ -1,7 +1,7 @@
-"""A molecule leaves the box or comes into it: it condenses, or it evaporates.
+"""A molecule leaves the box or enters it: it condenses, or it evaporates.
 
-Nothing is rebuilt. A molecule that is not in the box stands in no cell, its event never comes, and its clock
-reads infinity; a prediction that names it is stale.
+The data of a molecule stay in memory. A molecule that is not in the box is in no cell, has no event, and its clock
+reads infinity; predictions of contacts with it are stale.
 """
 
 import math
@@ -17,7 +17,7 @@ __all__ = ["enter", "take_out", "withdraw"]
 
 @kernel
 def take_out(i, gas, modes):
-    """Take a molecule or a drop out of its cells, and of time."""
+    """Remove a molecule or a drop from its cells and from the calendar."""
     event = gas.events[i]
     if modes.contacts:
         size, _ = size_and_radius(i, gas, modes)
@@ -36,7 +36,7 @@ def take_out(i, gas, modes):
 
 @kernel
 def withdraw(i, gas, reservoir, modes):
-    """Take molecule i out of the box: it is absent until it evaporates."""
+    """Remove molecule i from the box: it is absent until it evaporates."""
     take_out(i, gas, modes)
     reservoir.absent[reservoir.top[0]] = i
     reservoir.top[0] += 1
@@ -44,7 +44,7 @@ def withdraw(i, gas, reservoir, modes):
 
 @kernel
 def enter(i, t, at, spin, gas, reservoir, modes):
-    """Put molecule i, the last that is absent, where `find_place` has found a place for it."""
+    """Put molecule i, the last absent one, into the box at time t, where `find_place` has found a place for it."""
     reservoir.top[0] -= 1
     if modes.contacts:
         size, _ = size_and_radius(i, gas, modes)

@@ -1,29 +1,29 @@
-r"""Liquid water: a reservoir of molecules and energy, and the laws by which vapour and air exchange with it.
+r"""Liquid water: a reservoir of molecules and energy, and the laws of its exchange with vapour and air.
 
-No molecule of the liquid is followed. What is known of it is how many they are, n, and their thermal energy
-U; their heat capacity is :math:`C = c_l n + C_n` (in units of k), that of the nuclei on which the droplets sit
-included. A molecule that comes in brings the binding energy :math:`\varphi` with it,
+No molecule of the liquid is followed. The state of the liquid is its number of molecules, n, and its thermal energy
+U; its heat capacity, with that of the nuclei of the droplets, is :math:`C = c_l n + C_n` (in units of k). A molecule
+of energy e that enters also brings the binding energy :math:`\varphi`,
 
 .. math:: U \to U + e + \varphi, \qquad n \to n + 1,
 
-and one that leaves takes it along. Nothing in this knows of a relative humidity. The vapour pressure at which
-the two counted rates meet follows from the substance, whose volatility is put in.
+and a molecule that leaves takes both out. No relative humidity is put in. The vapour pressure at which both rates
+are equal follows from the substance, whose volatility is put in.
 
 The rate of leaving is that of the *microcanonical* ensemble. With :math:`U' = U - \varphi`, :math:`C' = C -
 c_l` and :math:`g = 2 + \zeta/2` for a vapour of :math:`\zeta` rotational degrees of freedom,
 
 .. math:: R = Q \frac{U'^{\,C' + g - 1}}{\Gamma(C' + g)} \frac{\Gamma(C)}{U^{\,C - 1}},
 
-and none leaves where :math:`U' \le 0`. It is the flux of phase space that a molecule which comes in takes the
-other way, so the balance is detailed for any number of molecules, one even. A rate at the temperature U/C
-would not be: the vapour pressure is convex, and in so small a drop U/C is never at rest. For a large drop both
+and no molecule leaves where :math:`U' \le 0`. This is the flux in phase space of molecules that enter, reversed; so
+detailed balance holds for any number of molecules, even for one. With a rate at the temperature U/C it would not:
+the vapour pressure is convex in temperature, and in so small a drop U/C fluctuates. For a large drop both rates
 agree, and that fixes :math:`Q T^{g - c_l} e^{-\varphi/T} = \alpha A e_s(T) / \sqrt{2 \pi m T}` with T = U/C.
 
 References
 ----------
-The law of Hertz and Knudsen, and the flux in balance with it: Persad, A. H., Ward, C. A. (2016),
+The law of Hertz and Knudsen, and the flux in equilibrium with it: Persad, A. H., Ward, C. A. (2016),
 doi:10.1021/acs.chemrev.5b00511. The microcanonical rate of leaving is that of Weisskopf, V. (1937),
-doi:10.1103/PhysRev.52.295, who let a hot nucleus evaporate neutrons.
+doi:10.1103/PhysRev.52.295, for the evaporation of neutrons from a hot nucleus.
 """
 
 import math
@@ -65,30 +65,30 @@ __all__ = [
 ]
 
 LIQUID, CONDENSED, EVAPORATED, RAINED, AIR_MET = range(5)
-"""What is counted: molecules in the liquid now; since the start, those that came, left and rained; other hits."""
+"""The counts: molecules in the liquid now; since the start, those that entered, left and rained; other hits."""
 
 STICKING, LOG_RATE = range(2)
-"""The rates of a liquid whose surface is covered as it is now: which part of the vapour sticks, and ln Q."""
+"""The rates of a liquid whose surface may be partly covered: the fraction of the vapour that sticks, and ln Q."""
 
 THERMAL, RAINED_ENERGY = range(2)
-"""The energies of a reservoir [energy]: of the liquid now, and what the rain took away."""
+"""The energies of a reservoir [energy]: the thermal energy of the liquid now, and the energy that the rain took out."""
 
 _BINS = 60
 _WIDEST = 12.0
 _NEVER = -600.0
-"""Logarithm of the share of its rate at which a covered pool evaporates: never, in any time that there is."""
+"""Logarithm of the factor of the evaporation rate of a fully covered pool: so small that no molecule ever leaves."""
 
 
 class Reservoir(NamedTuple):
-    """The liquid, as the kernels know it.
+    """The liquid in the form that the kernels take.
 
-    ``energy : (2,)`` [energy] and ``count : (5,)``: see `THERMAL` and `LIQUID`; ``clock : (3,)`` when a molecule
-    may meet the mist next, leave, rain [time]; ``bound : (2,)`` the speed [length/time] and the volume [length^3]
-    for which the first was drawn; ``absent : (molecule,)`` the numbers of molecules that are not in the box, of
-    which the last to go is ``absent[top[0] - 1]``; ``spectrum : (bin,)`` how many left with which energy beyond
-    the binding energy; ``surface : (1,)`` the area of the liquid over ``area``, which
-    changes for drops alone; ``rates : (2,)`` see `STICKING`; ``log_rate`` the logarithm of Q for ``area`` that is open;
-    then what `Substance` and `Liquid` say.
+    ``energy : (2,)`` [energy] and ``count : (5,)``: see `THERMAL` and `LIQUID`; ``clock : (3,)``: when a molecule
+    may next meet the mist, leave, rain [time]; ``bound : (2,)``: the speed [length/time] and the volume [length^3]
+    for which the first of these was drawn; ``absent : (molecule,)``: the indices of molecules that are not in the box,
+    the last of them ``absent[top[0] - 1]``; ``spectrum : (bin,)``: number of molecules that left, by their energy
+    beyond the binding energy; ``surface : (1,)``: the area of the liquid over ``area``, which changes for drops alone;
+    ``rates : (2,)``: see `STICKING`; ``log_rate``: the logarithm of Q for the uncovered ``area``;
+    then parameters of `Substance` and `Liquid`.
     """
 
     energy: Any
@@ -123,13 +123,13 @@ def new_reservoir(
     Parameters
     ----------
     liquid
-        What is in the box at the start.
+        The liquid at the start.
     area
-        Of its surface [length^2].
+        Area of its surface [length^2].
     capacity, present
-        How many molecules there are in vapour and liquid, and how many of them, the first ones, are in the box.
+        Number of molecules in vapour, air and liquid, and number of those, the first ones, that are in the box.
     kind
-        Which kind of molecule the vapour is.
+        Index of the kind that the vapour is.
     mean_cube
         Mean cube of the diameters of all molecules [length^3].
 
@@ -183,9 +183,9 @@ def heat_capacity(reservoir):
 
 @kernel
 def evaporation_flux(reservoir, given):
-    """Return how many molecules leave the liquid per time and surface; see the head of this file.
+    """Return the number of molecules that leave the liquid per time and surface; the module's docstring has the law.
 
-    ``given`` is what the surface gives to the liquid when it shrinks by a molecule [energy], 0 where it is flat.
+    ``given`` is the energy that the surface gives to the liquid when it shrinks by one molecule [energy]; 0 if flat.
     """
     if reservoir.count[LIQUID] < 1:
         return 0.0
@@ -203,19 +203,19 @@ def evaporation_flux(reservoir, given):
 
 @kernel
 def evaporation_rate(reservoir):
-    """Return how many molecules leave a liquid whose surface is flat per time [1/time]."""
+    """Return the number of molecules that leave a liquid with a flat surface per time [1/time]."""
     return reservoir.surface[0] * evaporation_flux(reservoir, 0.0)
 
 
 @kernel
 def wait(rate, state):
-    """Return how long an event of this rate [1/time] lets itself be waited for [time]."""
+    """Draw the waiting time [time] until the next event of a Poisson process of this rate [1/time]."""
     return -log_of_normal(uniform(state)) / rate if rate > 0.0 else math.inf
 
 
 @kernel
 def direction(pool, state):
-    """Return where a molecule leaves the liquid to: by the cosine law upwards from a pool, anywhere from a droplet."""
+    """Draw the direction of a molecule that leaves: by the cosine law upwards from a pool, any from a droplet."""
     rise = math.sqrt(uniform(state)) if pool else 2.0 * uniform(state) - 1.0
     across = math.sqrt(max(1.0 - rise * rise, 0.0))
     cosine, sine = circle(uniform(state))
@@ -224,20 +224,20 @@ def direction(pool, state):
 
 @kernel(plain=True)
 def cover(reservoir, share):
-    """Leave a share of the surface of the liquid open, from 0 to 1."""
+    """Cover the surface of the liquid except for an open ``share``, from 0 to 1."""
     reservoir.rates[STICKING] = reservoir.sticking * share
     reservoir.rates[LOG_RATE] = reservoir.log_rate + (max(log(share), _NEVER) if share > 0.0 else _NEVER)
 
 
 @kernel
 def stays(reservoir, state):
-    """Tell whether a molecule of the vapour that meets the liquid stays, always or by chance."""
+    """Return whether a vapour molecule that meets the liquid stays: always, or with the probability of sticking."""
     return reservoir.rates[STICKING] >= 1.0 or uniform(state) < reservoir.rates[STICKING]
 
 
 @kernel
 def condense(reservoir, energy):
-    """Let a molecule of this kinetic and rotational energy join the liquid."""
+    """Add a molecule of this kinetic and rotational energy [energy] to the liquid."""
     reservoir.energy[THERMAL] += energy + reservoir.binding_energy
     reservoir.count[LIQUID] += 1
     reservoir.count[CONDENSED] += 1
@@ -245,10 +245,11 @@ def condense(reservoir, energy):
 
 @kernel
 def evaporate(reservoir, state):
-    r"""Return with which energies of flight and of rotation the next molecule leaves; `leave` takes them out.
+    r"""Draw the translational and rotational energies with which the next molecule leaves; `leave` takes them out.
 
-    Together they are to what stays behind as :math:`\Gamma(g) : \Gamma(C')`, to each other as :math:`\Gamma(2) :
-    \Gamma(\zeta/2)`: those that fly fast arrive at a surface more often, and leave it so.
+    Their sum is to the energy that stays behind as gamma variates of shapes g and C', and they are to each other as
+    gamma variates of shapes 2 and :math:`\zeta/2`: fast molecules arrive at a surface more often, and leave it more
+    often too.
     """
     left = reservoir.energy[THERMAL] - reservoir.binding_energy
     rest = max(heat_capacity(reservoir) - reservoir.molecule_capacity, 0.0)
@@ -262,7 +263,7 @@ def evaporate(reservoir, state):
 
 @kernel
 def leave(reservoir, energy):
-    """Strike a molecule that leaves with this kinetic and rotational energy."""
+    """Remove from the liquid a molecule that leaves with this kinetic and rotational energy [energy]."""
     reservoir.energy[THERMAL] -= energy + reservoir.binding_energy
     reservoir.count[LIQUID] -= 1
     reservoir.count[EVAPORATED] += 1
@@ -270,9 +271,9 @@ def leave(reservoir, energy):
 
 @kernel
 def exchange(reservoir, energy, rotation, state):
-    r"""Return with which energies of flight and of rotation a molecule goes that met the liquid and did not stay.
+    r"""Draw the translational and rotational energies of a molecule that met the liquid and did not stay.
 
-    What it had and the liquid's own energy are shared as :math:`\Gamma(2) : \Gamma(\zeta/2) : \Gamma(C)`.
+    Its energy and the liquid's are shared as gamma variates of shapes 2, :math:`\zeta/2` and C.
     """
     flight = gamma(4.0, state)
     spin = gamma(rotation, state)
@@ -282,7 +283,7 @@ def exchange(reservoir, energy, rotation, state):
 
 @kernel
 def rain_out(reservoir):
-    """Let one molecule of the liquid fall out of the box, with its share of the thermal energy."""
+    """Remove one molecule of the liquid as rain, with its share of the thermal energy."""
     capacity = heat_capacity(reservoir)
     taken = reservoir.energy[THERMAL] * reservoir.molecule_capacity / capacity
     reservoir.energy[THERMAL] -= taken

@@ -1,4 +1,4 @@
-"""What condenses, and in which form its liquid is in the box: a mist, drops or a pool."""
+"""The condensing substance, and the form of its liquid in the box: a mist, drops or a pool."""
 
 import math
 from dataclasses import dataclass
@@ -17,18 +17,18 @@ def _above_zero(value: float, name: str) -> None:
 
 @dataclass(frozen=True)
 class Substance:
-    """What condenses, as a vapour of hard molecules with a constant binding energy in the liquid.
+    """A condensing substance: its vapour is hard molecules, bound in the liquid by a constant energy.
 
     Parameters
     ----------
     mass, diameter
-        Of a molecule of the vapour [mass, length].
+        Mass and diameter of a molecule of the vapour [mass, length].
     binding_energy
-        What it takes to pull a molecule out of the liquid at zero temperature [energy].
+        Energy that is needed to take a molecule out of the liquid at zero temperature [energy].
     heat_capacity
-        Of the liquid, per molecule, in units of k.
+        Heat capacity of the liquid per molecule, in units of k.
     volatility
-        K in the vapour pressure K T^(c_p - c_l) exp(-binding_energy / T), T being kT [energy].
+        K in the vapour pressure K T^(c_p - c_l) exp(-binding_energy / T), where T is kT [energy].
     rotation
         Rotational degrees of freedom of the vapour.
 
@@ -63,7 +63,7 @@ class Substance:
         return 2.5 + 0.5 * self.rotation
 
     def saturation_pressure(self, kT: float) -> float:
-        """Return the pressure of the vapour that a large body of the liquid at kT is in balance with."""
+        """Return the saturation pressure over a flat surface of the liquid at kT [energy/length^3]."""
         power = self.vapour_heat_capacity - self.heat_capacity
         pressure: float = float(self.volatility * exp(power * log(kT) - self.binding_energy / kT))
         return pressure
@@ -71,24 +71,24 @@ class Substance:
 
 @dataclass(frozen=True)
 class Liquid:
-    """Liquid in a box: what it is, how much, and how warm.
+    """Liquid in a box: its substance, amount and temperature.
 
     Parameters
     ----------
     substance
-        What it is.
+        What it consists of.
     number
-        How many molecules there are in it at the start.
+        Number of molecules in it at the start.
     kT
         Its temperature at the start [energy].
     nuclei
-        Heat capacity of what the droplets sit on, in units of k.
+        Heat capacity of the nuclei of the droplets, in units of k.
     sticking
-        Which part of the vapour that meets it stays, above 0 up to 1.
+        Fraction of the vapour molecules that hit the liquid and stay, above 0 up to 1.
     rain
-        Rate at which each molecule that is too many falls out of the box [1/time].
+        Rate at which each molecule above ``keeps`` falls out of the box [1/time].
     keeps
-        How many molecules the liquid holds before it rains.
+        Number of molecules that the liquid holds before it rains.
 
     Raises
     ------
@@ -116,15 +116,15 @@ class Liquid:
 
 @dataclass(frozen=True)
 class Mist(Liquid):
-    r"""Droplets too fine to draw, spread evenly and carried along by the air.
+    r"""Droplets too fine to be drawn, spread evenly and moving with the air.
 
-    A molecule of speed w relative to the air meets one at the rate :math:`A w Z / 4 V`: as in the pool, what is in
-    balance with the liquid is the partial pressure, the share of the vapour in n k T Z.
+    A molecule of speed w relative to the air meets a droplet at the rate :math:`A w Z / 4 V`. So, as with a pool, the
+    liquid is in equilibrium with the partial pressure, the vapour's share of n k T Z.
 
     Parameters
     ----------
     area
-        Area of all droplets together [length^2].
+        Total area of all droplets [length^2].
     """
 
     area: float = 1.0
@@ -141,26 +141,31 @@ class Pool(Liquid):
 
 @dataclass(frozen=True)
 class Drops(Liquid):
-    """Drops that can be seen: spheres that fly, that molecules hit, that grow, shrink and merge.
+    """Visible drops: spheres that fly, are hit by molecules, grow, shrink and merge.
 
-    Each sits on a nucleus, and carries its share of the molecules; they are all of one temperature. The molecules in
-    the liquid at the start are shared out evenly. Without a surface tension and without anything dissolved in them the
-    vapour over drops is that over a flat surface; see `curvature`.
+    Each drop has a nucleus and a number of molecules; all drops have one temperature. The molecules in the liquid at
+    the start are shared evenly among them. Without surface tension and dissolved particles the vapour pressure over
+    drops is that over a flat surface; see `curvature`.
 
     Parameters
     ----------
     position
-        Centres of the nuclei at the start [length], where no molecule is; the drops start at rest.
+        Centres of the nuclei at the start [length], where there is no molecule; the drops start at rest.
     nucleus
-        Radius of a nucleus, or of each one [length].
+        Radius of all nuclei, or of each one [length].
     nucleus_mass
-        Its mass [mass].
+        Mass of a nucleus [mass].
     molecule_radius
-        Radius of the ball by whose volume each molecule makes its drop larger [length].
+        Radius of the sphere by whose volume a molecule enlarges its drop [length].
     surface_tension
-        Energy of a unit of surface [energy/length^2].
+        Energy per area of surface [energy/length^2].
     dissolved
-        How many particles each nucleus gives into solution, two for a pair of ions; none if empty.
+        Number of particles that each nucleus gives into solution, two for a pair of ions; none if empty.
+
+    Raises
+    ------
+    RefusedError
+        If there is no nucleus, a number is impossible, or a table does not fit the number of nuclei.
     """
 
     position: tuple[tuple[float, float, float], ...] = ()
@@ -189,7 +194,7 @@ class Drops(Liquid):
             raise RefusedError("drops do not rain: leave rain at 0, or take a mist")
 
     def _refuse_what_is_not_bound(self) -> None:
-        """Refuse so large a surface energy that the first molecule on the smallest nucleus costs more than it binds."""
+        """Refuse a surface tension at which the first molecule on the smallest nucleus would not be bound."""
         core, ball = (float(length) ** 3 for length in (min(self.nuclei_radii), self.molecule_radius))
         grown = 4.0 * math.pi * (float(cbrt(core + ball)) ** 2 - float(cbrt(core)) ** 2)
         bound = self.substance.binding_energy
@@ -207,5 +212,5 @@ class Drops(Liquid):
 
     @property
     def particles(self) -> tuple[float, ...]:
-        """How many particles are dissolved in each drop at the start."""
+        """Number of particles dissolved in each drop at the start."""
         return self.dissolved or (0.0,) * len(self.position)
