@@ -1,42 +1,42 @@
-"""The answers: what the textbook says, to lay beside what the box measures.
+"""Theory: what the textbook says, to compare with what the box measures.
 
-Every function is a closed form, or the solution of one equation, with its source. None of it is used to move
-a molecule. Where an argument is called ``kT`` or ``diameter`` any consistent set of units will do, reduced or
-SI; where it is called ``temperature`` or ``pressure`` of the air, the units are K and Pa.
+Every function is a closed form, or the solution of one equation, with its source. None of them is used to move a
+molecule. Where an argument is called ``kT`` or ``diameter`` any consistent set of units will do, reduced or SI; where
+it is called ``temperature`` or ``pressure`` of the air, the units are K and Pa.
 
 =================== =====================================================================================
-file                what it answers
+file                what it computes
 =================== =====================================================================================
 equation_of_state   by how much the pressure of hard spheres exceeds that of points
-entropy             what their excluded volume does to the free energy and to the adiabat
+entropy             the effect of excluded volume on the free energy and on the adiabat
 coexistence         the critical point, and the slope of ln p, from measured liquids and vapours
-simple_fluid        argon and its like, and which square well they are
+simple_fluid        argon, nitrogen and methane, and the square well that represents each
 well_gas            pressure and energy of a gas whose molecules attract each other
-disc                the same in two dimensions, and how often discs meet
-collision           how often molecules meet, and how far they fly between
-maxwell             how fast they are, and how much the temperature of few of them scatters
-diffusion           how two gases mix, how fast, and the entropy of that
-unlike_gases        the same of unlike molecules, whose heat goes along
-wall_law            with which energy they leave a wall; the heat between two walls in a very thin gas
-barometric          how a gas thins out with height
-column_temperature  which temperature an isolated column comes to
+disc                equation of state and collision rate of discs in two dimensions
+collision           how often molecules collide, and how far they fly in between
+maxwell             the speeds of molecules, and how much the temperature of a few of them scatters
+diffusion           how two gases mix, how fast, and the entropy of mixing
+unlike_gases        diffusion of unlike molecules, with the heat that they carry
+wall_law            the energy of molecules that leave a wall; the heat between two walls in a very thin gas
+barometric          how the density of a gas decreases with height
+column_temperature  the temperature of an isolated column in equilibrium
 hydrostatic         a column of spheres or discs with excluded volume
 stirred_column      how the temperature of a stirred column falls with height
-lifting             what becomes of a parcel that is lifted, compressed or held at its temperature
-finite_rate         what the finite rate of an ascent, and excluded volume, add to that
+lifting             a parcel that is lifted, or compressed without heat
+finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
 environment         the environment of a parcel: lapse rates, pressures and heights
-standard_atmosphere the same of the International Standard Atmosphere
+standard_atmosphere temperature and pressure of the International Standard Atmosphere
 saturation          how much water vapour air can hold
-iapws               the same of measured water, to compare with
-humidity            how much it does hold, and how light that makes it
-moist_lifting       where a lifted parcel forms its cloud, and its temperature with cloud and rain
-rain                the same if the cloud rains at a finite rate
-cloud_base          where the cloud base of a measured ascent is
-koehler             the vapour over a drop, by its curvature and by the salt in it
-evaporation         where evaporation and condensation end
-liquid_rate         how fast, and with which energy, molecules leave a liquid, large or small
-vapor_number        how the number of molecules of vapour scatters
-isobaric            the same at constant pressure, and how warm it is then
+iapws               the saturation vapour pressure of measured water, to compare with
+humidity            how much water vapour air does hold, and how light that makes the air
+moist_lifting       the cloud base of a lifted parcel, and its temperature with cloud and rain
+rain                a lifted parcel whose cloud rains at a finite rate
+cloud_base          the cloud base of a measured ascent
+koehler             the vapour pressure over a drop, from its curvature and from the salt in it
+evaporation         the equilibrium in which evaporation and condensation end
+liquid_rate         the rate and energy of molecules that leave a liquid, large or small
+vapor_number        fluctuations of the number of molecules of vapour at constant volume
+isobaric            the same at constant pressure, and the temperature
 buoyancy            whether a parcel rises by itself, and with what energy
 =================== =====================================================================================
 """

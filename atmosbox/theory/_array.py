@@ -1,4 +1,4 @@
-"""Numbers in, arrays of float64 through: what every function of the theory does first."""
+"""Conversion and checks of the arguments of all functions of the theory."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -7,7 +7,7 @@ FloatArray = NDArray[np.float64]
 
 
 def as_floats(values: ArrayLike) -> FloatArray:
-    """Return the values as float64, a plain number as an array without axes."""
+    """Return the values as an array of float64; a plain number becomes an array without axes."""
     return np.asarray(values, dtype=np.float64)
 
 

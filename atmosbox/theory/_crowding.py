@@ -25,7 +25,7 @@ from atmosbox.theory.equation_of_state import (
 
 
 class Crowding(NamedTuple):
-    """What a gas is as a function of its packing fraction, and where that ends."""
+    """Properties of a gas as functions of its packing fraction, and the packing fraction at which it freezes."""
 
     chemical_potential: Callable[[ArrayLike], FloatArray]
     compressibility_factor: Callable[[ArrayLike], FloatArray]

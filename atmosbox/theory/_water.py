@@ -1,7 +1,7 @@
 r"""Water and air in units of the molecule: heat capacities in k, energies in K, water as molecules per molecule of air.
 
-What the files on moist air share. With :math:`\ell = L / kT`, the latent heat of one molecule over kT, the law of
-Rankine and Kirchhoff says :math:`d \ln e_s / d \ln T = \ell`.
+These functions are shared by the files on moist air. With :math:`\ell = L / kT`, the latent heat of one molecule over
+kT, the law of Rankine and Kirchhoff is :math:`d \ln e_s / d \ln T = \ell`.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ BINDING: float = TRIPLE_LATENT_HEAT * WATER.molar_mass / GAS_CONSTANT + EXCESS *
 CRITICAL_TEMPERATURE = 647.096
 MASS_RATIO: float = WATER.molar_mass / DRY_AIR.molar_mass
 REFERENCE_PRESSURE = 1e5
-COLDEST = 1.0  # the vapour pressure is zero in float64 long before
+COLDEST = 1.0  # here the vapour pressure is zero in float64
 
 
 def checked_temperature(temperature: FloatArray, name: str = "temperature") -> FloatArray:
@@ -47,7 +47,7 @@ def checked_not_negative(values: FloatArray, name: str) -> FloatArray:
 
 
 def latent(temperature: FloatArray) -> FloatArray:
-    """Return the latent heat of a molecule over kT; below 1 K that of 1 K."""
+    """Return the latent heat of a molecule over kT; below 1 K the value at 1 K."""
     return BINDING / np.maximum(temperature, COLDEST) - EXCESS
 
 
@@ -71,8 +71,8 @@ def saturated_vapor(pressure: FloatArray, temperature: FloatArray) -> FloatArray
 def temperature_of_level(slope: FloatArray, binding: FloatArray, level: FloatArray) -> FloatArray:
     r"""Return T that solves :math:`s \ln(T/T_t) + b / T - b / T_t = q`, on the side where b / T > s.
 
-    Newton's method for u = b / sT in :math:`u - \ln u = c`, which is convex: from the second step on it comes
-    down to the root. This is the branch -1 of Lambert's function, without its overflow. An infinite level gives 0 K.
+    Newton's method for u = b / sT in :math:`u - \ln u = c`, which is convex: after the first step u decreases to the
+    root. This is the branch -1 of Lambert's function, without its overflow. An infinite level gives 0 K.
     """
     s, b, q = np.broadcast_arrays(slope, binding, level)
     triple = b / (s * TRIPLE_TEMPERATURE)
@@ -90,7 +90,7 @@ def temperature_of_level(slope: FloatArray, binding: FloatArray, level: FloatArr
 
 
 def dewpoint_of(vapor_pressure: FloatArray) -> FloatArray:
-    """Return the temperature of saturation at a vapour pressure, at most the critical one; 0 K for none."""
+    """Return the temperature of saturation at a vapour pressure, at most the critical one; 0 K without vapour."""
     with np.errstate(divide="ignore"):
         level = np.log(TRIPLE_PRESSURE) - np.log(vapor_pressure)
     return temperature_of_level(np.asarray(EXCESS), np.asarray(BINDING), level)
@@ -99,9 +99,9 @@ def dewpoint_of(vapor_pressure: FloatArray) -> FloatArray:
 def root(
     function: Callable[[FloatArray], tuple[FloatArray, FloatArray]], lower: FloatArray, upper: FloatArray
 ) -> FloatArray:
-    """Return where a rising function is zero: Newton's method from above, halving where it would leave the bracket.
+    """Return the zero of an increasing function, by Newton's method from above, or bisection outside the bracket.
 
-    `function` gives the value and the derivative. A root above the bracket is refused with ``ValueError``.
+    `function` returns the value and the derivative. A root above the bracket is refused with ``ValueError``.
     """
     low, high = np.broadcast_arrays(lower, upper)
     value, derivative = function(high)
@@ -113,7 +113,7 @@ def root(
         low, high = np.where(value < 0.0, x, low), np.where(value < 0.0, high, x)
         new = x - value / derivative
         new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-        done = np.all(np.abs(new - x) <= 1e-13 * np.maximum(np.abs(x), 1.0))  # the next step would be of rounding
+        done = np.all(np.abs(new - x) <= 1e-13 * np.maximum(np.abs(x), 1.0))  # the next step would be rounding error
         x = new
         if done:
             break
@@ -121,9 +121,9 @@ def root(
 
 
 def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
-    """Return the entropy per molecule of air, in k, of air, its vapour and its liquid.
+    """Return the entropy of air, its vapour and its liquid per molecule of air, in k.
 
-    `heat` is the heat capacity per molecule of air, of the air and of condensation nuclei.
+    `heat` is the heat capacity of the air and of condensation nuclei per molecule of air, in k.
     """
     vapor = np.minimum(saturated_vapor(pressure, temperature), water)
     wet = vapor < water
@@ -138,7 +138,7 @@ def entropy(pressure: FloatArray, temperature: FloatArray, water: FloatArray, he
 
 
 def temperature_of_entropy(target: FloatArray, pressure: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
-    """Return the temperature at which air and water have this entropy per molecule of air."""
+    """Return the temperature at which air and water have the entropy ``target`` per molecule of air."""
     s, p, w, c = np.broadcast_arrays(target, pressure, water, heat)
     e = p * w / (1.0 + w)
     triple = BINDING / TRIPLE_TEMPERATURE - EXCESS
@@ -175,14 +175,14 @@ def _saturated_entropy(
 
 
 def heat_of_saturated(pressure: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
-    """Return the heat capacity at constant pressure of saturated air with all its water, the latent heat included."""
+    """Return the heat capacity at constant pressure of saturated air with all its water, including the latent heat."""
     vapor, warm = saturated_vapor(pressure, temperature), latent(temperature)
     total: FloatArray = heat + VAPOR_HEAT * vapor + LIQUID_HEAT * (water - vapor) + vapor * (1.0 + vapor) * warm * warm
     return total
 
 
 def saturated_slope(pressure: FloatArray, temperature: FloatArray, liquid: FloatArray, heat: FloatArray) -> FloatArray:
-    """Return d ln T / d ln p of saturated air that is lifted with this liquid; what condenses may stay or leave."""
+    """Return d ln T / d ln p of saturated air that is lifted with this liquid, whether new liquid stays or leaves."""
     vapor = saturated_vapor(pressure, temperature)
     capacity = heat_of_saturated(pressure, temperature, vapor + liquid, heat)
     slope: FloatArray = (1.0 + vapor) * (1.0 + vapor * latent(temperature)) / capacity
@@ -192,9 +192,9 @@ def saturated_slope(pressure: FloatArray, temperature: FloatArray, liquid: Float
 def rained_temperature(
     pressure: FloatArray, pressure0: float, temperature0: float, liquid: float, heat: float
 ) -> FloatArray:
-    """Return the temperature of saturated air that holds this liquid and no more, along pressures that rise or fall.
+    """Return the temperature of saturated air with a constant amount of liquid, along pressures that rise or fall.
 
-    What condenses leaves with its entropy. Runge-Kutta of order 8 for ln T over ln p.
+    The water that condenses leaves with its entropy. Runge-Kutta method of order 8 for ln T over ln p.
     """
     from scipy import integrate  # loads slowly
 

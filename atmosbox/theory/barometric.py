@@ -1,8 +1,8 @@
-r"""A column of ideal gas in gravity: thinner above than below, and in equilibrium equally warm.
+r"""A column of ideal gas in gravity: its density decreases with height, and in equilibrium it is isothermal.
 
 A finite column of depth H is governed by one number, :math:`a = m g H / kT`, its depth in scale heights. The
-centres of spheres cannot come nearer to a wall than their radius: for them the column begins one radius above
-the floor and ends one below the ceiling.
+centres of spheres can come no nearer to a wall than their radius: for them the column begins one radius above the floor
+and ends one radius below the ceiling.
 """
 
 import numpy as np
@@ -123,7 +123,7 @@ def barometric_density(
 ) -> FloatArray:
     r"""Return the number density at each height of a closed isothermal column of ideal gas.
 
-    The barometric law, with the constant that makes it hold the given number of molecules.
+    The barometric law, with the constant that gives the column its number of molecules.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def barometric_density(
     molecules_per_area
         Molecules above each unit of area [length^-2].
     bottom, top
-        Lowest and highest place of a molecule's centre [length].
+        Lowest and highest position of a molecule's centre [length].
     kT
         Temperature as an energy [energy].
     mass

@@ -1,6 +1,6 @@
 r"""Whether a parcel rises by itself: its buoyancy, and the energy in a sounding.
 
-Between the levels of a sounding all is taken as linear in the logarithm of pressure, so that crossings and
+Between the levels of a sounding all quantities are taken as linear in the logarithm of pressure, so that crossings and
 integrals are exact. Units are SI.
 
 References
@@ -43,7 +43,7 @@ def density_temperature(temperature: ArrayLike, vapor: ArrayLike, liquid: ArrayL
 
     Examples
     --------
-    Ten grams of liquid make up for three kelvin of warmth:
+    Ten grams of liquid compensate three kelvin of warmth:
 
     >>> [round(float(density_temperature(270.0, 0.004, liquid)), 1) for liquid in (0.0, 0.010)]
     [270.7, 268.0]
@@ -87,16 +87,16 @@ def parcel_buoyancy(
 
 
 class Convection(NamedTuple):
-    """What a parcel can do in a sounding."""
+    """Energies and levels of a parcel in a sounding."""
 
     cape: float
     """Convective available potential energy [J kg^-1]."""
     cin: float
     """Convective inhibition, zero or negative [J kg^-1]."""
     lfc: float | None
-    """Pressure of the level of free convection [Pa]; None if the parcel is nowhere buoyant."""
+    """Pressure of the level of free convection [Pa]; None if the parcel is buoyant nowhere."""
     el: float | None
-    """Pressure of the equilibrium level [Pa]; None without an LFC, or if the parcel leaves the sounding rising."""
+    """Pressure of the equilibrium level [Pa]; None without an LFC, or if the parcel still rises at the top."""
 
 
 def _sounding(
@@ -118,7 +118,7 @@ def _sounding(
 
 
 def _free_layer(x: FloatArray, warmer: FloatArray, base: float) -> tuple[FloatArray, FloatArray, int, int] | None:
-    """Return the sounding with all crossings and the cloud base as levels, and the levels of LFC and EL in it."""
+    """Return the sounding with all crossings and the cloud base as levels, and the indices of LFC and EL in it."""
     below, above = warmer[:-1], warmer[1:]
     crossed = below * above < 0.0
     zero = x[:-1][crossed] + (np.diff(x) * below)[crossed] / (below - above)[crossed]
@@ -139,22 +139,22 @@ def cape_cin(
     parcel_virtual_temperature: ArrayLike,
     lcl_pressure: float | None = None,
 ) -> Convection:
-    r"""Return the energy that buoyancy gives to a rising parcel, and what must be spent before.
+    r"""Return the energy that buoyancy gives to a rising parcel, and the energy that must be spent before.
 
     :math:`\mathrm{CAPE} = R_d \int_{EL}^{LFC} (T_v' - T_v)\, d \ln p`, and CIN is the same from the start to the
-    LFC. The LFC is the lowest place, not below the cloud base, from which the parcel is buoyant; the EL is the
-    highest place at which it ceases to be. Stable layers between the two count against CAPE.
+    LFC. The LFC is the lowest level, not below the cloud base, from which the parcel is buoyant; the EL is the highest
+    level at which it ceases to be buoyant. Stable layers between the two reduce CAPE.
 
     Parameters
     ----------
     pressure : (level,)
-        Pressure, falling from the parcel's start upward [Pa].
+        Pressure, decreasing upward from the parcel's start [Pa].
     virtual_temperature : (level,)
         Virtual temperature of the environment [K].
     parcel_virtual_temperature : (level,)
         Virtual temperature of the parcel [K].
     lcl_pressure
-        Pressure of the parcel's cloud base [Pa]; the parcel may be free from the start if none is given.
+        Pressure of the parcel's cloud base [Pa]; None lets the parcel be free from the start.
 
     Returns
     -------
@@ -164,13 +164,13 @@ def cape_cin(
     Raises
     ------
     ValueError
-        If the pressures do not fall, the levels are not as many, or a number is not finite and positive.
+        If the pressures do not decrease, the numbers of levels differ, or a number is not finite and positive.
 
     Notes
     -----
-    The choices of MetPy's ``cape_cin``, ``which_lfc="bottom"`` and ``which_el="top"``, but for a parcel that is
-    buoyant at its cloud base, stable farther up and buoyant again: here the LFC is the cloud base, there it is the
-    upper crossing.
+    These are the choices of MetPy's ``cape_cin``, ``which_lfc="bottom"`` and ``which_el="top"``, except for a parcel
+    that is buoyant at its cloud base, stable farther up and buoyant again: here the LFC is the cloud base, in MetPy it
+    is the upper crossing.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Where the cloud base of a measured ascent is: where its liquid begins, by what the parcel holds alone."""
+"""The cloud base of a measured ascent: where its liquid begins, from the water of the parcel alone."""
 
 from typing import NamedTuple
 
@@ -10,11 +10,11 @@ from atmosbox.theory._array import as_floats
 __all__ = ["CloudBase", "measured_cloud_base"]
 
 MOST = 0.75
-"""Up to which share of all water that has condensed the curve is used."""
+"""Share of all water that has condensed up to which the curve is used."""
 
 
 class CloudBase(NamedTuple):
-    """A cloud base that was found [Pa], and its standard error [Pa]."""
+    """The measured cloud base [Pa], and its standard error [Pa]."""
 
     pressure: float
     standard_error: float
@@ -27,28 +27,28 @@ def measured_cloud_base(
     covariance: ArrayLike,
     least: float = 0.1,
 ) -> CloudBase | None:
-    r"""Return where the water of rising air begins to stay liquid, or None where it does not.
+    r"""Return the pressure above which the water of rising air begins to stay liquid; None if there is no cloud base.
 
-    Of few molecules some are clustered in clear air already. So the growth of the cloud above is followed back to where
-    it began: the share of the water that has condensed is laid through with a parabola in ln p, whose zero is the base.
+    In a gas of few molecules some are in clusters already in clear air. So the growth of the cloud is extrapolated back
+    to its beginning: a parabola in ln p is fitted to the share of the water that has condensed; its zero is the base.
 
     Parameters
     ----------
     pressure, vapor, condensed : (level,)
-        What was measured on the way up: pressure [Pa], and vapour and liquid, rain included, per dry air [kg kg^-1].
+        The measured ascent: pressure [Pa], and vapour and liquid, rain included, per dry air [kg kg^-1].
     covariance : (level, level)
         Covariance of the measured vapour at these pressures.
     least
-        From which share of all water on the cloud is taken to be more than clusters [1].
+        Share of all water above which the liquid counts as a cloud and not as clusters [1].
 
     Returns
     -------
     CloudBase or None
-        None where no level is clear, or too few lie in the cloud.
+        None if no level is clear, or too few levels lie in the cloud.
 
     Examples
     --------
-    An ascent shows its lifting condensation level of 888.8 hPa, found 2 hPa too high up without noise:
+    An ascent with a lifting condensation level of 888.8 hPa; without noise it is found 2 hPa too high up:
 
     >>> from atmosbox.theory.moist_lifting import parcel_path
     >>> levels = np.geomspace(1000e2, 400e2, 60)
@@ -71,7 +71,7 @@ def measured_cloud_base(
     near = np.arange(int(clear[-1]) + 1, end)
     if near.size < 8 or not np.all(np.isfinite(share[near])):
         return None
-    # of the water, all of which is known, so much is vapour
+    # the amount of water is known: convert the noise of the vapour to that of its share of the water
     scale = np.outer(1.0 / (c + v)[near], 1.0 / (c + v)[near])
     middle = float(np.log(p[near]).mean())
     x = np.log(p[near]) - middle

@@ -1,4 +1,4 @@
-r"""Liquid and vapour beside each other at several temperatures: where both become one, and how the pressure rises.
+r"""Liquid and vapour in coexistence at several temperatures: the critical point, and the rise of the vapour pressure.
 
 References
 ----------
@@ -16,11 +16,11 @@ __all__ = ["CriticalPoint", "critical_point", "slope_of_pressure"]
 Array = NDArray[np.float64]
 
 _BETA = 0.326
-"""How the difference of both densities goes to zero, as the power of 1 - T / T_c: that of all simple fluids."""
+"""Exponent of 1 - T / T_c with which the difference of both densities goes to zero: the same for all simple fluids."""
 
 
 class CriticalPoint(NamedTuple):
-    """Where liquid and vapour become one, each with its standard error."""
+    """The temperature and density at which liquid and vapour become identical, each with its standard error."""
 
     temperature: float
     temperature_se: float
@@ -39,10 +39,10 @@ def _line(x: Array, y: Array, error: Array) -> tuple[Array, Array]:
 def critical_point(
     temperature: ArrayLike, liquid: ArrayLike, vapor: ArrayLike, liquid_se: ArrayLike, vapor_se: ArrayLike
 ) -> CriticalPoint:
-    r"""Return the critical point that densities of liquid and vapour point to.
+    r"""Return the critical point from densities of liquid and vapour in coexistence.
 
     :math:`(\rho_l - \rho_v)^{1/\beta}` falls to zero along a straight line, at T_c; the mean of both densities is
-    another straight line (the law of rectilinear diameters), whose value there is the critical density.
+    another straight line (the law of rectilinear diameters), whose value at T_c is the critical density.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def critical_point(
 
 
 def slope_of_pressure(temperature: ArrayLike, pressure: ArrayLike, pressure_se: ArrayLike) -> tuple[float, float]:
-    r"""Return :math:`-\mathrm{d} \ln p / \mathrm{d}(1/T)` through measured vapour pressures, and its standard error.
+    r"""Return :math:`-\mathrm{d} \ln p / \mathrm{d}(1/T)` from measured vapour pressures, and its standard error.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""How often molecules meet, and how far they fly between.
+r"""How often molecules collide, and how far they fly between collisions.
 
 Enskog's theory: the rate of a thin gas, times the pair distribution at contact :math:`g(\sigma)`. For hard spheres in
 equilibrium it is exact.
@@ -19,7 +19,7 @@ from atmosbox.theory.maxwell import mean_speed
 def collision_rate(
     number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike, form: Form = "kolafa"
 ) -> FloatArray:
-    r"""Return how often one molecule is hit, :math:`\nu = 4 n \sigma^2 g(\sigma) \sqrt{\pi k T / m}`.
+    r"""Return the collision rate of one molecule, :math:`\nu = 4 n \sigma^2 g(\sigma) \sqrt{\pi k T / m}`.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def collision_rate(
     Returns
     -------
     ndarray
-        Collisions per molecule and time [time^-1]; N molecules have half of N times this many.
+        Collisions per molecule and time [time^-1]; a gas of N molecules has N/2 times as many.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def collision_rate(
 
     Examples
     --------
-    A molecule of air is hit seven thousand million times a second:
+    A molecule of air collides seven thousand million times a second:
 
     >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> kT = BOLTZMANN * 288.15
@@ -99,7 +99,8 @@ def mean_free_time(
 
     Examples
     --------
-    Spheres at half the density of touching cubes meet every 0.130 of the time they need for one diameter:
+    In a gas of 0.5 spheres per cubic diameter the mean free time is 0.130 of the time for one diameter at thermal
+    speed:
 
     >>> round(float(mean_free_time(0.5, 1.0, 1.0, 1.0)), 5)
     0.13017
@@ -181,7 +182,7 @@ def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> Flo
 
     Examples
     --------
-    Spheres are denser next to each other; points are so only because the spheres leave them less volume:
+    Spheres are denser next to each other; points are denser only because the spheres leave them less volume:
 
     >>> print(contact_value_between([0.2, 0.1], [1.0, 0.0]).round(4))
     [[1.3206 1.117 ]
@@ -203,7 +204,7 @@ def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> Flo
 
 
 def collision_rate_between(number_density: ArrayLike, diameter: ArrayLike, mass: ArrayLike, kT: float) -> FloatArray:
-    r"""Return how often one molecule of each species is hit by molecules of each species of a mixture.
+    r"""Return how often a molecule of each species of a mixture collides with molecules of each species.
 
     :math:`\nu_{ij} = 2 n_j \sigma_{ij}^2 g_{ij} \sqrt{2 \pi k T / \mu_{ij}}` with :math:`\sigma_{ij}` the
     mean of the two diameters and :math:`\mu_{ij} = m_i m_j / (m_i + m_j)`.
@@ -222,8 +223,8 @@ def collision_rate_between(number_density: ArrayLike, diameter: ArrayLike, mass:
     Returns
     -------
     ndarray : (species, species)
-        Collisions with species j per molecule of species i and time [time^-1]. The sum over j is the rate at
-        which a molecule of species i is hit at all.
+        Collisions with species j per molecule of species i and time [time^-1]. The sum over j is the collision rate of
+        a molecule of species i.
 
     Raises
     ------
@@ -237,8 +238,8 @@ def collision_rate_between(number_density: ArrayLike, diameter: ArrayLike, mass:
 
     Examples
     --------
-    Each of the few heavy molecules meets the many light ones often, and is seldom met by them; the total
-    agrees:
+    Each of the few heavy molecules collides often with the many light ones, a light one seldom with the heavy ones; the
+    total numbers agree:
 
     >>> rate = collision_rate_between([0.01, 0.09], [1.0, 1.0], [100.0, 1.0], 1.0)
     >>> bool(abs(0.01 * rate[0, 1] - 0.09 * rate[1, 0]) < 1e-15)
@@ -255,12 +256,12 @@ def collision_rate_between(number_density: ArrayLike, diameter: ArrayLike, mass:
 
 
 def contact_share(sides: ArrayLike, diameter: float, molecules: int) -> float:
-    r"""Return the share of contacts that a box with walls leaves of those in open space.
+    r"""Return the ratio of collisions in a box with walls to those in open space.
 
-    Of the places on a sphere of one diameter around a molecule where a partner could touch it, some lie
-    beyond a wall. With :math:`s_i = \sigma / L_i`, for sides L that the centres can reach, and
-    orientations n of all directions alike, the share is the mean of :math:`\prod (1 - |n_i| s_i)`; and a
-    molecule has N - 1 partners, not N.
+    Of the positions on a sphere of one diameter around a molecule where a partner could touch it, some lie beyond a
+    wall. With :math:`s_i = \sigma / L_i`, for sides L that the centres can reach, and orientations n in all directions
+    equally likely, the share of the others is the mean of :math:`\prod (1 - |n_i| s_i)`; and a molecule has N - 1
+    partners, not N.
 
     Parameters
     ----------
@@ -269,7 +270,7 @@ def contact_share(sides: ArrayLike, diameter: float, molecules: int) -> float:
     diameter
         Diameter of a molecule [length].
     molecules
-        Their number N.
+        Number N of molecules.
 
     Returns
     -------
@@ -288,7 +289,7 @@ def contact_share(sides: ArrayLike, diameter: float, molecules: int) -> float:
 
     Examples
     --------
-    Two hundred molecules of air at the ground, in a cube of 54 diameters, meet 3 % less often:
+    Two hundred molecules of air at the ground, in a cube of 54 diameters, collide 3 % less often:
 
     >>> round(contact_share([54.0, 54.0, 54.0], 1.0, 200), 3)
     0.968

@@ -1,4 +1,4 @@
-"""The temperature that an isolated column comes to: how its energy divides into motion and height."""
+"""The temperature of an isolated column in equilibrium: how its energy divides into motion and height."""
 
 from atmosbox.theory.hydrostatic import hydrostatic_mean_height
 
@@ -17,9 +17,9 @@ def column_temperature(
     dimensions: int = 3,
     rotation: int = 0,
 ) -> float:
-    r"""Return the temperature kT at which molecules have so much energy each, :math:`\tfrac{d + r}{2} kT + m g \bar z`.
+    r"""Return the temperature kT for a given energy per molecule, :math:`\tfrac{d + r}{2} kT + m g \bar z`.
 
-    The mean height rises with temperature, so there is one.
+    The mean height rises with temperature, so there is exactly one solution.
 
     Parameters
     ----------
@@ -46,11 +46,12 @@ def column_temperature(
     Raises
     ------
     ValueError
-        If the column would freeze at its floor, or is so dense that it would be less than half as warm as points.
+        If the column would freeze at its floor, or is so dense that it would be less than half as warm as a gas of
+        points.
 
     Examples
     --------
-    In a column without end half of the energy of points, 5/2 kT each, would be 3/2 motion and 1 height:
+    In a very high column of points with 5/2 kT each, 3/2 kT are energy of motion and 1 kT is potential energy:
 
     >>> round(column_temperature(2.5, 1.0, 0.0, 60.0), 3)
     1.0
@@ -64,7 +65,7 @@ def column_temperature(
         height = hydrostatic_mean_height(*column, dimensions=dimensions)
         return 0.5 * freedom * kT + mass * gravity * height - energy
 
-    # all of it may be motion; in a high column of points one kT a molecule is height, of spheres a little more
+    # all energy may be motion; in a high column of points kT per molecule is potential energy, of spheres a little more
     most = 2.0 * energy / freedom
     kT: float = brentq(missing, 0.5 * most * freedom / (freedom + 2.0), most, xtol=1e-14 * energy)
     return kT

@@ -29,13 +29,13 @@ class Species:
     Parameters
     ----------
     name
-        What a meteorologist calls it.
+        Its name in meteorology.
     molar_mass
         Mass of a mole [kg mol-1].
     molecule_mass
         Mass of one molecule [kg].
     diameter
-        Distance of the centres of two such molecules that touch [m].
+        Distance between the centres of two such molecules in contact [m].
     rotational_dof
         Number of rotational degrees of freedom.
 

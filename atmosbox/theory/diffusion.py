@@ -1,4 +1,4 @@
-"""Two gases that mix: the mutual diffusion coefficient, how their difference decays, and the entropy that it makes."""
+"""Two gases that mix: the mutual diffusion coefficient, the decay of their difference, and the entropy of mixing."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ _TRACE = 1e-6
 def mutual_diffusivity(
     number_density: float, diameter: float, mass: tuple[float, float], kT: float, *, contact: float = 1.0
 ) -> float:
-    r"""Return the mutual diffusion coefficient of two gases of equally large hard spheres, half of each.
+    r"""Return the mutual diffusion coefficient of two gases of hard spheres of one diameter, half of each.
 
     .. math:: D = \frac{3}{8 n \sigma^2 g} \sqrt{\frac{kT}{2 \pi \mu}}\, f, \qquad \mu = \frac{m_1 m_2}{m_1 + m_2}
 
     with the whole series of Chapman and Enskog for f, `diffusivity_factor`, and Enskog's contact value g for spheres
-    that exclude volume. Of molecules that differ by a label alone it is self-diffusion.
+    with excluded volume. For molecules that differ only by a label it is the coefficient of self-diffusion.
 
     Parameters
     ----------
     number_density
-        Of both gases together [1/length^3].
+        Number density of both gases together [1/length^3].
     diameter
-        Of all molecules [length].
+        Diameter of all molecules [length].
     mass
-        Of a molecule of each gas [mass].
+        Mass of a molecule of each gas [mass].
     kT
         Temperature [energy].
     contact
-        The contact value g; 1 for a thin gas.
+        Contact value g; 1 for a thin gas.
 
     Returns
     -------
@@ -67,10 +67,11 @@ def mutual_diffusivity(
 
 
 def diffusivity_error(mass: tuple[float, float]) -> float:
-    """Return by what share `mutual_diffusivity` may be off where the gases differ from half and half.
+    """Return the relative error of `mutual_diffusivity` where the gases are not half and half.
 
-    The coefficient of unlike gases changes from a trace of the one to a trace of the other. Across a box in which each
-    has its side it is as much larger on the one as it is smaller on the other, all but this.
+    The coefficient of unlike gases changes with the composition, from a trace of the one to a trace of the other. In a
+    box with one gas on each side it is larger on one side and smaller on the other; the two cancel except for this
+    error.
 
     Examples
     --------
@@ -84,14 +85,14 @@ def diffusivity_error(mass: tuple[float, float]) -> float:
 
 
 def mixing_decay_rate(diffusivity: float, length: float) -> float:
-    r"""Return how fast the slowest mode between two walls decays, :math:`D (\pi / L)^2` [1/time].
+    r"""Return the rate at which the slowest mode between two walls decays, :math:`D (\pi / L)^2` [1/time].
 
     Parameters
     ----------
     diffusivity
         The mutual diffusion coefficient [length^2/time].
     length
-        Distance of the walls, as far as the centres of molecules reach [length].
+        Distance between the walls that the centres of molecules can reach [length].
 
     Examples
     --------
@@ -134,24 +135,24 @@ def mixed_share(edges: ArrayLike, passed: ArrayLike) -> FloatArray:
 
 
 def mixed_share_scatter(bins: int, passed: float) -> FloatArray:
-    r"""Return by what the scatter of the share in a bin differs from that of as many independent draws.
+    r"""Return the variance of the share in a bin over that of independent draws.
 
-    Of n molecules drawn at random a share c would have the variance :math:`c (1 - c) / n`. Three things change it. All
-    molecules are exactly half of each gas. Those of one bin come from the same neighbourhood, and of two that now
-    are near each other one cannot have been where the other was. And sound moves both gases to and fro as
-    one, by which the whole profile is shifted. With the diffusion equation that chance drives, along the molecules
-    counted from the left, :math:`\partial_t c = D c'' + \nabla \cdot \sqrt{2 D c (1 - c) / n}\, \xi`,
+    For n molecules drawn at random a share c would have the variance :math:`c (1 - c) / n`. Three effects change it.
+    The number of molecules of each gas is exactly half. The molecules of one bin come from the same region, and two
+    molecules that are now near each other cannot have come from the same place. And sound moves both gases together to
+    and fro, which shifts the whole profile. With the diffusion equation driven by noise, along the molecules counted
+    from the left, :math:`\partial_t c = D c'' + \nabla \cdot \sqrt{2 D c (1 - c) / n}\, \xi`,
 
     .. math:: N\, \overline{\delta c^2} = \overline{c (1 - c)}\, b + \overline{c' c' K}
               - 2 D \int_0^t \int c'^2(z, s)\, G_b^2(z, t - s)\, dz\, ds
 
-    in one of b bins; :math:`K = \min(z, z') - z z'` is the scatter of the number of molecules up to z, G the spread of
-    a molecule that started at z.
+    in one of b bins; :math:`K = \min(z, z') - z z'` is the covariance of the number of molecules up to z, and G the
+    distribution of a molecule that started at z.
 
     Parameters
     ----------
     bins
-        Into how many equal parts the box is divided.
+        Number of equal parts of the box.
     passed
         Time times the decay rate of the slowest mode.
 
@@ -162,7 +163,7 @@ def mixed_share_scatter(bins: int, passed: float) -> FloatArray:
 
     Examples
     --------
-    In the middle the profile is shifted; of gases that are mixed half of each is left, in one bin less the others more:
+    The shift of the profile adds scatter in the middle; in mixed gases the fixed numbers reduce it by one twentieth:
 
     >>> mixed_share_scatter(20, 0.1)[[0, 9]].round(2).tolist(), mixed_share_scatter(20, 9.0)[[0, 9]].round(2).tolist()
     ([1.0, 1.18], [0.95, 0.95])
@@ -206,7 +207,7 @@ def mixing_entropy(share: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    Two gases that are mixed, half of each, have ln 2:
+    Two mixed gases, half of each, have ln 2:
 
     >>> round(float(mixing_entropy([0.5, 0.5])), 4), float(mixing_entropy([1.0, 0.0]))
     (0.6931, 0.0)

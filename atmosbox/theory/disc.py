@@ -1,4 +1,4 @@
-r"""Discs: the gas of a two-dimensional scene, all centres and velocities in one plane.
+r"""Discs: the gas of a two-dimensional scene, with all centres and velocities in one plane.
 
 The packing fraction is the share of the area covered, :math:`\eta = \pi n \sigma^2 / 4` with n molecules per
 area.
@@ -24,7 +24,7 @@ _HIGHEST_PACKING: dict[str, float] = {"henderson": 1.0, "santos-lopez-yuste": CL
 
 
 def checked_packing_fraction_discs(packing_fraction: ArrayLike, form: DiscForm) -> FloatArray:
-    """Return the packing fractions as floats once the equation of state is known to hold for all of them."""
+    """Return the packing fractions as floats, or raise ``ValueError`` where the equation of state does not hold."""
     if form not in _HIGHEST_PACKING:
         raise ValueError(f"form = {form!r} must be one of {', '.join(_HIGHEST_PACKING)}.")
     eta = as_floats(packing_fraction)
@@ -132,7 +132,7 @@ def compressibility_factor_discs(packing_fraction: ArrayLike, form: DiscForm = "
 
 
 def inverse_compressibility_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
-    r"""Return how stiff a plane gas is against compression at constant temperature, :math:`d(\eta Z) / d\eta`.
+    r"""Return the stiffness of a plane gas against compression at constant temperature, :math:`d(\eta Z) / d\eta`.
 
     It is :math:`(\partial P / \partial n)_T / kT`, and 1 for an ideal gas.
 
@@ -205,7 +205,7 @@ def gas_pressure_discs(
 
     Examples
     --------
-    Where they cover a tenth of the plane, discs press 24 % harder than points:
+    Where they cover a tenth of the plane, the pressure of discs is 24 % higher than that of points:
 
     >>> n = 0.1 * 4.0 / np.pi
     >>> round(float(gas_pressure_discs(n, 1.0, 1.0) / gas_pressure_discs(n, 1.0)), 3)
@@ -223,7 +223,7 @@ def collision_rate_discs(
     mass: ArrayLike,
     form: DiscForm = "henderson",
 ) -> FloatArray:
-    r"""Return how often one disc is hit, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}`.
+    r"""Return the collision rate of one disc, :math:`\nu = 2 n \sigma g(\sigma) \sqrt{\pi k T / m}`.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def collision_rate_discs(
     Returns
     -------
     ndarray
-        Collisions per disc and time [time^-1]; N discs have half of N times this many.
+        Collisions per disc and time [time^-1]; a gas of N discs has N/2 times as many.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def collision_rate_discs(
 
     Examples
     --------
-    A thin gas of discs: the rate is that of points times the width of the strip a disc sweeps.
+    In a thin gas of discs the rate is that of points, times the width of the strip that a disc sweeps:
 
     >>> round(float(collision_rate_discs(1e-6, 1.0, 1.0, 1.0) * 1e6), 4)
     3.5449

@@ -1,4 +1,4 @@
-r"""What the excluded volume of molecules does to entropy, free energy and the adiabat.
+r"""The effect of the excluded volume of molecules on entropy, free energy and the adiabat.
 
 References
 ----------
@@ -31,9 +31,9 @@ _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
     r"""Return the free energy per molecule, in units of kT, that excluded volume adds to an ideal gas.
 
-    :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`. Hard spheres have no potential energy, so this is
-    also minus the excess entropy per molecule in units of k: the volume from which each
-    molecule excludes the others.
+    :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`. Hard spheres have no potential energy, so this is also minus
+    the excess entropy per molecule in units of k; the reason is the volume from which each molecule excludes the
+    others.
 
     Parameters
     ----------
@@ -55,8 +55,7 @@ def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> Fl
 
     Notes
     -----
-    The integral over the ``"kolafa"`` form is done by Gauss-Legendre quadrature with 32 points, exact to
-    rounding.
+    The integral over the ``"kolafa"`` form is a Gauss-Legendre quadrature with 32 points, exact to rounding.
 
     References
     ----------
@@ -78,8 +77,8 @@ def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> Fl
 def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
     r"""Return the work, in units of kT, of inserting one more molecule.
 
-    :math:`\mu_{ex} / kT = a(\phi) + Z(\phi) - 1` with :math:`a` from :func:`excess_free_energy`; the chance
-    that a place taken at random is free for a sphere is :math:`e^{-\mu_{ex}/kT}`.
+    :math:`\mu_{ex} / kT = a(\phi) + Z(\phi) - 1` with :math:`a` from :func:`excess_free_energy`; the probability that a
+    random place is free for a sphere is :math:`e^{-\mu_{ex}/kT}`.
 
     Parameters
     ----------
@@ -105,7 +104,7 @@ def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa"
 
     Examples
     --------
-    One place in twelve is free in a gas that fills a fifth of its space:
+    In a gas that fills a fifth of its space one place in twelve is free:
 
     >>> round(float(1.0 / np.exp(-excess_chemical_potential(0.2))))
     12
@@ -183,7 +182,7 @@ def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm 
 
     Examples
     --------
-    One place in three is free for a disc where a fifth of the plane is covered:
+    Where discs cover a fifth of the plane, one place in three is free for another disc:
 
     >>> round(float(np.exp(excess_chemical_potential_discs(0.2))))
     3
@@ -194,9 +193,9 @@ def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm 
 def hard_sphere_isentrope(
     packing_fraction: ArrayLike, packing_fraction0: ArrayLike, dof: float = 3, form: Form = "kolafa"
 ) -> FloatArray:
-    r"""Return by what factor a gas of spheres warms when it is compressed slowly and without heat.
+    r"""Return the factor by which a gas of spheres warms when it is compressed slowly and without heat.
 
-    The entropy per molecule, :math:`(f/2) \ln T - \ln \phi - a(\phi)`, stays, so
+    The entropy per molecule, :math:`(f/2) \ln T - \ln \phi - a(\phi)`, is constant, so
 
     .. math:: T / T_0 = \left[ (\phi / \phi_0)\, e^{a(\phi) - a(\phi_0)} \right]^{2/f},
               \qquad dT / T = -(2/f)\, Z\, dV / V .
@@ -222,8 +221,8 @@ def hard_sphere_isentrope(
 
     Notes
     -----
-    In terms of pressure the correction to :func:`atmosbox.theory.dry_adiabat_temperature` starts only at
-    second order in the packing fraction: the harder push and the greater pressure cancel at first order.
+    As a function of pressure the correction to :func:`atmosbox.theory.dry_adiabat_temperature` begins only at second
+    order in the packing fraction: the additional work and the higher pressure cancel at first order.
 
     References
     ----------

@@ -19,7 +19,7 @@ DRY_AIR_GAS_CONSTANT: float = GAS_CONSTANT / DRY_AIR.molar_mass
 
 
 def environment_temperature(height: ArrayLike, surface_temperature: ArrayLike, lapse_rate: ArrayLike) -> FloatArray:
-    r"""Return the temperature of air that cools evenly with height, :math:`T_0 - \Gamma z`.
+    r"""Return the temperature of air with a constant lapse rate, :math:`T_0 - \Gamma z`.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def environment_temperature(height: ArrayLike, surface_temperature: ArrayLike, l
     Raises
     ------
     ValueError
-        If a height lies where the temperature would not be above absolute zero.
+        If the temperature at a height would not be above absolute zero.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def environment_pressure(
     gravity: ArrayLike = STANDARD_GRAVITY,
     specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
 ) -> FloatArray:
-    r"""Return the pressure at a height in air that cools evenly.
+    r"""Return the pressure at a height in air with a constant lapse rate.
 
     :math:`p_0 (1 - \Gamma z / T_0)^{g / R \Gamma}`. Without a lapse rate it is the barometric law
     :math:`p_0 e^{-gz/RT_0}`.
@@ -87,7 +87,7 @@ def environment_pressure(
     Raises
     ------
     ValueError
-        If a height lies where the temperature would not be above absolute zero.
+        If the temperature at a height would not be above absolute zero.
 
     References
     ----------
@@ -95,7 +95,7 @@ def environment_pressure(
 
     Examples
     --------
-    Half way through the atmosphere by weight, in hPa:
+    At the height where half of the air lies below, in hPa:
 
     >>> round(float(environment_pressure(5500.0, 288.15, 101325.0, 6.5e-3)) / 100.0)
     505
@@ -117,7 +117,7 @@ def height_of_pressure(
     gravity: ArrayLike = STANDARD_GRAVITY,
     specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
 ) -> FloatArray:
-    r"""Return the height at which air that cools evenly has a pressure.
+    r"""Return the height at which air with a constant lapse rate has a pressure.
 
     The inverse of :func:`environment_pressure`.
 

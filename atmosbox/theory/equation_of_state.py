@@ -1,7 +1,7 @@
-r"""Spheres with excluded volume: how much higher their pressure is than that of an ideal gas, and what follows.
+r"""Spheres with excluded volume: their pressure compared with that of an ideal gas, and quantities that follow from it.
 
-The packing fraction :math:`\phi = \pi n \sigma^3 / 6` is the share of the space that the spheres fill.
-Everything here depends on it alone, never on the temperature: hard spheres have no energy but their motion.
+The packing fraction :math:`\phi = \pi n \sigma^3 / 6` is the share of the space that the spheres fill. All quantities
+here depend on it alone, never on the temperature, because hard spheres have no energy except that of their motion.
 
 References
 ----------
@@ -45,7 +45,7 @@ _CONTACT_SERIES = Polynomial(_COEFFICIENTS[1:] / 4.0)
 
 
 def checked_packing_fraction(packing_fraction: ArrayLike, form: Form) -> FloatArray:
-    """Return the packing fractions as floats once the equation of state is known to hold for all of them."""
+    """Return the packing fractions as floats, or raise ``ValueError`` where the equation of state does not hold."""
     if form not in _HIGHEST_PACKING:
         raise ValueError(f"form = {form!r} must be one of {', '.join(_HIGHEST_PACKING)}.")
     phi = as_floats(packing_fraction)
@@ -84,8 +84,8 @@ def packing_fraction(number_density: ArrayLike, diameter: ArrayLike) -> FloatArr
 def contact_value(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
     r"""Return the pair distribution at contact, :math:`g(\sigma)`: how much denser the gas is next to a molecule.
 
-    It is 1 in a thin gas. Neighbours shield each other from being hit elsewhere, so pairs in contact are more
-    frequent than chance, and by the virial theorem :math:`Z = 1 + 4 \phi g(\sigma)`.
+    It is 1 in a thin gas. Neighbours shield each other from collisions on other sides, so pairs in contact are more
+    frequent than by chance, and by the virial theorem :math:`Z = 1 + 4 \phi g(\sigma)`.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -
 
     Examples
     --------
-    A thin gas is ideal but for four times its packing fraction; a fifth filled, it presses 2.4 times as hard:
+    In a thin gas Z exceeds 1 by four times the packing fraction; with a fifth filled the pressure is 2.4 times ideal:
 
     >>> [round(float(z), 4) for z in compressibility_factor([0.001, 0.2])]
     [1.004, 2.4094]
@@ -158,7 +158,7 @@ def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -
 
 
 def inverse_compressibility(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
-    r"""Return how stiff the gas is against compression at constant temperature.
+    r"""Return the stiffness of the gas against compression at constant temperature.
 
     :math:`(\partial P / \partial n)_T / kT`, in terms of the compressibility factor
     :math:`d(\phi Z) / d\phi`; 1 for an ideal gas. Its inverse is the mean square fluctuation of the number of
@@ -234,7 +234,7 @@ def gas_pressure(
 
     Examples
     --------
-    The size of its molecules adds a quarter of a per cent to the pressure of air at the ground:
+    The excluded volume adds a quarter of a per cent to the pressure of air at the ground:
 
     >>> from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
     >>> kT = BOLTZMANN * 288.15

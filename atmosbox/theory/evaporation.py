@@ -1,4 +1,4 @@
-r"""Where evaporation and condensation end: the temperature and the vapour of air in equilibrium with water.
+r"""The end of evaporation and condensation: temperature and vapour of air in equilibrium with water.
 
 Evaporation takes its heat from the air, the vapour and the liquid. It ends at saturation, or when no liquid is left.
 Units are SI; heat capacities of single bodies are in k.
@@ -31,7 +31,7 @@ class EvaporationEquilibrium(NamedTuple):
     vapor: FloatArray
     """Molecules of vapour [1]."""
     liquid: FloatArray
-    """Molecules of liquid [1]; 0 where the pool has dried out."""
+    """Molecules of liquid [1]; 0 if the pool has dried up."""
 
 
 def evaporation_equilibrium(
@@ -43,9 +43,9 @@ def evaporation_equilibrium(
     liquid_temperature: ArrayLike | None = None,
     nuclei_heat: ArrayLike = 0.0,
 ) -> EvaporationEquilibrium:
-    r"""Return what becomes of a pool under air at constant pressure, if no heat comes from outside.
+    r"""Return the final state of a pool under air at constant pressure, without heat from outside.
 
-    The enthalpy stays, :math:`(N_a c_{pd} + N_v c_{pv} + n c_l + C) T - n \varphi`, and :math:`N_v / N_a =
+    The enthalpy is constant, :math:`(N_a c_{pd} + N_v c_{pv} + n c_l + C) T - n \varphi`, and :math:`N_v / N_a =
     e / (p - e)`, where e is :math:`e_s(T)` or, if all of the pool has evaporated, less.
 
     Parameters
@@ -57,14 +57,14 @@ def evaporation_equilibrium(
     air
         Molecules of air :math:`N_a` [1].
     vapor
-        Molecules of vapour at the start, :math:`N_a e / (p - e)` at a vapour pressure e [1]. More than saturation
-        will condense.
+        Molecules of vapour at the start, :math:`N_a e / (p - e)` at a vapour pressure e [1]. An excess over saturation
+        condenses.
     liquid
         Molecules of liquid at the start n [1].
     liquid_temperature
         Temperature of the liquid at the start [K]; that of the air if none is given.
     nuclei_heat
-        Heat capacity C of condensation nuclei at the temperature of the liquid, of all together [k].
+        Total heat capacity C of condensation nuclei at the temperature of the liquid [k].
 
     Returns
     -------
@@ -79,8 +79,8 @@ def evaporation_equilibrium(
 
     Notes
     -----
-    The enthalpy rises with temperature, at saturation with the latent heat included, so there is one answer.
-    Newton's method, to rounding.
+    The enthalpy rises with temperature, at saturation including the latent heat, so there is exactly one solution. It
+    is found by Newton's method, to rounding.
 
     References
     ----------
@@ -88,7 +88,7 @@ def evaporation_equilibrium(
 
     Examples
     --------
-    Half saturated air of 20 degC over a pool of as many molecules as make a tenth of the air, and over a thousandth:
+    Half saturated air of 20 degC over a pool of a tenth as many molecules as the air has, and of a thousandth:
 
     >>> vapor = 1e5 * 1169.0 / (1000e2 - 1169.0)
     >>> end = evaporation_equilibrium(1000e2, 293.15, 1e5, vapor, [1e4, 1e2])
@@ -155,9 +155,9 @@ def wet_bulb_temperature(pressure: ArrayLike, temperature: ArrayLike, dewpoint: 
     -----
     MetPy's ``wet_bulb_temperature`` is another quantity, Normand's: the cloud base is brought down along a
     pseudo-adiabat. In air of 0 to 30 degC that is not very dry it is lower by 0.05 to 0.3 K; at 40 degC and
-    a dewpoint of -10 degC, by 0.9 K. A psychrometer shows what the exchange of heat and vapour at its bulb makes of
-    it: with the coefficient of the WMO, 6.53e-4 (1 + 9.44e-4 t) K^-1, it stands 0.1 K above this temperature at
-    20 degC and a dewpoint of 0 degC, and 0.2 K at 40 degC.
+    a dewpoint of -10 degC, by 0.9 K. A psychrometer shows the result of the exchange of heat and vapour at its bulb:
+    with the coefficient of the WMO, 6.53e-4 (1 + 9.44e-4 t) K^-1, it reads 0.1 K above this temperature at 20 degC
+    and a dewpoint of 0 degC, and 0.2 K at 40 degC.
 
     References
     ----------

@@ -1,6 +1,6 @@
-"""A parcel that rises within nanoseconds: how much the finite rate warms it, and its excluded volume cools it.
+"""A parcel that rises within nanoseconds: the finite-rate error that warms it, and the excluded volume that cools it.
 
-An infinitely slow ascent follows the adiabat. One of some hundred mean free times does not quite.
+An infinitely slow ascent follows the adiabat. An ascent of some hundred mean free times deviates a little.
 """
 
 import functools
@@ -17,19 +17,19 @@ from atmosbox.theory.lifting import adiabatic_index, dry_adiabat_temperature
 __all__ = ["DISSIPATION", "Ascent"]
 
 DISSIPATION = 2.0
-"""Four thirds of the viscosity and the bulk viscosity, over n k T and the mean free time: 2.01 by kinetic theory.
+"""Four thirds of the viscosity plus the bulk viscosity, over n k T and the mean free time: 2.01 by kinetic theory.
 
-The viscosity of hard spheres is 1.016 x 5/4 in these units (Chapman and Cowling 1970, 10.21), which makes 1.69. At a
-contact Larsen and Borgnakke's rule shares the energy of two molecules out among the 4 degrees of freedom of their
-relative motion and the 4 of their rotation; so the temperature of the rotation follows within 2 mean free times. In a
-gas that expands at the rate e it stays behind by 2 x 2/5 e, and motion is colder than the whole by two fifths of that:
-a bulk viscosity of 8/25. Of molecules that do not rotate only the 1.69 are left.
+The viscosity of hard spheres is 1.016 x 5/4 in these units (Chapman and Cowling 1970, 10.21), which gives 1.69. In a
+collision the rule of Larsen and Borgnakke divides the energy of two molecules among the 4 degrees of freedom of their
+relative motion and the 4 of their rotation; so the temperature of the rotation relaxes within 2 mean free times. In a
+gas that expands at the rate e it lags behind by 2 x 2/5 e, and the translation is colder than the mean by two fifths of
+that: a bulk viscosity of 8/25. For molecules that do not rotate only the 1.69 is left.
 
-Measured independently, with their spread: 1.99 +- 0.06 by 184 ascents of 50 to 1600 mean free times to 300 hPa, and
-1.5 +- 0.1 without rotation by 24 ascents of 200.
+Measured independently, with their spread: 1.99 +- 0.06 from 184 ascents of 50 to 1600 mean free times to 300 hPa,
+and 1.5 +- 0.1 without rotation from 24 ascents of 200.
 """
 _SHEAR, _ROTATION = 1.016 * 1.25, 2.0
-"""Within how many mean free times a gas forgets a shear, and the rotation follows the motion."""
+"""Relaxation times of a shear, and of the rotation [mean free times]."""
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,15 @@ class Ascent:
     Parameters
     ----------
     route
-        Pressure of the environment at equal times, from the start to the top [Pa].
+        Pressure of the environment at equal intervals of time, from the start to the top [Pa].
     length
-        How long it lasts, in mean free times at its start.
+        Duration of the ascent, in mean free times at its start.
     height
         Height of the box at the start, over the thermal speed sqrt(kT/m) [mean free times].
     freedom
         Degrees of freedom of a molecule.
     closing
-        Within how many mean free times the piston closes a gap of pressure.
+        Time in which the piston closes a gap in pressure [mean free times].
 
     Examples
     --------
@@ -66,17 +66,17 @@ class Ascent:
 
     @property
     def pressure(self) -> float:
-        """Where it starts [Pa]."""
+        """Pressure at the start [Pa]."""
         return self.route[0]
 
     @property
     def top_pressure(self) -> float:
-        """Where it ends [Pa]."""
+        """Pressure at the end [Pa]."""
         return self.route[-1]
 
     @functools.cached_property
     def _warmth(self) -> tuple[FloatArray, FloatArray]:
-        """The logarithm of the pressure along the route, and how much too warm the parcel is there."""
+        """Logarithm of the pressure over that at the start, and relative error of the temperature, along the route."""
         fallen = np.log(self.route[0]) - np.log(np.array(self.route))
         time = np.linspace(0.0, self.length, len(fallen))
         index, capacity = float(adiabatic_index(self.freedom)), 0.5 * self.freedom + 1.0
@@ -86,7 +86,7 @@ class Ascent:
         made = (shear + rotation) * rate**2 * free_time
         steps = np.diff(time) * 0.5 * (made[1:] + made[:-1])
         gained = np.concatenate([[0.0], np.cumsum(steps)])
-        # the stress builds up at the start and lags behind its gas as that thins
+        # the stress builds up at the start, and lags behind when the gas becomes thinner
         late = 0.5 * (shear * _SHEAR + rotation * _ROTATION) * rate**2 * (free_time**2 + 1.0)
         gained = np.maximum(gained - late, 0.0)
         high = self.height * np.exp(fallen / index)
@@ -97,16 +97,16 @@ class Ascent:
         r"""Return how much too warm a parcel arrives at a pressure [Pa], as a share of its temperature.
 
         A gas that expands at the rate :math:`e = -d \ln p/dt / \gamma` gains the entropy :math:`D e^2 \tau` per
-        molecule, over k and in a unit of time, with D as in `DISSIPATION`, a sum of :math:`D_i`; along an
-        adiabat :math:`\tau` grows as :math:`p^{-a}`, a = (f + 1)/(f + 2). The stress that makes it lags
-        behind by :math:`t_i \tau`, 1.27 mean free times for the shear and 2 for the rotation. And the energy of the
-        flow counts as warmth: the box, of height h, is stretched at the rate e, which takes :math:`m e^2 h^2 / 6` for
-        each molecule. Together,
+        molecule and unit of time, in k, with D as in `DISSIPATION`, a sum of :math:`D_i`; along an adiabat :math:`\tau`
+        grows as :math:`p^{-a}`, a = (f + 1)/(f + 2). The stress that produces this entropy lags behind by
+        :math:`t_i \tau`, 1.27 mean free times for the shear and 2 for the rotation. In addition the energy of the flow
+        counts as warmth: the box, of height h, is stretched at the rate e, which takes :math:`m e^2 h^2 / 6` for each
+        molecule. Together,
 
         .. math:: \frac{\Delta T}{T} = \frac{1}{f/2 + 1} \left[ \int D e^2 \tau \, dt
                   - \sum_i D_i t_i e^2 \frac{\tau^2 + \tau_0^2}{2} + \frac{m e^2 h^2}{6 k T} \right] .
 
-        The first term goes as one over the length n of the ascent, the others as one over its square.
+        The first term decreases as one over the length n of the ascent, the others as one over its square.
 
         Measured independently, at n = 50 to 300 hPa: 3.11, 3.45 and 3.61 K, each +- 0.10, for 500, 2000 and 4000
         molecules.
@@ -117,9 +117,9 @@ class Ascent:
     def lateness(self, pressure: float) -> float:
         """Return how much too warm it is where the environment has a pressure [Pa], as a share of its temperature.
 
-        The piston follows the pressure of a parcel that grows too warm, but only within the time that it takes to close
-        a gap of pressure. So the parcel still has a little more pressure than its environment, which counts 2/f times
-        what it warms meanwhile.
+        The piston follows the pressure of a parcel that becomes too warm, but only within the time in which it closes a
+        gap in pressure. So the parcel still has a little more pressure than its environment, which adds 2/f times the
+        warming during that time.
         """
         meanwhile = math.log(self.pressure / self.top_pressure) / self.length * self.closing
         later = max(pressure * math.exp(-meanwhile), min(pressure, self.top_pressure))
@@ -129,14 +129,14 @@ class Ascent:
     def room(self, pressure: float, density: float) -> float:
         """Return how much colder spheres arrive at a pressure [Pa] than points, as a share of the temperature.
 
-        Both are lifted infinitely slowly; excluded volume cools spheres in second order of the packing.
+        Both are lifted infinitely slowly; excluded volume cools spheres in second order of the packing fraction.
 
         Parameters
         ----------
         pressure
-            Where they arrive [Pa].
+            Pressure at which they arrive [Pa].
         density
-            How many molecules there are at the start in the cube of their diameter.
+            Number of molecules at the start in the cube of their diameter.
         """
         density_on_the_way = density * np.geomspace(min(pressure, self.top_pressure) / self.pressure, 1.0, 200)
         filled = packing_fraction(density_on_the_way, 1.0)

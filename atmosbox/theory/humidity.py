@@ -1,4 +1,4 @@
-r"""How much water vapour air does hold: vapour pressure, mixing ratio, relative humidity, virtual temperature.
+r"""How much water vapour is in the air: vapour pressure, mixing ratio, relative humidity, virtual temperature.
 
 Names are those of MetPy. Temperatures are in K, pressures in Pa, mixing ratios in kg per kg of dry air, relative
 humidities in parts of one.
@@ -20,7 +20,7 @@ WATER_MASS_RATIO: float = MASS_RATIO
 
 
 def vapor_pressure(pressure: ArrayLike, mixing_ratio: ArrayLike) -> FloatArray:
-    r"""Return the share that water vapour has in the pressure of air, :math:`p r / (\epsilon + r)`.
+    r"""Return the partial pressure of water vapour in air, :math:`p r / (\epsilon + r)`.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def mixing_ratio(vapor_pressure: ArrayLike, pressure: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If a vapour pressure is negative or as high as the pressure, which leaves no air.
+        If a vapour pressure is negative, or not below the pressure, which leaves no air.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def virtual_temperature(
 
     Examples
     --------
-    Fifteen grams of vapour count for 2.7 K; as many of cloud water take more than that away:
+    Fifteen grams of vapour add 2.7 K; as much cloud water takes away more than that:
 
     >>> virtual_temperature(293.15, 0.015, [0.0, 0.015]).round(1)
     array([295.8, 291.5])

@@ -1,13 +1,12 @@
-r"""A column of spheres or discs with excluded volume, in gravity: the barometric law of a gas that is not ideal.
+r"""A column of spheres or discs with excluded volume in gravity: the barometric law of a gas that is not ideal.
 
-Each layer carries the weight of those above, :math:`dP/dz = -n m g`, and the column is isothermal. With
-:math:`P = n k T Z(\phi)` this says that the chemical potential falls by the work of lifting,
+Each layer carries the weight of the layers above, :math:`dP/dz = -n m g`, and the column is isothermal. With
+:math:`P = n k T Z(\phi)` this means that the chemical potential decreases by the work of lifting,
 
 .. math:: \ln \phi + \mu_{ex}(\phi)/kT = \text{const} - m g z / kT,
 
-which is solved here at each height, and for the constant that gives the right number of molecules. The layers
-of molecules that form against a wall within a few diameters are not in it: this is the local-density
-approximation.
+which is solved here at each height, and for the constant that gives the right number of molecules. The density
+oscillations within a few diameters of a wall are left out: this is the local-density approximation.
 
 References
 ----------
@@ -30,21 +29,21 @@ from atmosbox.theory.equation_of_state import Form
 _NODES, _WEIGHTS = leggauss(16)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 _SHALLOW = 0.01
-"""Scale heights below which the mean density is an integral, not the difference of two pressures."""
+"""Depth in scale heights below which the mean density is an integral, not the difference of two pressures."""
 _EMPTY = 100.0
-"""Scale heights above which there is nothing: even the densest gas is thinner there by more than e^-60."""
+"""Scale heights above which the gas is neglected: even the densest gas is thinner there by more than e^-60."""
 
 
 def _potential(log_packing: ArrayLike, gas: Crowding) -> FloatArray:
-    """Return the chemical potential over kT, but for a constant, of a gas of given ln(packing fraction)."""
+    """Return the chemical potential over kT, except for a constant, of a gas at a ln(packing fraction)."""
     return as_floats(log_packing) + gas.chemical_potential(np.exp(log_packing))
 
 
 def _packing_of_potential(potential: ArrayLike, gas: Crowding) -> FloatArray:
     """Return the packing fraction at which the gas has a chemical potential.
 
-    Newton's method in ln(packing fraction). The potential is increasing and convex in it, so starting above
-    the root each step stays above and the steps shrink to rounding.
+    Newton's method in ln(packing fraction). The potential is increasing and convex, so after a start above the root
+    each step stays above it, and the steps shrink to rounding.
     """
     wanted = as_floats(potential)
     guess = np.minimum(wanted, np.log(gas.freezing))
@@ -60,8 +59,8 @@ def _packing_of_potential(potential: ArrayLike, gas: Crowding) -> FloatArray:
 def _mean_packing(floor_potential: float, depth: float, gas: Crowding) -> float:
     """Return the mean packing fraction of a column, its depth given in scale heights.
 
-    The column carries its own weight, so the mean is the difference of the pressures below and above over the
-    depth.
+    The column carries its own weight, so the mean is the difference between the pressures at its bottom and top over
+    the depth.
     """
     if depth < _SHALLOW:
         return float(_packing_of_potential(floor_potential - depth * _NODES, gas) @ _WEIGHTS)
@@ -81,7 +80,7 @@ def _profile(
     form: Form | DiscForm | None,
     dimensions: int,
 ) -> Callable[[FloatArray], FloatArray]:
-    """Return the function that gives the number density at heights inside the column."""
+    """Return the function that gives the number density at a height inside the column."""
     from scipy import optimize  # loads slowly
 
     require_positive(molecules_per_area=molecules_per_area, kT=kT, mass=mass)
@@ -129,7 +128,7 @@ def hydrostatic_layers(
 ) -> FloatArray:
     r"""Return the mean number density in each layer of a closed isothermal column.
 
-    It is what a count of the molecules in the layer expects.
+    It is the expected count of molecules in the layer, per volume.
 
     Parameters
     ----------
@@ -138,7 +137,7 @@ def hydrostatic_layers(
     molecules_per_area
         Molecules above each unit of area [length^-2]; in a plane, above each unit of length [length^-1].
     bottom, top
-        Lowest and highest place of a molecule's centre [length].
+        Lowest and highest position of a molecule's centre [length].
     kT
         Temperature as an energy [energy].
     mass
@@ -161,13 +160,13 @@ def hydrostatic_layers(
     Raises
     ------
     ValueError
-        If the edges do not rise, a setting is not positive, dimensions is neither 2 nor 3, or the gas at the
-        floor would freeze.
+        If the edges do not rise, a value is not positive, dimensions is neither 2 nor 3, or the gas at the floor would
+        freeze.
 
     Notes
     -----
-    A layer carries its own weight, so its mean density is the difference of the pressures below and above it over
-    m g times its thickness, whatever that is. In layers thinner than a hundredth of a scale height, where that
+    A layer carries its own weight, so its mean density is the difference between the pressures below and above it over
+    m g times its thickness, however thick it is. In layers thinner than a hundredth of a scale height, where that
     difference has few digits, it is a Gauss-Legendre quadrature.
 
     References
@@ -176,7 +175,7 @@ def hydrostatic_layers(
 
     Examples
     --------
-    Whatever the layers, they hold all the molecules:
+    The layers together hold all the molecules, however they are divided:
 
     >>> edges = np.array([0.0, 1.0, 3.0, 6.0])
     >>> layers = hydrostatic_layers(edges, 0.3, 0.5, 5.5, 1.0, 1.0, 1.0, diameter=1.0)
@@ -230,12 +229,12 @@ def hydrostatic_mean_height(
 
     Notes
     -----
-    Of points it is the closed form of :func:`column_mean_height`. Of spheres and discs it is a Gauss-Legendre
-    quadrature with 16 points in each scale height, however high the column.
+    For points it is the closed form of :func:`column_mean_height`. For spheres and discs it is a Gauss-Legendre
+    quadrature with 16 points in each scale height, for any height of the column.
 
     Examples
     --------
-    Spheres cannot all lie on the floor, and so their mean height is more than the scale height of points:
+    Spheres cannot all lie on the floor, and so their mean height is greater than that of points:
 
     >>> column = 0.3, 0.5, 100.0, 1.0, 1.0, 1.0
     >>> [round(hydrostatic_mean_height(*column, diameter), 3) for diameter in (0.0, 1.0)]

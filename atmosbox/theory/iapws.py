@@ -15,11 +15,11 @@ _CRITICAL_PRESSURE = 22.064e6
 _COEFFICIENTS = np.array([-7.85951783, 1.84408259, -11.7866497, 22.6807411, -15.9618719, 1.80122502])
 _EXPONENTS = np.array([1.0, 1.5, 3.0, 3.5, 4.0, 7.5])
 _COLDEST = 233.15
-"""Below about -40 degC water cannot be kept liquid: nothing to compare with [K]."""
+"""Below about -40 degC water cannot be kept liquid, and there is no measurement to compare with [K]."""
 
 
 def saturation_vapor_pressure_iapws(temperature: ArrayLike) -> FloatArray:
-    r"""Return the saturation vapour pressure over liquid water as IAPWS recommends it, a fit to measurements.
+    r"""Return the saturation vapour pressure over liquid water by the formula of IAPWS, a fit to measurements.
 
     Equation 1 of the release SR1-86(1992) of the International Association for the Properties of Water and Steam
     [1]_, by Wagner and Pruss [2]_. With :math:`\vartheta = 1 - T/T_c`, :math:`T_c` = 647.096 K and :math:`p_c` =

@@ -1,8 +1,7 @@
-r"""How much vapour a small parcel of air over water holds, if it is left alone at constant pressure.
+r"""The vapour in a small parcel of air over water, in equilibrium at constant pressure and without heat exchange.
 
-The exact distribution at equilibrium, for any number of molecules, even for one: to which every law of
-evaporation and condensation must lead under a piston. The liquid is that of :mod:`atmosbox.theory.liquid_rate`.
-Units are SI.
+This is the exact distribution at equilibrium, for any number of molecules, even for one: every law of evaporation and
+condensation under a piston must lead to it. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 """
 
 import math
@@ -25,7 +24,7 @@ __all__ = ["IsobaricWater", "isobaric_water"]
 
 
 class IsobaricWater(NamedTuple):
-    """What air at rest with a little water comes to, on average."""
+    """Mean state and distribution of the vapour in air with a little water, in equilibrium."""
 
     probability: FloatArray
     """Probability of 0, 1, 2, ... molecules of vapour, up to all the water [1]."""
@@ -42,10 +41,10 @@ class IsobaricWater(NamedTuple):
 def isobaric_water(
     pressure: float, temperature: float, air: int, vapor: int, liquid: int, nuclei_heat: float = 0.0
 ) -> IsobaricWater:
-    r"""Return what air, vapour and liquid come to at constant pressure, if they exchange no heat.
+    r"""Return the equilibrium of air, vapour and liquid at constant pressure, without heat exchange.
 
-    Each share of the enthalpy, and each volume, is as likely as it has states. With :math:`\varphi` for every
-    molecule outside the liquid and :math:`M = c_{pd} N_a + c_{pv} N_v + c_l n + C`,
+    Each division of the enthalpy, and each volume, has a probability proportional to its number of states. With
+    :math:`\varphi` for every molecule outside the liquid and :math:`M = c_{pd} N_a + c_{pv} N_v + c_l n + C`,
 
     .. math:: P(N_v) \propto \frac{(N_a + N_v)!}{N_v!} \left( \frac{\zeta}{p} \right)^{N_v}
               \frac{(H - N_v \varphi)^M}{\Gamma(M + 1)} , \qquad
@@ -58,7 +57,7 @@ def isobaric_water(
     pressure
         Pressure of the gas p [Pa].
     temperature
-        Temperature of all of it at the start [K].
+        Temperature of air, vapour and liquid at the start [K].
     air, vapor, liquid
         Molecules of air :math:`N_a`, of vapour and of liquid at the start [1].
     nuclei_heat
@@ -72,12 +71,12 @@ def isobaric_water(
     Raises
     ------
     ValueError
-        If the pressure or the temperature is not positive, a number is negative, or there is nothing at all.
+        If the pressure or the temperature is not positive, a number is negative, or there are no molecules or nuclei.
 
     Notes
     -----
-    Of a large parcel :func:`atmosbox.theory.evaporation_equilibrium` says the same. In a small one a molecule that
-    evaporates cools all the rest, and the pool is lost now and then.
+    For a large parcel :func:`atmosbox.theory.evaporation_equilibrium` gives the same. In a small one a molecule that
+    evaporates cools all the others, and sometimes the whole pool evaporates.
 
     References
     ----------
@@ -86,8 +85,8 @@ def isobaric_water(
 
     Examples
     --------
-    Two molecules of vapour in 200 of air of 30 degC, over a pool of 20: the vapour scatters much, and all is 0.8 K
-    warmer than it would be in a large parcel.
+    Two molecules of vapour in 200 of air of 30 degC, over a pool of 20: the vapour scatters much, and everything is
+    0.8 K warmer than it would be in a large parcel.
 
     >>> end = isobaric_water(1000e2, 303.15, 198, 2, 20)
     >>> round(end.vapor, 1), round(end.variance, 1), round(end.temperature, 1)

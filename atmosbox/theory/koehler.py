@@ -1,9 +1,10 @@
-r"""The vapour over a drop: Kelvin's law of its curvature, and Koehler's of what is dissolved in it.
+r"""The vapour pressure over a drop: Kelvin's law of its curvature, and Koehler's law of the salt in it.
 
 A drop of n molecules of volume v has the radius r and the surface energy :math:`4 \pi \gamma r^2`. A molecule that
-leaves takes some of that off, :math:`2 \gamma v / r`, and leaves the more easily. What is dissolved makes molecules of
-water rarer, and they leave less often. The first falls with the radius, the second with its cube: over a drop with salt
-in it the vapour pressure has a maximum. At a humidity above that the drop grows without end.
+leaves reduces the surface energy by :math:`2 \gamma v / r`, and so leaves more easily. Dissolved particles reduce the
+share of water molecules, and fewer of them leave. The first effect decreases as one over the radius, the second as one
+over its cube: over a drop with salt in it the vapour pressure has a maximum. At a higher humidity the drop grows
+without end.
 
 References
 ----------
@@ -46,7 +47,7 @@ def water_surface_tension(temperature: ArrayLike) -> FloatArray:
     Parameters
     ----------
     temperature
-        Temperature [K]; below the triple point the water is supercooled, and the formula reaches beyond its data.
+        Temperature [K]; below the triple point the water is supercooled, and the formula is extrapolated.
 
     Returns
     -------
@@ -75,16 +76,16 @@ def water_surface_tension(temperature: ArrayLike) -> FloatArray:
 
 
 def drop_radius(number: ArrayLike, volume: float, core: float = 0.0) -> FloatArray:
-    """Return the radius of a drop of so many molecules.
+    """Return the radius of a drop of ``number`` molecules.
 
     Parameters
     ----------
     number
-        How many molecules there are in it.
+        Number of molecules in the drop.
     volume
-        Of a molecule in the liquid [length^3].
+        Volume of a molecule in the liquid [length^3].
     core
-        Volume of what the drop sits on, or of the salt in it [length^3].
+        Volume of the insoluble core of the drop, or of the salt in it [length^3].
 
     Examples
     --------
@@ -100,7 +101,7 @@ def drop_radius(number: ArrayLike, volume: float, core: float = 0.0) -> FloatArr
 
 
 def kelvin_radius(tension: float, volume: float, kT: float) -> float:
-    r"""Return the radius below which curvature raises the vapour pressure e-fold, :math:`2 \gamma v / kT`.
+    r"""Return the radius at which curvature multiplies the vapour pressure by e, :math:`2 \gamma v / kT`.
 
     Parameters
     ----------
@@ -133,13 +134,13 @@ def humidity_over_drop(
     Parameters
     ----------
     number
-        How many molecules of water there are in the drop, n.
+        Number n of molecules of water in the drop.
     tension, volume, kT
         Surface tension [energy/length^2], volume of a molecule [length^3], temperature [energy].
     particles
-        How many dissolved particles, s: two for each pair of ions.
+        Number s of dissolved particles: two for each pair of ions.
     core
-        Volume of what is dissolved, or of an insoluble nucleus [length^3].
+        Volume of the dissolved substance, or of an insoluble nucleus [length^3].
 
     Returns
     -------
@@ -148,8 +149,8 @@ def humidity_over_drop(
 
     Notes
     -----
-    The surface gives back E(n) - E(n - 1) when a molecule leaves, and not its derivative at n: for few molecules the
-    exact ratio is that of n - 1/2.
+    When a molecule leaves, the surface energy changes by E(n) - E(n - 1), and not by its derivative at n: for few
+    molecules the exact ratio is the one at n - 1/2.
 
     Examples
     --------
@@ -168,7 +169,7 @@ def humidity_over_drop(
 
 
 class CriticalDrop(NamedTuple):
-    """The drop over which the humidity is highest.
+    """The drop over which the humidity in balance with it is highest.
 
     ``number`` of its molecules of water, its ``radius`` [length], and the relative ``humidity`` over it [1].
     """
@@ -181,7 +182,7 @@ class CriticalDrop(NamedTuple):
 def critical_drop(tension: float, volume: float, kT: float, *, particles: float, core: float = 0.0) -> CriticalDrop:
     r"""Return Koehler's maximum: above its humidity a drop with salt in it grows without end.
 
-    Where :math:`s / n (n + s) = 2 \gamma v^2 / 4 \pi r^4 kT`. For thin solutions it is :math:`r_c = \sqrt{3 B / A}` and
+    It is where :math:`s / n (n + s) = 2 \gamma v^2 / 4 \pi r^4 kT`. In thin solutions :math:`r_c = \sqrt{3 B / A}` and
     :math:`\ln S_c = 2 A / 3 r_c` with :math:`A = 2 \gamma v / kT` and :math:`B = 3 s v / 4 \pi`.
 
     Parameters
@@ -192,11 +193,12 @@ def critical_drop(tension: float, volume: float, kT: float, *, particles: float,
     Raises
     ------
     ValueError
-        If a number is not above 0, or particles are too few: then the humidity falls with the radius everywhere.
+        If a number is not above 0, or there are too few particles: then the humidity decreases with the radius
+        everywhere.
 
     Examples
     --------
-    A grain of salt 0.1 micrometres wide needs a tenth of a per cent too much, one of fifty ions a hundred:
+    A grain of salt 0.1 micrometres wide grows above 100.11 % of humidity, a grain of fifty ions only above 199.28 %:
 
     >>> from atmosbox.theory.constants import BOLTZMANN
     >>> water = {"tension": 0.07274, "volume": WATER_VOLUME, "kT": BOLTZMANN * 293.15}
@@ -215,13 +217,13 @@ def critical_drop(tension: float, volume: float, kT: float, *, particles: float,
         radius = float(drop_radius(n, volume, core))
         return float(np.log(reach * volume / (4.0 * np.pi * radius**4)) + np.log(n) + np.log1p(n / particles))
 
-    # the humidity rises from where it is steepest, most often at n = s / 2, up to the maximum
+    # the humidity rises from its steepest point, usually at n = s / 2, up to the maximum
     low, high = (np.log(each * particles) for each in (0.5, 1e6 * (1.0 + np.sqrt(particles))))
     if falls(low) >= 0.0:
         low, high = np.log(1e-6), low
         if falls(low) >= 0.0:
             raise ValueError(f"particles = {particles} are too few for a maximum: give more of them.")
-    while low < (middle := 0.5 * (low + high)) < high:  # halved until no number lies between
+    while low < (middle := 0.5 * (low + high)) < high:  # halve the interval until no number lies between
         low, high = (middle, high) if falls(middle) < 0.0 else (low, middle)
     number = float(np.exp(high))
     facts = {"particles": particles, "core": core}

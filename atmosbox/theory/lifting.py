@@ -1,4 +1,4 @@
-r"""What becomes of a parcel of gas that is lifted, compressed, or held at its temperature while it expands.
+r"""A parcel of gas that is lifted, or compressed without heat: its heat capacities, adiabat and lapse rate.
 
 A molecule with f degrees of freedom has the heat capacity :math:`(f/2) k` at constant volume and
 :math:`(f/2 + 1) k` at constant pressure. Air has f = 5, three of translation and two of rotation; spheres
@@ -13,7 +13,7 @@ from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
 
 
 def adiabatic_index(dof: ArrayLike = 5) -> FloatArray:
-    r"""Return the ratio of the heat capacities, :math:`\gamma = 1 + 2/f`.
+    r"""Return the ratio of the heat capacities at constant pressure and constant volume, :math:`\gamma = 1 + 2/f`.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def dry_adiabat_temperature(
     temperature0
         Temperature at the start, in K or as an energy.
     dof
-        Degrees of freedom f of one molecule: 5 for air, whose exponent is 2/7; 3 for spheres, 2/5 [1].
+        Degrees of freedom f of one molecule [1]: 5 for air, with the exponent 2/7; 3 for spheres, with 2/5.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def dry_adiabat_temperature(
 
     Examples
     --------
-    From 1000 to 500 hPa air cools from 15 degC to -37 degC; spheres that do not rotate would to -55 degC:
+    From 1000 to 500 hPa air cools from 15 degC to -37 degC; spheres that do not rotate would cool to -55 degC:
 
     >>> [round(float(dry_adiabat_temperature(500.0, 288.15, 1000.0, dof)) - 273.15) for dof in (5, 3)]
     [-37, -55]
@@ -71,7 +71,7 @@ def dry_lapse_rate(
     specific_gas_constant: ArrayLike = DRY_AIR_GAS_CONSTANT,
     dof: float = 5,
 ) -> FloatArray:
-    r"""Return by how much dry air cools with each metre that it is lifted, :math:`g / c_p`.
+    r"""Return the cooling of dry air per metre of lift, :math:`g / c_p`.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def dry_lapse_rate(
     Returns
     -------
     ndarray
-        Dry-adiabatic lapse rate, positive where it cools upward [K m^-1].
+        Dry-adiabatic lapse rate, positive if air cools upward [K m^-1].
 
     Examples
     --------

@@ -1,13 +1,13 @@
-r"""How fast, and with which energy, molecules leave a liquid, large or small.
+r"""The molecules that leave a liquid, large or small: their rate and their energy.
 
 A liquid of n molecules with the heat capacity :math:`C = n c_l + C_n`, in k, and the thermal energy U has the
-density of states :math:`U^{C-1} / \Gamma(C)`. With the states of a gas this fixes the rate at which molecules leave
-it, for any n. A large liquid evaporates as Hertz and Knudsen say. Units are SI.
+density of states :math:`U^{C-1} / \Gamma(C)`. With the states of a gas this determines the rate at which molecules
+leave the liquid, for any n. A large liquid evaporates by the law of Hertz and Knudsen. Units are SI.
 
 References
 ----------
-Weisskopf, V. (1937), Statistics and nuclear reactions, doi:10.1103/PhysRev.52.295: what evaporates from a hot drop,
-by detailed balance.
+Weisskopf, V. (1937), Statistics and nuclear reactions, doi:10.1103/PhysRev.52.295: evaporation from a hot drop, by
+detailed balance.
 """
 
 import numpy as np
@@ -31,17 +31,17 @@ LEAVING_FREEDOM: float = VAPOR_HEAT - 0.5
 
 
 def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -> FloatArray:
-    r"""Return how many molecules leave a large liquid, per area and time.
+    r"""Return the number of molecules that leave a large liquid, per area and time.
 
-    As many as would come back at saturation, :math:`\alpha e_s / \sqrt{2 \pi m k T}`. For a liquid of a hundred
-    molecules whose temperature scatters, the mean of this is too high, for :math:`e_s` is convex.
+    It is the number that condenses at saturation, :math:`\alpha e_s / \sqrt{2 \pi m k T}`. For a liquid of a hundred
+    molecules, whose temperature fluctuates, the mean of this flux is too high, because :math:`e_s` is convex.
 
     Parameters
     ----------
     temperature
         Temperature of the liquid [K].
     accommodation
-        Share of the molecules that stick when they meet the liquid, :math:`\alpha` [1].
+        Share of the molecules that stick when they hit the liquid, :math:`\alpha` [1].
 
     Returns
     -------
@@ -59,7 +59,7 @@ def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -
 
     Examples
     --------
-    From a hundred square nanometres at 20 degC eight molecules in a nanosecond:
+    From a hundred square nanometres at 20 degC about eight molecules leave in a nanosecond:
 
     >>> round(float(hertz_knudsen_flux(293.15)) * 1e-25, 1)
     8.5
@@ -74,26 +74,26 @@ def hertz_knudsen_flux(temperature: ArrayLike, accommodation: ArrayLike = 1.0) -
 def microcanonical_flux(
     thermal_energy: ArrayLike, molecules: ArrayLike, nuclei_heat: ArrayLike = 0.0, accommodation: ArrayLike = 1.0
 ) -> FloatArray:
-    r"""Return how many molecules leave a liquid of a given energy, per area and time: exact for any number.
+    r"""Return the number of molecules that leave a liquid of a given energy, per area and time: exact for any number.
 
     With :math:`U' = U - \varphi`, :math:`C' = C - c_l` and Q such that a large liquid follows
     :func:`hertz_knudsen_flux`,
 
     .. math:: Q\, \frac{U'^{\,C' + 5/2}}{\Gamma(C' + 7/2)}\, \frac{\Gamma(C)}{U^{C-1}} ,
 
-    and nothing if U' is not positive. Its mean over the energies of a liquid in a heat bath, distributed as
-    :math:`U^{C-1} e^{-U/kT}`, is that of Hertz and Knudsen at that temperature, whatever n.
+    and zero if U' is not positive. Its mean over the energies of a liquid in a heat bath, distributed as
+    :math:`U^{C-1} e^{-U/kT}`, is the flux of Hertz and Knudsen at that temperature, for any n.
 
     Parameters
     ----------
     thermal_energy
         Thermal energy of the liquid U, C k times its temperature [J].
     molecules
-        Molecules of the liquid n [1]; none leaves if there is none.
+        Molecules of the liquid n [1]; for 0 the flux is 0.
     nuclei_heat
         Heat capacity of condensation nuclei at the temperature of the liquid, :math:`C_n` [k].
     accommodation
-        Share of the molecules that stick when they meet the liquid [1].
+        Share of the molecules that stick when they hit the liquid [1].
 
     Returns
     -------
@@ -147,9 +147,9 @@ def _mean_density(edges: ArrayLike, temperature: float, shape: float, least: flo
 
 
 def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
-    r"""Return which share of the molecules that leave a liquid has how much energy, per unit of energy.
+    r"""Return the distribution of the energy of molecules that leave a liquid, as a density per unit of energy.
 
-    The binding energy :math:`\varphi` and a gamma variate, :math:`\varphi + kT\, \Gamma(2 + 3/2)`.
+    The energy is the binding energy :math:`\varphi` and a gamma variate, :math:`\varphi + kT\, \Gamma(2 + 3/2)`.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
 
     Examples
     --------
-    At 20 degC none leaves with less than 94 zJ:
+    At 20 degC no molecule leaves with less than 94 zJ:
 
     >>> edges = np.array([0.0, 94e-21, 200e-21])
     >>> (leaving_energy_density(edges, 293.15) * np.diff(edges)).round(3)
@@ -184,9 +184,9 @@ def leaving_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
 
 
 def staying_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
-    r"""Return which share of the molecules in a liquid has how much thermal energy, per unit of energy.
+    r"""Return the distribution of the thermal energy of molecules in a liquid, as a density per unit of energy.
 
-    A gamma variate of the heat capacity, :math:`kT\, \Gamma(c_l / k)`.
+    The energy is a gamma variate of the heat capacity, :math:`kT\, \Gamma(c_l / k)`.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def staying_energy_density(edges: ArrayLike, temperature: float) -> FloatArray:
 
     Examples
     --------
-    At 20 degC one in three thousand has as much as it takes to leave:
+    At 20 degC one molecule in three thousand has enough energy to leave:
 
     >>> edges = np.array([0.0, 94e-21, 1000e-21])
     >>> round(1.0 / float(staying_energy_density(edges, 293.15)[1] * np.diff(edges)[1]), -3)

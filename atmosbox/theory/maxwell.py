@@ -1,4 +1,4 @@
-r"""How fast molecules are: Maxwell's distribution, and how much the temperature of few of them scatters.
+r"""The speeds of molecules: Maxwell's distribution, and how much the temperature of a few molecules scatters.
 
 References
 ----------
@@ -81,7 +81,7 @@ def maxwell_speed_density(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, dime
 
     Examples
     --------
-    No molecule stands still:
+    No molecule has the speed zero:
 
     >>> [round(float(p), 4) for p in maxwell_speed_density([0.0, 1.0, 2.0], 1.0, 1.0)]
     [0.0, 0.4839, 0.432]
@@ -145,7 +145,7 @@ def maxwell_speed_cumulative(speed: ArrayLike, kT: ArrayLike, mass: ArrayLike, d
 
 
 def temperature_noise(molecules: ArrayLike, dof: float = 3, temperature: ArrayLike = 1.0) -> FloatArray:
-    r"""Return the scatter of the temperature of N molecules about their heat bath's, :math:`T \sqrt{2/fN}`.
+    r"""Return the standard deviation of the temperature of N molecules in a heat bath, :math:`T \sqrt{2/fN}`.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def temperature_noise(molecules: ArrayLike, dof: float = 3, temperature: ArrayLi
     dof
         Degrees of freedom f of one molecule [1].
     temperature
-        Mean temperature, in K or as an energy; without it the scatter is relative.
+        Mean temperature, in K or as an energy; with the default of 1 the result is relative.
 
     Returns
     -------

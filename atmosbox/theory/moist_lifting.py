@@ -1,8 +1,8 @@
-r"""What becomes of moist air that is lifted: its cloud base, and how cloud water and rain warm it on its way.
+r"""Moist air that is lifted: its cloud base, and how cloud water and rain change its temperature.
 
-Below the cloud base air follows the adiabat of its mixture with vapour; above it, that of air with vapour and liquid
-at equilibrium. Liquid may be carried, which makes the lift reversible, or leave as rain, which does not. Units are
-SI; mixing ratios are kg per kg of dry air. There is no ice.
+Below the cloud base air follows the adiabat of the mixture of air and vapour; above it, that of air with vapour and
+liquid at equilibrium. Liquid may be carried, which makes the lift reversible, or leave as rain, which does not. Units
+are SI; mixing ratios are kg per kg of dry air. There is no ice.
 
 References
 ----------
@@ -53,7 +53,7 @@ def moist_air_poisson_exponent(mixing_ratio: ArrayLike, nuclei_heat: ArrayLike =
 
     Examples
     --------
-    Twenty grams per kilogram make little of it:
+    Twenty grams per kilogram change it little:
 
     >>> moist_air_poisson_exponent([0.0, 0.020]).round(4)
     array([0.2857, 0.2845])
@@ -67,7 +67,7 @@ def moist_air_poisson_exponent(mixing_ratio: ArrayLike, nuclei_heat: ArrayLike =
 def lcl(
     pressure: ArrayLike, temperature: ArrayLike, dewpoint: ArrayLike, nuclei_heat: ArrayLike = 0.0
 ) -> tuple[FloatArray, FloatArray]:
-    r"""Return where lifted air becomes saturated: pressure and temperature of the lifting condensation level.
+    r"""Return pressure and temperature of the lifting condensation level, where lifted air becomes saturated.
 
     The adiabat :math:`e \propto T^{1/\kappa}` meets :math:`e_s(T)`: a closed form with Lambert's function [1]_.
 
@@ -90,7 +90,7 @@ def lcl(
     Raises
     ------
     ValueError
-        If the air is supersaturated, a pressure is not positive, or water of that dewpoint boils at it.
+        If the air is supersaturated, a pressure is not positive, or water boils at the dewpoint at that pressure.
 
     References
     ----------
@@ -122,7 +122,7 @@ def lcl(
 
 
 class ParcelPath(NamedTuple):
-    """Temperature and water of a parcel along its path, each with the shape of the pressures."""
+    """Temperature and water of a parcel along its path, in arrays of the shape of the pressures."""
 
     temperature: FloatArray
     """Temperature [K]."""
@@ -142,12 +142,12 @@ def parcel_path(
     most_liquid: float = np.inf,
     nuclei_heat: float = 0.0,
 ) -> ParcelPath:
-    r"""Follow a parcel up and down: over a mountain, or through a cloud that rains.
+    r"""Follow a parcel up and down, for example over a mountain, with a cloud that may rain.
 
-    While the parcel keeps its water the entropy of air, vapour and liquid stays; all of it is at equilibrium. A cloud
-    holds at most so much liquid: what condenses beyond falls out at once, with its entropy. That loss is the only
-    thing that is not undone when the parcel sinks. So with no bound a lift is reversible; with a bound of zero it
-    is pseudo-adiabatic, and air that sinks again warms along the dry adiabat, as in a foehn.
+    While the parcel keeps its water the entropy of air, vapour and liquid is constant; they are at equilibrium. A cloud
+    holds at most ``most_liquid``: what condenses beyond that falls out at once, with its entropy. Only this loss is not
+    reversed when the parcel sinks. So without a bound a lift is reversible; with a bound of zero it is
+    pseudo-adiabatic, and air that sinks again warms along the dry adiabat, as in a foehn.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def parcel_path(
 
     Notes
     -----
-    The state depends only on the pressure and on the lowest one met so far. Where it rains ln T is integrated over
+    The state depends only on the pressure and on the lowest pressure so far. Where it rains ln T is integrated over
     ln p to a relative 1e-12; elsewhere T is the root of the entropy, to rounding.
 
     References
@@ -184,7 +184,7 @@ def parcel_path(
 
     Examples
     --------
-    Air of 15 degC and 8 g/kg crosses a mountain of 700 hPa. If it rains there, the valley behind is warmer:
+    Air of 15 degC and 8 g/kg crosses a mountain that reaches 700 hPa. If it rains there, the valley behind is warmer:
 
     >>> for most_liquid in (np.inf, 0.0):
     ...     path = parcel_path([700e2, 1000e2], 1000e2, 288.15, 0.008, most_liquid)
@@ -231,7 +231,7 @@ def _first_rain(
 ) -> tuple[FloatArray, FloatArray]:
     """Return pressure and temperature at which a lifted cloud holds the bound of liquid; 0 if it never does.
 
-    There e_s(T) = p v / (1 + v) with v = water - bound, so the entropy is a sum of ln T and 1/T alone.
+    There e_s(T) = p v / (1 + v) with v = water - bound, so the entropy depends on T only through ln T and 1/T.
     """
     vapor = water - bound
     if not vapor > 0.0:

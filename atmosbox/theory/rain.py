@@ -1,4 +1,4 @@
-"""A cloud that rains at a finite rate: the path of a parcel, which depends on time as well."""
+"""A cloud that rains at a finite rate: the path of a parcel, which then depends on time as well as on pressure."""
 
 import math
 
@@ -35,13 +35,13 @@ def raining_path(
     r"""Follow a parcel up and down whose cloud rains in proportion to its liquid beyond a threshold.
 
     Liquid l beyond a threshold falls out as :math:`-dl/dt = r \, (l - l_0)` [1]_, and takes its entropy with it.
-    All else is kept, and at equilibrium. A rate of zero is the reversible adiabat; without end fast, and with a
-    threshold of zero, the way is pseudo-adiabatic.
+    Everything else stays in the parcel, at equilibrium. A rate of zero gives the reversible adiabat; an infinite rate
+    with a threshold of zero gives the pseudo-adiabat.
 
     Parameters
     ----------
     time : (moment,)
-        When the parcel meets the pressures, from 0 at the start [time].
+        Time at which the parcel meets each pressure, from 0 at the start [time].
     pressure : (moment,)
         The pressures [Pa].
     pressure0, temperature0, total_water
@@ -51,10 +51,10 @@ def raining_path(
     most_liquid
         The threshold [kg kg^-1].
     nuclei_heat
-        Heat capacity of whatever is as warm as the air, per molecule of air [k].
+        Heat capacity of condensation nuclei at the temperature of the air, per molecule of air [k].
     scatter
-        Standard deviation of the liquid of a small cloud about what is at equilibrium [kg kg^-1]. A surplus rains, and
-        what is missing does not come back: so more rains than from a cloud that does not scatter.
+        Standard deviation of the liquid of a small cloud about its equilibrium [kg kg^-1]. A surplus rains, and a
+        deficit does not bring it back: so more falls than from a cloud without fluctuations.
 
     Returns
     -------
@@ -64,11 +64,11 @@ def raining_path(
     Raises
     ------
     ValueError
-        If a pressure, the temperature or a time is not lawful, or water, heat or rate is negative.
+        If a pressure, the temperature or a time is not allowed, or water, heat or rate is negative.
 
     Notes
     -----
-    What falls out between two moments is what is too much at the second: the error is of first order in their distance.
+    The rain between two moments is computed from the surplus at the second: the error is of first order in the step.
 
     References
     ----------
@@ -76,7 +76,7 @@ def raining_path(
 
     Examples
     --------
-    The faster it rains, the warmer is the valley behind a mountain of 700 hPa:
+    The faster it rains, the warmer is the valley behind a mountain that reaches 700 hPa:
 
     >>> way = 1e5 - 3e4 * np.sin(np.linspace(0.0, np.pi, 201)[1:])
     >>> times = np.linspace(0.0, 100.0, 201)[1:]
@@ -113,7 +113,7 @@ def raining_path(
 
 
 def _surplus(mean: float, scatter: float) -> float:
-    r"""Return the mean of what lies above zero, :math:`m \Phi(m/s) + s \phi(m/s)` for a normal distribution.
+    r"""Return the mean of the positive part of a normal variable, :math:`m \Phi(m/s) + s \phi(m/s)`.
 
     Examples
     --------
@@ -127,6 +127,6 @@ def _surplus(mean: float, scatter: float) -> float:
 
 
 def _state(s: FloatArray, level: FloatArray, water: FloatArray, heat: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return temperature and vapour at a pressure."""
+    """Return temperature and vapour at a pressure, for an entropy and an amount of water."""
     t = _water.temperature_of_entropy(np.atleast_1d(s), level, water, heat)[0]
     return t, np.minimum(_water.saturated_vapor(level[0], t), water)

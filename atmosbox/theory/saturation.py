@@ -1,9 +1,9 @@
 r"""How much water vapour air can hold: latent heat, vapour pressure at saturation, dewpoint.
 
 A molecule of water is held in the liquid by one binding energy, :math:`\varphi`; it has the heat capacity 4 k as
-vapour, at constant pressure, and 9.14 k as liquid. From these three follow the latent heat and, by the law of
-Clausius and Clapeyron, the vapour pressure. One pair of numbers is taken from measurement: 2.50084e6 J/kg and
-611.2 Pa at 273.16 K. Temperatures are in K, pressures in Pa.
+vapour, at constant pressure, and 9.14 k as liquid. These three numbers give the latent heat and, by the law of
+Clausius and Clapeyron, the vapour pressure. One pair of numbers is taken from measurement: 2.50084e6 J/kg and 611.2 Pa
+at 273.16 K. Temperatures are in K, pressures in Pa.
 
 References
 ----------
@@ -27,7 +27,7 @@ BINDING_TEMPERATURE: float = _water.BINDING
 
 
 def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
-    r"""Return the pressure of the vapour over liquid water, when as many molecules leave it as come back.
+    r"""Return the pressure of the vapour over liquid water when as many molecules evaporate as condense.
 
     The law of Rankine and Kirchhoff [1]_, with :math:`T_t` = 273.16 K:
 
@@ -51,9 +51,9 @@ def saturation_vapor_pressure(temperature: ArrayLike) -> FloatArray:
 
     Notes
     -----
-    Beside measured water (:func:`saturation_vapor_pressure_iapws`) it is too low: by 0.06 % at -10 degC, 0.20 % at 20,
-    0.44 % at 40 and 2.2 % at 100 degC, because the heat capacities of real water change with temperature. MetPy 1.7 has
-    the same formula of the same paper, with 4.03 k for the vapour: that both agree to 0.03 % confirms neither.
+    Compared with measured water (:func:`saturation_vapor_pressure_iapws`) it is too low: by 0.06 % at -10 degC, 0.20 %
+    at 20, 0.44 % at 40 and 2.2 % at 100 degC, because the heat capacities of real water change with temperature. MetPy
+    1.7 uses the same formula of the same paper, with 4.03 k for the vapour: their agreement to 0.03 % confirms neither.
 
     References
     ----------

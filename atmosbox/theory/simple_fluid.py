@@ -1,6 +1,6 @@
 r"""Three simple fluids, argon, nitrogen and methane: their critical points and measured vapour pressures.
 
-Molecules of a square well become those of such a fluid if their critical temperature and density are made the same:
+Molecules with a square well represent such a fluid if their critical temperature and density are those of the fluid:
 :math:`\varepsilon = k T_c / T_c^*` and :math:`\sigma^3 = \rho_c^* / n_c`.
 
 References
@@ -31,7 +31,7 @@ __all__ = [
 WELL_CRITICAL_TEMPERATURE = 1.2172
 """Critical temperature T* of the square well of range 1.5, by simulation [4]_."""
 WELL_CRITICAL_DENSITY = 0.3079
-"""Its critical density [diameter^-3]."""
+"""Critical density of the square well of range 1.5, by simulation [4]_ [diameter^-3]."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,13 @@ class SimpleFluid:
     Parameters
     ----------
     name
-        What it is called.
+        Its name.
     molar_mass
-        [kg mol-1].
+        Mass of a mole [kg mol-1].
     critical_temperature, critical_pressure, critical_density
-        [K], [Pa], [mol m-3].
+        Values at the critical point [K, Pa, mol m-3].
     coefficients, exponents
-        Of its vapour pressure, ln(p / p_c) = T_c / T times the sum of a (1 - T / T_c)^e.
+        Those of its vapour pressure, ln(p / p_c) = T_c / T times the sum of a (1 - T / T_c)^e.
 
     Examples
     --------
@@ -72,12 +72,12 @@ class SimpleFluid:
 
     @property
     def well_depth(self) -> float:
-        """Depth of the square well that has its critical temperature [J]."""
+        """Depth of the square well that has the critical temperature of this fluid [J]."""
         return BOLTZMANN * self.critical_temperature / WELL_CRITICAL_TEMPERATURE
 
     @property
     def well_diameter(self) -> float:
-        """Diameter of the spheres that have its critical density [m]."""
+        """Diameter of the spheres that have the critical density of this fluid [m]."""
         cube: float = WELL_CRITICAL_DENSITY / (AVOGADRO * self.critical_density)
         return float(np.cbrt(cube))
 
@@ -113,13 +113,13 @@ SIMPLE_FLUIDS = {
 def well_vapor_pressure(temperature: ArrayLike) -> NDArray[np.float64]:
     r"""Return the vapour pressure of the square well of range 1.5 by published simulations [depth/diameter^3].
 
-    :math:`\ln p = 3.5211 - 7.1939 / T^*`, the line through those of Singh, Kofke and Errington (2003) with which
-    the program etomica, of the same group, calculates. NaN above the critical temperature.
+    :math:`\ln p = 3.5211 - 7.1939 / T^*`, the line through the pressures of Singh, Kofke and Errington (2003) that the
+    program etomica, of the same group, uses. NaN above the critical temperature.
 
     Parameters
     ----------
     temperature
-        T*.
+        Temperature T*.
 
     Examples
     --------

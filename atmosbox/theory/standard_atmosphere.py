@@ -93,7 +93,7 @@ def isa_pressure(height: ArrayLike) -> FloatArray:
 
     Notes
     -----
-    With the standard's own gas constant, 287.05287 J/(kg K), so that its tables are met digit by digit.
+    The standard's own gas constant, 287.05287 J/(kg K), is used, so that its tables are reproduced digit by digit.
 
     References
     ----------

@@ -1,20 +1,20 @@
-r"""A column that is stirred: how its temperature falls with height between stirring, conduction and a warm floor.
+r"""A stirred column: how its temperature falls with height, from stirring, heat conduction and a warm floor.
 
-Parcels change places at pressures p and p', and Poisson's law multiplies their temperatures by
-:math:`(p'/p)^{R/c_p}`. What is mixed is the potential temperature :math:`\theta = T\,(p_0/p)^{R/c_p}`. Let r be the
-share of the molecules that are below. Where elements of the air climb by a lift :math:`\ell` with the frequency
-:math:`u_\ell(r)`, the heat that stays there balances what molecules conduct,
+Parcels at the pressures p and p' change places, and Poisson's law multiplies their temperatures by
+:math:`(p'/p)^{R/c_p}`. So the potential temperature :math:`\theta = T\,(p_0/p)^{R/c_p}` is mixed. Let r be the share of
+the molecules that are below. Where elements of the air climb by a lift :math:`\ell` with the frequency
+:math:`u_\ell(r)`, the heat that stays there balances the heat that molecules conduct,
 
 .. math:: \tfrac{f}{2} N k\,\Pi(r) \sum_\ell \bigl\{u_\ell(r)[\theta(r+\ell) - \theta(r)]
           + u_\ell(r-\ell)[\theta(r-\ell) - \theta(r)]\bigr\} = \frac{dq}{dr}, \qquad q = -\kappa \frac{dT}{dz},
 
 with :math:`\Pi = (p/p_0)^{R/c_p}` and hydrostatic pressure. For a short lift the left side is that of an eddy
-diffusivity; it is solved as it stands, for a lift of any length. Nothing passes the ceiling, and at the floor the
-temperature jumps, as in a gas near any wall. If single molecules change places, T stands for :math:`\theta`.
+diffusivity; it is solved as it is, for a lift of any length. No heat passes the ceiling, and at the floor the
+temperature has a jump, as in a gas beside any wall. If single molecules change places, :math:`\theta` is replaced by T.
 
-Derived: all of it, from Fourier's law, hydrostatics and the rates of the exchanges. The conductivity is that of
-Chapman and Enskog for spheres, times 5/4 if they rotate and share their energy evenly at every contact, which is the
-first approximation with one term for each kind of energy.
+All of this is derived from Fourier's law, hydrostatics and the rates of the exchanges. The conductivity is that of
+Chapman and Enskog for spheres, times 5/4 if they rotate and divide their energy evenly in every collision; that factor
+is the first approximation with one term for each kind of energy.
 
 References
 ----------
@@ -34,16 +34,16 @@ __all__ = ["StirredColumn", "stirred_column", "thin_gas_conductivity"]
 
 _NODES = 120
 _JUMP = 2.127
-"""Jump of the temperature at a wall that spheres leave as warm as it is, in mean free paths [Sone]."""
+"""Jump of the temperature at a wall that molecules leave with its temperature, in mean free paths [Sone]."""
 _ROTATING = 1.25
 
 
 class StirredColumn(NamedTuple):
-    """What becomes of a column that is stirred for long.
+    """Steady state of a column that is stirred for a long time.
 
-    ``height``, ``temperature``, ``pressure : (node,)`` of elements with as many molecules each [length, energy,
-    energy/length^3]; ``work`` that the stirrer does on each molecule, and the floor takes as heat [energy/time];
-    ``memory`` how long a surplus of energy stays in the column [time].
+    ``height``, ``temperature``, ``pressure : (node,)`` of elements with equal numbers of molecules [length, energy,
+    energy/length^3]; ``work`` that the stirrer does on each molecule, and that leaves through the floor as heat
+    [energy/time]; ``memory``, the time in which a surplus of energy decays [time].
     """
 
     height: FloatArray
@@ -91,23 +91,23 @@ def stirred_column(
     molecules_per_area
         Number of molecules over a unit of floor [length^-2].
     bottom, top
-        Lowest and highest place of a molecule's centre [length].
+        Lowest and highest position of a molecule's centre [length].
     kT
         Temperature of the floor [energy].
     gravity
         Acceleration of gravity [length/time^2].
     diameter
-        Diameter of a molecule, for its collisions alone [length].
+        Diameter of a molecule, which only its collisions use [length].
     freedom
         Degrees of freedom of a molecule, 3 or 5.
     parcel
         Share of all molecules that are in a parcel.
     lifts
-        Shares of all molecules by which it climbs or sinks, at least and at most.
+        Least and greatest lift of a parcel, as shares of all molecules.
     rate
-        Number of exchanges in a unit of time [1/time].
+        Number of exchanges per unit of time [1/time].
     works
-        Whether what changes places is parcels that do work, or single molecules.
+        Whether parcels that do work change places, or single molecules.
     mass
         Mass of a molecule [mass].
 
@@ -123,7 +123,7 @@ def stirred_column(
 
     Examples
     --------
-    Stirred fast, a gas of spheres cools by 2/5 of a floor's temperature in each scale height:
+    Stirred fast, a gas of spheres cools by 2/5 of the floor's temperature in each scale height:
 
     >>> fast = stirred_column(
     ...     1000.0, 0.0, 1.0, 1.0, 1.0, 0.1, freedom=3, parcel=0.05, lifts=(0.15, 0.35), rate=5000.0
@@ -138,7 +138,7 @@ def stirred_column(
         raise ValueError("the ceiling must be above the floor, and a parcel must rise by its own size at least.")
     n = _NODES
     share = (np.arange(n) + 0.5) / n
-    climbs = np.zeros((n, n))  # how often an element climbs from one place to another
+    climbs = np.zeros((n, n))  # rate at which an element climbs from one place to another
     steps = range(round(lifts[0] * n), round(lifts[1] * n) + 1)
     for step in steps:
         room = 1.0 - step / n - parcel
@@ -187,7 +187,7 @@ def stirred_column(
 
 
 def _pressure_at_ceiling(guess: float, weight: FloatArray, room: FloatArray, height: float) -> float:
-    """Return the pressure at the ceiling below which elements of so much kT fill a height: by Newton's method."""
+    """Return the pressure at the ceiling at which elements of given kT fill the height, by Newton's method."""
     pressure = guess
     for _ in range(100):
         missing = float(np.sum(room / (pressure + weight))) - height

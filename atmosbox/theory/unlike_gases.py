@@ -1,4 +1,4 @@
-"""Two gases of unlike molecules that mix: their linear Boltzmann equation, solved."""
+"""Two gases of unlike molecules that mix: the solution of their linear Boltzmann equation."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from atmosbox.theory._array import FloatArray, as_floats
 __all__ = ["diffusivity_factor", "mixing_wave"]
 
 _ORDER = 6
-"""How many polynomials of the energy: the sixth changes D by less than 1e-4 of it."""
+"""Number of polynomials of the energy: the sixth changes D by less than 1e-4 of its value."""
 _SHAPES = 8
-"""Up to which spherical harmonic of the direction."""
+"""Highest degree of the spherical harmonics of the direction."""
 
 
 def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
@@ -27,9 +27,9 @@ def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
     Parameters
     ----------
     mass
-        Of a molecule of each gas [mass].
+        Mass of a molecule of each gas [mass].
     share
-        Which share of the molecules is of the first gas, above 0 and below 1.
+        Share of the molecules that belong to the first gas, above 0 and below 1.
 
     References
     ----------
@@ -37,8 +37,8 @@ def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
 
     Examples
     --------
-    Of molecules alike 1.0190; a trace of light ones among heavy ones comes to 1.132, or :math:`32 / 9 \pi` [1]_, of
-    which a hundredth is missing here, a trace of heavy ones among light ones to 1:
+    For equal molecules it is 1.0190. For a trace of light molecules among heavy ones it is 1.132, or :math:`32 / 9 \pi`
+    [1]_, and this series lacks a hundredth of that; for a trace of heavy molecules among light ones it is 1:
 
     >>> round(diffusivity_factor((1.0, 1.0)), 4), round(diffusivity_factor((1e-4, 1.0), 1e-6), 3)
     (1.019, 1.124)
@@ -53,25 +53,25 @@ def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
 
 
 def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike) -> FloatArray:
-    r"""Return how a wave decays in which two gases, half of each, take turns, from 1 on.
+    r"""Return how a wave of the composition of two gases, half of each, decays from the height 1.
 
-    Both densities oppose each other as :math:`\cos kx`, at one pressure and temperature. Of molecules alike the wave
-    decays as :math:`e^{-D k^2 t}`. Of unlike ones heat flows along with them (Dufour's effect), so that the wave is the
-    sum of two, of which the one decays more slowly than D alone would have it; and as the light molecules are faster
-    the gas starts to oscillate. All this is in the linear Boltzmann equation
+    Both densities vary as :math:`\cos kx` with opposite signs, at constant pressure and temperature. For equal
+    molecules the wave decays as :math:`e^{-D k^2 t}`. With unlike molecules the diffusion carries heat (Dufour's
+    effect), so that the wave is the sum of two waves, one of which decays more slowly than by D alone; and as the light
+    molecules are faster, the gas starts to oscillate. All this is contained in the linear Boltzmann equation
 
     .. math:: \partial_t \varphi + i k c_z \varphi = -C \varphi
 
-    which is solved here in polynomials of the energy and spherical harmonics of the direction.
+    which is solved here with polynomials of the energy and spherical harmonics of the direction.
 
     Parameters
     ----------
     mass
-        Of a molecule of each gas [mass of the first].
+        Mass of a molecule of each gas [mass of the first].
     wave_number
         The wave number k [:math:`n \sigma^2`].
     times : (time,)
-        Since the beginning [:math:`\sqrt{m / kT} / n \sigma^2`].
+        Time since the beginning [:math:`\sqrt{m / kT} / n \sigma^2`].
 
     Returns
     -------
@@ -80,7 +80,7 @@ def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike)
 
     Notes
     -----
-    A gas that is not thin has g times as many collisions; take g n for n.
+    A dense gas has g times as many collisions; use g n for n.
 
     References
     ----------
@@ -88,7 +88,7 @@ def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike)
 
     Examples
     --------
-    Half of a wave of molecules alike is left when theory's D says so, and more of unlike ones:
+    For equal molecules half of the wave is left at the time that theory's D gives; for unlike ones more is left:
 
     >>> k = 0.1
     >>> half = math.log(2.0) / (0.215581 * k**2)
@@ -139,7 +139,7 @@ def _equation(mass_ratio: float) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _collisions(mass: tuple[float, float], share: float, harmonic: int) -> FloatArray:
-    """Return what collisions do to the polynomials of one harmonic, the rate at which they forget each other."""
+    """Return the collision matrix between the polynomials of one harmonic: the rates at which they decay."""
     shares = share, 1.0 - share
     found = shares[0] * shares[1] * _of_pairs(mass, harmonic)
     for gas, one in enumerate(mass):
@@ -153,12 +153,12 @@ def _collisions(mass: tuple[float, float], share: float, harmonic: int) -> Float
 def _of_pairs(mass: tuple[float, float], harmonic: int) -> FloatArray:
     r"""Return :math:`\langle \pi g (X Y - \bar X \bar Y) \rangle` for polynomials X, Y of either molecule of a pair.
 
-    Hard spheres part in any direction with the same chance, in the system of their centre of mass. So of each
-    polynomial the mean over that direction is left, :math:`\bar X`, which points along the velocity of the centre.
+    After a collision of hard spheres every direction is equally likely in the centre-of-mass system. So the mean of
+    each polynomial over that direction is left, :math:`\bar X`, which points along the velocity of the centre.
     """
     total = mass[0] + mass[1]
     reduced = mass[0] * mass[1] / total
-    points = harmonic + 2 * _ORDER  # then all integrals are exact
+    points = harmonic + 2 * _ORDER  # with so many points all integrals are exact
     nodes, of_centre = _laguerre_points(points, 0.5)
     centre = np.sqrt(2.0 * nodes / total)[:, None, None]
     nodes, of_speed = _laguerre_points(points, 1.0)
@@ -168,7 +168,7 @@ def _of_pairs(mass: tuple[float, float], harmonic: int) -> FloatArray:
     of_angle = 0.5 * of_angle
 
     def parts(sign: float, other: float) -> tuple[FloatArray, FloatArray]:
-        """Return the velocity of one molecule across and along that of the centre."""
+        """Return the components of the velocity of one molecule across and along the velocity of the centre."""
         own = sign * other / total * speed
         return own * np.sqrt(1.0 - cosine**2), centre + own * cosine
 
@@ -189,11 +189,11 @@ def _of_pairs(mass: tuple[float, float], harmonic: int) -> FloatArray:
     return np.asarray(rate / (2 * harmonic + 1) * (np.block(rows) - (mean * weight.ravel()) @ mean.T))
 
 
-# As scipy has them, which takes longer to load than all else that a scene says of itself.
+# scipy has these functions, but takes longer to load than all the rest of a scene's description.
 
 
 def _laguerre_points(number: int, alpha: float) -> tuple[FloatArray, FloatArray]:
-    r"""Return where and how heavy the points are that integrate :math:`x^\alpha e^{-x}` times a polynomial.
+    r"""Return the points and weights that integrate :math:`x^\alpha e^{-x}` times a polynomial.
 
     They are the eigenvalues of a matrix (Golub and Welsch 1969, doi:10.1090/S0025-5718-69-99647-1).
     """

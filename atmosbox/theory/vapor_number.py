@@ -1,7 +1,7 @@
-r"""How the number of molecules of vapour scatters in a small closed box that also holds liquid.
+r"""Fluctuations of the number of molecules of vapour in a small closed box that also holds liquid.
 
-The exact distributions at equilibrium, for any number, to which every law of evaporation and condensation must lead.
-The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
+These are the exact distributions at equilibrium, for any number of molecules; every law of evaporation and condensation
+must lead to them. The liquid is that of :mod:`atmosbox.theory.liquid_rate`. Units are SI.
 """
 
 from typing import NamedTuple
@@ -42,10 +42,10 @@ def _vapor_number(log_weight: FloatArray) -> VaporNumber:
 
 
 def isothermal_vapor_number(water: int, temperature: float, volume: float) -> VaporNumber:
-    r"""Return how the number of molecules of vapour scatters in a closed box with liquid, held at its temperature.
+    r"""Return the distribution of the number of molecules of vapour in a closed box with liquid at fixed temperature.
 
-    Each molecule of vapour comes back at the same rate, and molecules leave the liquid at one rate, if it
-    has any. So the number is Poisson-distributed with :math:`\lambda = e_s V / kT`, cut off at all the water.
+    Each molecule of vapour condenses at the same rate, and molecules leave the liquid, if there is any, at a constant
+    rate. So the number has the Poisson distribution with :math:`\lambda = e_s V / kT`, cut off at all the water.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def isothermal_vapor_number(water: int, temperature: float, volume: float) -> Va
 
     Examples
     --------
-    With liquid to spare mean and variance are one; with little liquid the scatter goes:
+    With plenty of liquid the variance equals the mean; with little liquid it is smaller:
 
     >>> for water in (700, 550, 400):
     ...     number = isothermal_vapor_number(water, 273.15, (150e-9) ** 3)
@@ -92,10 +92,10 @@ def isothermal_vapor_number(water: int, temperature: float, volume: float) -> Va
 
 
 def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nuclei_heat: float = 0.0) -> VaporNumber:
-    r"""Return how the number of molecules of vapour scatters in a closed box that exchanges no heat.
+    r"""Return the distribution of the number of molecules of vapour in a closed box that exchanges no heat.
 
-    Each share of the energy is as likely as it has states. With :math:`\varphi` for every molecule outside the
-    liquid, and half the degrees of freedom :math:`M = 5 N_a / 2 + 3 N_v + C`,
+    Each division of the energy has a probability proportional to its number of states. With :math:`\varphi` for every
+    molecule outside the liquid, and half the degrees of freedom :math:`M = 5 N_a / 2 + 3 N_v + C`,
 
     .. math:: P(N_v) \propto \frac{\zeta^{N_v}}{N_v!} \frac{(E - N_v \varphi)^{M-1}}{\Gamma(M)} , \qquad
               \zeta = \frac{e_s V}{kT}\, (kT)^{c_l - 3} e^{\varphi / kT} ,
@@ -128,7 +128,7 @@ def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nu
 
     Notes
     -----
-    A molecule that evaporates cools the rest, so the number scatters less than at fixed temperature.
+    A molecule that evaporates cools the others, so the number scatters less than at fixed temperature.
 
     References
     ----------

@@ -1,8 +1,8 @@
-r"""What hits a wall and what leaves it.
+r"""The molecules that hit a wall, and those that leave it.
 
 Fast molecules reach a wall more often than slow ones, so those that cross a plane are not a representative sample: they
-carry 2 kT of energy each, not 3/2 kT. A heat bath must send out the same mixture, or the gas beside it is too
-cold.
+carry 2 kT of energy each, not 3/2 kT. A heat bath must send out molecules with the same distribution, or the gas beside
+it is too cold.
 
 References
 ----------
@@ -19,7 +19,7 @@ from atmosbox.theory._array import FloatArray, as_floats, require_dimensions
 
 
 class FreeMolecularSlab(NamedTuple):
-    """A gas so thin that molecules fly from wall to wall without meeting."""
+    """A gas so thin that molecules fly from wall to wall without collisions."""
 
     kT: FloatArray
     """Temperature of the gas as an energy [energy]."""
@@ -30,7 +30,7 @@ class FreeMolecularSlab(NamedTuple):
 
 
 def emission_normal_speed(kT: ArrayLike, mass: ArrayLike) -> FloatArray:
-    r"""Return the mean speed away from the wall of molecules that leave a heat bath.
+    r"""Return the mean normal speed of the molecules that leave a heat bath.
 
     :math:`\sqrt{\pi kT / 2m}`.
 
@@ -52,7 +52,7 @@ def emission_normal_speed(kT: ArrayLike, mass: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    Half as fast again as the molecules inside the gas that move that way:
+    They are 1.57 times as fast as the molecules inside the gas that move in that direction:
 
     >>> inside = (2.0 / np.pi) ** 0.5
     >>> round(float(emission_normal_speed(1.0, 1.0)) / inside, 3)
@@ -107,8 +107,8 @@ def free_molecular_slab(
 ) -> FreeMolecularSlab:
     r"""Return the state of a very thin gas between two heat baths of different temperature.
 
-    Two streams cross without meeting, one from each wall. They carry equally many molecules, so the colder
-    stream is the denser, and the gas takes the geometric mean of the two temperatures, the same everywhere:
+    Two streams cross without collisions, one from each wall. They carry equal numbers of molecules, so the colder
+    stream is denser, and the gas has the geometric mean of the two temperatures everywhere:
 
     .. math:: T = \sqrt{T_1 T_2}, \qquad p = n k \sqrt{T_1 T_2}, \qquad
               q = 2 n k \sqrt{2k/\pi m}\, \sqrt{T_1 T_2}\, (\sqrt{T_1} - \sqrt{T_2})\, (1 + \zeta/4) .

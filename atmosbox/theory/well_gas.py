@@ -1,8 +1,8 @@
-r"""Molecules that attract each other by a square well: what is known of them in closed form.
+r"""Molecules that attract each other by a square well: their properties in closed form.
 
 Lengths are in diameters sigma, energies in depths epsilon: the temperature is then :math:`T^* = kT / \varepsilon`, the
 density :math:`\rho^* = n \sigma^3`, the pressure :math:`p \sigma^3 / \varepsilon`. The well reaches to
-:math:`\lambda \sigma`. How often two molecules meet in their well is :math:`1 + x` times what it would be without,
+:math:`\lambda \sigma`. Two molecules are in each other's well :math:`1 + x` times as often as without attraction,
 :math:`x = e^{1/T^*} - 1`.
 
 References
@@ -33,13 +33,13 @@ def square_well_second_virial(temperature: ArrayLike, range: float = 1.5) -> Arr
     Parameters
     ----------
     temperature
-        T*, above 0.
+        Temperature T*, above 0.
     range
-        lambda.
+        Reach lambda of the well [diameter].
 
     Examples
     --------
-    It is zero at the Boyle temperature, where attraction and excluded volume make up for each other:
+    It is zero at the Boyle temperature, where attraction and excluded volume compensate each other:
 
     >>> round(float(square_well_second_virial(1.0 / np.log(1.0 + 1.0 / 2.375))), 12) + 0.0
     0.0
@@ -58,9 +58,9 @@ def square_well_third_virial(temperature: ArrayLike, range: float = 1.5) -> Arra
     Parameters
     ----------
     temperature
-        T*, above 0.
+        Temperature T*, above 0.
     range
-        lambda, from 1 to 2.
+        Reach lambda of the well, from 1 to 2 [diameter].
 
     Raises
     ------
@@ -69,7 +69,7 @@ def square_well_third_virial(temperature: ArrayLike, range: float = 1.5) -> Arra
 
     Examples
     --------
-    Without attraction it is that of hard spheres, 5/8 of b0 squared:
+    Without attraction it is the coefficient of hard spheres, 5/8 of b0 squared:
 
     >>> round(float(square_well_third_virial(1e9) / (2.0 * np.pi / 3.0) ** 2), 6)
     0.625
@@ -92,18 +92,18 @@ def _third(range: float) -> tuple[float, float, float]:
 
 
 def square_well_compressibility(density: ArrayLike, temperature: ArrayLike, range: float = 1.5) -> Array:
-    r"""Return :math:`Z = p / n k T = 1 + B_2 \rho + B_3 \rho^2` of a gas that is not dense.
+    r"""Return :math:`Z = p / n k T = 1 + B_2 \rho + B_3 \rho^2` of a gas of low density.
 
     Parameters
     ----------
     density, temperature
-        In diameters^-3, and T*.
+        Number density [diameter^-3], and temperature T*.
     range
-        lambda, from 1 to 2.
+        Reach lambda of the well, from 1 to 2 [diameter].
 
     Examples
     --------
-    Cold molecules that attract each other press less than those of an ideal gas:
+    Cold molecules that attract each other have less pressure than an ideal gas:
 
     >>> round(float(square_well_compressibility(0.0190986, 1.0)), 5)
     0.87724
@@ -114,21 +114,21 @@ def square_well_compressibility(density: ArrayLike, temperature: ArrayLike, rang
 
 
 def square_well_energy(density: ArrayLike, temperature: ArrayLike, range: float = 1.5) -> Array:
-    r"""Return the potential energy of a molecule in a gas that is not dense, in depths of the well.
+    r"""Return the potential energy of a molecule in a gas of low density, in depths of the well.
 
-    :math:`u = -T^2 (\rho\, dB_2/dT + \rho^2 / 2\; dB_3/dT)`, from the free energy that belongs to the pressure; half
-    the mean number of wells that a molecule is in, with the opposite sign.
+    :math:`u = -T^2 (\rho\, dB_2/dT + \rho^2 / 2\; dB_3/dT)`, from the free energy that belongs to the pressure. It is
+    minus half the mean number of wells that a molecule is in.
 
     Parameters
     ----------
     density, temperature
-        In diameters^-3, and T*.
+        Number density [diameter^-3], and temperature T*.
     range
-        lambda, from 1 to 2.
+        Reach lambda of the well, from 1 to 2 [diameter].
 
     Examples
     --------
-    In the thinnest gas a molecule has rho V partners, V the volume of the well, e^(1/T) times as many as without it:
+    In a very thin gas a molecule has rho V e^(1/T) partners in the volume V of its well, rho V without attraction:
 
     >>> volume = 4.0 * np.pi / 3.0 * (1.5**3 - 1.0)
     >>> round(float(square_well_energy(1e-9, 1.0) / (-0.5 * 1e-9 * volume * np.e)), 6)
