@@ -1,11 +1,11 @@
-"""The film of a run: its molecules in their box, beside the scene's graphs, which grow with the clock.
+"""The film of a run: the molecules in their box, and beside it the graphs of the scene, which grow with time.
 
-Everything comes from the file: places and speeds of the molecules, the box and its walls, which a run keeps when it
-is asked to (``--save-molecules``), and the panels of its scene. Without molecules the graphs alone can be filmed.
+The file of a run holds everything that is drawn: the positions and speeds of the molecules, the box and its walls (if
+the run was made with ``--save-molecules``), and the panels of the scene. Without molecules only the graphs are filmed.
 
-The room `plot` draws the box (`plot.box_picture`) and the graphs; here is what a film adds. Read in this order: `pace`
-(which frames, how fast), `running` and `graph` (graphs that grow), `film_sheet` (where everything stands), `encoder`
-and `film_file` (GIF and MP4).
+The room `plot` draws the box (`plot.box_picture`) and the graphs; this room adds what only a film needs. Read in this
+order: `pace` (which frames, how fast), `running` and `graph` (graphs that grow), `film_sheet` (the layout of a
+picture), `encoder` and `film_file` (GIF and MP4).
 """
 
 from atmosbox.film.film_file import FORMATS, save

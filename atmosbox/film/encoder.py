@@ -1,4 +1,4 @@
-"""Pictures into a GIF or an MP4."""
+"""From a series of pictures to a GIF or an MP4."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from atmosbox.errors import FileError, SettingError
 
 __all__ = ["encode_gif", "encode_mp4", "movie_program"]
 
-_COLOURS = 128  # of a GIF; text is smooth with fewer, and the colour bar is not
-_STEP = 8  # between the coarse colours for which the nearest of these is known
-_QUALITY = 20  # of an MP4: less is better and larger, 18 cannot be told from the original
+_COLOURS = 128  # number of colours of a GIF; fewer are enough for smooth text, but not for the colour bar
+_STEP = 8  # step between the coarse colours, for each of which the nearest colour of the GIF is tabulated
+_QUALITY = 20  # constant rate factor of an MP4: a lower one gives a better and larger film; 18 looks like the original
 
 Picture = NDArray[np.uint8]
 
 
 def encode_gif(pictures: Iterable[Picture], samples: Iterable[Picture], fps: float) -> bytes:
-    """Return a GIF that plays again and again.
+    """Return a GIF that repeats without end.
 
     Parameters
     ----------
     pictures : iterable of ndarray
         The pictures, (height, width, 3).
     samples : iterable of ndarray
-        Some of them, from which the colours are chosen that all share.
+        Some of the pictures, from which the common colours of all pictures are chosen.
     fps : float
-        Pictures a second; a GIF counts in hundredths of a second, to which their time is rounded.
+        Pictures a second; the time of a picture is rounded to hundredths of a second, as a GIF requires.
 
     Returns
     -------
@@ -63,22 +63,22 @@ def encode_gif(pictures: Iterable[Picture], samples: Iterable[Picture], fps: flo
 
 
 def _shared_colours(picture: Picture) -> tuple[bytes, NDArray[np.uint8]]:
-    """Return a palette of the colours of a picture, and for every coarse colour the place of the nearest in it.
+    """Return a palette of the colours of a picture, and for each coarse colour the index of the nearest of them.
 
-    White is among them, and what is nearly white becomes white: paper that is not quite white looks dirty.
+    White is in the palette, and nearly white pixels become white: a background that is not quite white looks dirty.
     """
     chosen = Image.fromarray(picture & np.uint8(256 - _STEP)).quantize(_COLOURS, method=Image.Quantize.MEDIANCUT)
     palette = np.array(chosen.getpalette(), np.int64).reshape(-1, 3) + _STEP // 2
     levels = np.arange(0, 256, _STEP) + _STEP // 2
     coarse = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 3)
-    apart = (palette**2).sum(axis=1) - 2 * coarse @ palette.T  # squares of distances, but for the same term in each
+    apart = (palette**2).sum(axis=1) - 2 * coarse @ palette.T  # squared distances, less a common term
     nearest = apart.argmin(axis=1).astype(np.uint8)
     palette[nearest[-1]] = 255
     return palette.astype(np.uint8).tobytes(), nearest
 
 
 def _coarse(picture: Picture) -> NDArray[np.int64]:
-    """Return the place of every pixel's coarse colour in the order of all of them."""
+    """Return the index of the coarse colour of each pixel in the list of all coarse colours."""
     parts = (picture // _STEP).astype(np.int64)
     levels = 256 // _STEP
     place: NDArray[np.int64] = (parts[:, :, 0] * levels + parts[:, :, 1]) * levels + parts[:, :, 2]
@@ -86,7 +86,7 @@ def _coarse(picture: Picture) -> NDArray[np.int64]:
 
 
 def movie_program() -> str:
-    """Return the program that makes MP4 files.
+    """Return the path of the program that makes MP4 files.
 
     Raises
     ------
@@ -109,14 +109,14 @@ def movie_program() -> str:
 
 
 def encode_mp4(pictures: Iterable[Picture], path: Path, fps: float) -> None:
-    """Write an MP4 that browsers and presentations play: H.264, of every second pixel one colour.
+    """Write an MP4 that browsers and presentations play: H.264 with one colour value for each 2 x 2 pixels.
 
     Parameters
     ----------
     pictures : iterable of ndarray
         The pictures, (height, width, 3), of an even height and width.
     path : pathlib.Path
-        The file, which is replaced.
+        The file, which is replaced if it exists.
     fps : float
         Pictures a second.
 
@@ -125,7 +125,7 @@ def encode_mp4(pictures: Iterable[Picture], path: Path, fps: float) -> None:
     SettingError
         If the extra ``movie`` is not installed.
     FileError
-        If the program that makes the file fails.
+        If the program that makes the file fails, or the file lacks pictures.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def encode_mp4(pictures: Iterable[Picture], path: Path, fps: float) -> None:
 
 
 def _check_whole(path: Path, pictures: int) -> None:
-    """Refuse a film that lacks its end, for instance because the disk became full."""
+    """Refuse a film with fewer pictures than were written, for instance because the disk became full."""
     import imageio_ffmpeg
 
     try:

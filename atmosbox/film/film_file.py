@@ -1,4 +1,4 @@
-"""A film as a file: it appears only when it is whole, and the same run gives the same GIF."""
+"""A film as a file: it appears only when it is complete, and the same run gives the same GIF."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ __all__ = ["FORMATS", "save"]
 FORMATS = ("gif", "mp4")
 _SIZES = {"gif": {"notes": (800, 450), "slides": (960, 540)}, "mp4": {"notes": (1280, 720), "slides": (1280, 720)}}
 _WIDE = {"notes": 7.2, "slides": 40.0 / 3.0}  # inch
-_SMOOTH = 0.1  # where molecules move less from frame to frame, in sides of the box, they are seen to move
-_CHOSEN_FROM = 6  # pictures from which the colours of a GIF are chosen
+_SMOOTH = 0.1  # if molecules move less than this from frame to frame, in sides of the box, their motion looks smooth
+_CHOSEN_FROM = 6  # greatest number of pictures from which the colours of a GIF are chosen
 
 
 def save(
@@ -49,35 +49,36 @@ def save(
     Parameters
     ----------
     dataset : xarray.Dataset
-        The run, with its molecules unless `graphs` are wanted alone.
+        The run; it must hold its molecules unless ``graphs`` is true.
     path : str or path-like
-        The file. Its suffix says the format; where ``format`` says it, a suffix that is missing is added.
+        The file. Its suffix gives the format; if ``format`` is given, a missing suffix is added.
     format : {"gif", "mp4"}, optional
-        The format; MP4 needs the extra ``movie``.
+        The format, by default that of the suffix; MP4 needs the extra ``movie``.
     theme : {"notes", "slides"}
         Small type for a page, or large type for a screen.
     fps, seconds : float, optional
-        Pictures a second, and how long the film lasts; see `pace`.
+        Pictures a second, and duration of the film; see `pace` for the defaults.
     graphs : bool
-        Whether the graphs are filmed alone.
+        Whether only the graphs are filmed, without the molecules.
     force : bool
         Whether a file of that name may be replaced.
     progress : callable, optional
-        Told how much is done, from 0 to 1.
+        Called after each picture with the share that is done, from 0 to 1.
 
     Returns
     -------
     pathlib.Path
         The file that was written.
     Pace
-        Its pictures.
+        The frames of the run that the film shows, and the pictures a second.
 
     Raises
     ------
     FileError
         If the file exists, cannot be written, or the run has nothing to film.
     SettingError
-        If format, theme, pace or length are none, or an MP4 is wanted and the extra ``movie`` is not installed.
+        If format or theme is unknown, pace or duration is not allowed, or an MP4 needs the extra ``movie``, which is
+        not installed.
 
     Examples
     --------
@@ -116,7 +117,7 @@ def save(
 
 
 def sized(theme: Theme, kind: str) -> Theme:
-    """Return a theme with the size that the pictures of a film have.
+    """Return a theme with the size of the pictures of a film.
 
     Examples
     --------
@@ -130,7 +131,10 @@ def sized(theme: Theme, kind: str) -> Theme:
 
 
 def _along(dataset: xr.Dataset) -> NDArray[np.float64] | None:
-    """Return the logarithm of time where the first graph over time is drawn along it: what changes early is seen."""
+    """Return the logarithm of time if the first graph over time has a logarithmic axis; else None.
+
+    A film with even steps in it shows the early changes.
+    """
     over_time = [panel for panel in panels_of(dataset) if panel.kind == "line"]
     time = dataset["elapsed_time"].values.astype(np.float64)
     if not over_time or over_time[0].x_scale != "log" or time[0] <= 0.0:

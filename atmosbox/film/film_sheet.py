@@ -1,4 +1,4 @@
-"""The pictures of a film: the box on the left, its graphs on the right, the clock over the box."""
+"""The pictures of a film: the box on the left, the graphs on the right, the clock above the box."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Sheet"]
 
-_APART = 0.15  # molecules that fly farther between two pictures, in sides of the box, are not seen to move
+_APART = 0.15  # if molecules fly farther than this between two pictures, in sides of the box, the footer says so
 _SECONDS_IN = {"s": 1.0, "us": 1e-6, "ns": 1e-9, "ps": 1e-12}
 _BAR = 0.6  # length of the colour bar, in widths of the box
 
@@ -40,11 +40,12 @@ class Sheet:
     dataset : xarray.Dataset
         The run.
     look : Theme
-        How large; `plot.theme.style` must be in force while the sheet is made and used.
+        The theme: sizes of type, lines and markers. The context `plot.theme.style` must be active while the sheet is
+        made and used.
     held : Molecules, optional
-        Its molecules; without them the graphs alone are filmed.
+        The molecules of the run; without them only the graphs are filmed.
     frames : ndarray of int, optional
-        The frames that will be drawn, of which the caption speaks; all if nothing is said.
+        The frames that will be drawn, by default all; the footer gives the time between them.
 
     Raises
     ------
@@ -53,8 +54,8 @@ class Sheet:
 
     Notes
     -----
-    What stands still is drawn once, and each picture adds what moves (blitting): 24 ms a picture of 800 molecules,
-    where matplotlib's FuncAnimation, which draws everything anew when it saves, takes 74 ms.
+    The parts that do not change are drawn once, and each picture adds only the moving parts (blitting). A picture of
+    800 molecules takes 24 ms; matplotlib's FuncAnimation, which draws everything again when it saves, takes 74 ms.
 
     Examples
     --------
@@ -82,7 +83,7 @@ class Sheet:
                 "The file has no graph that grows with time: run the scene again with --save-molecules, and film it "
                 "without --graphs."
             )
-        # How much of the width the box has beside its graphs.
+        # The share of the width that the box has beside its graphs.
         beside = sum(panel.kind in ("profile", "skewt") for panel in panels)
         share = 0.0 if held is None else 1.0 if not panels else 0.34 if beside > 1 else 0.42
         self.figure = blank(look.wide, look)
@@ -91,7 +92,7 @@ class Sheet:
         left = look.text / 2 / wide
         self.stage = None if held is None else box_picture(self.figure.add_axes((0, 0, 1, 1)), dataset, held, look)
 
-        # Small type below all, with what a viewer must know of molecules that do not move from picture to picture.
+        # The footer below all, which tells a viewer how far molecules fly between two pictures if that is far.
         words = [footer(dataset), *([] if self.stage is None else self.stage.legend())]
         words += self._jumps(held, np.arange(dataset.sizes["elapsed_time"]) if frames is None else frames)
         small = pen.wrap(" · ".join(words) + explanation(dataset, panels), 0.98 * (wide - look.text), look.small)
@@ -119,9 +120,9 @@ class Sheet:
             settle(pen, plates, replace(look, grows=False))
             self.graphs = [Graph(plate.axes, plate.panel, dataset, look, running) for plate in plates]
         self.figure.set_layout_engine("none")
-        if self.stage is not None:  # and below it the colour bar
+        if self.stage is not None:  # place the box, and below it the colour bar
             left, width = 2 * left, share - 1.6 * look.text / wide
-            bar = 3.4 * look.text / high  # with its numbers and its label
+            bar = 3.4 * look.text / high  # height of the colour bar with its numbers and its label
             foot = bottom + bar + 1.4 * look.text / high
             self.stage.axes.set_position((left, foot, width, top - foot))
             self.stage.fit()
@@ -150,7 +151,7 @@ class Sheet:
         return instant(self.dataset, self.held, frame)
 
     def _jumps(self, held: Molecules | None, frames: NDArray[np.int64]) -> list[str]:
-        """Return how far molecules fly from picture to picture, where they are not seen to move."""
+        """Return a phrase on the distance that a molecule flies between two pictures, if that is far."""
         if held is None or held.discs or frames.size < 2:
             return []
         unit = str(self.dataset["elapsed_time"].attrs.get("units", "s"))

@@ -1,4 +1,4 @@
-"""The graphs beside the box: their measured curves grow with the clock, theory stands from the start."""
+"""The graphs beside the box: measured curves grow with time, theory is shown from the start."""
 
 from __future__ import annotations
 
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
 
 __all__ = ["Graph", "GraphPainter", "chosen"]
 
-_HEADROOM = 1.08  # over the highest of a histogram
+_HEADROOM = 1.08  # upper end of the axis of a histogram, in units of its highest step
 
 
 def _grows(dataset: xr.Dataset, line: Line, running: Running) -> bool:
-    """Tell whether a curve is measured bit by bit."""
+    """Tell whether a curve grows during the run: a measured function of time, or an average that `Running` has."""
     names = [name.partition("[")[0] for name in (line.x, line.y)]
     in_time = any("elapsed_time" in dataset[name].dims for name in names if name in dataset.variables)
     return line.role == "data" and (in_time or any(name in running.names for name in names))
 
 
 def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, most: int = 2) -> tuple[Panel, ...]:
-    """Return the panels to film: those that grow, first of two kinds, and no misfits if there is anything else.
+    """Return the panels to film: panels that grow, if possible of two kinds, and misfits only if there are no others.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The run.
     panels : tuple of Panel
-        What its figure shows.
+        The panels of the figure of the run.
     running : Running
-        What can be followed by its molecules.
+        The averages up to a frame that its molecules give.
     most : int
-        How many panels there is room for; a skew-T takes that of two.
+        Number of panels for which there is room; a skew-T takes the room of two.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, mos
 
 
 class GraphPainter:
-    """Draws what stands still in panels, within the limits of all that they will hold.
+    """Draws the parts of panels that do not change, with axes whose limits hold all later curves.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class GraphPainter:
     look : Theme
         How large.
     running : Running
-        What can be followed by its molecules.
+        The averages up to a frame that its molecules give.
 
     Examples
     --------
@@ -108,7 +108,7 @@ class GraphPainter:
         self.dataset, self.look, self.running = dataset, look, running
 
     def draw(self, drawing: Figure, spot: SubplotSpec, panel: Panel, above: Axes | None) -> tuple[Axes, list[Entry]]:
-        """Draw a panel at its place, along the abscissa of the one above if that is given."""
+        """Draw a panel at its place; it shares the abscissa of the axes above, if any."""
         scratch = Figure(figsize=tuple(drawing.get_size_inches()))
         whole = painter(self.dataset, self.look)
         full, entries = whole(scratch, scratch.add_gridspec(1, 1)[0, 0], panel, None)
@@ -123,7 +123,7 @@ class GraphPainter:
             axes = drawing.add_subplot(spot, sharex=above, xscale=panel.x_scale, yscale=panel.y_scale)
             axes.grid(visible=True)
         axes.set(xlim=full.get_xlim(), ylim=full.get_ylim())
-        if panel.kind == "histogram":  # its steps may be higher on the way than at the end
+        if panel.kind == "histogram":  # its steps may be higher during the run than at the end
             count = self.dataset.sizes["elapsed_time"]
             tops = [
                 convert(self.running.values(line.y, frame), _unit(self.dataset, line.y), panel.y_unit).max()
@@ -136,12 +136,12 @@ class GraphPainter:
 
 
 class Graph:
-    """The curves of one panel as far as they have come.
+    """The curves of one panel up to a frame.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        The axes, with all that stands still.
+        The axes, on which `GraphPainter` has drawn.
     panel : Panel
         The panel.
     dataset : xarray.Dataset
@@ -149,7 +149,7 @@ class Graph:
     look : Theme
         How large.
     running : Running
-        What can be followed by its molecules.
+        The averages up to a frame that its molecules give.
 
     Examples
     --------
@@ -178,14 +178,14 @@ class Graph:
         self.cursor = axes.axvline(self.time[0], color=DARK, linewidth=look.line / 2, zorder=5.0)
         self.cursor.set_visible(panel.kind == "line" and all(line.x == "elapsed_time" for line in measured))
         self.cursor.set_animated(True)
-        # the energy of a storm is shaded as far as the parcel has come
+        # CAPE and CIN are shaded up to the level that the parcel has reached
         self.shades = [each for each in axes.collections if panel.kind == "skewt" and each.get_zorder() == SHADE_ORDER]
         for shade in self.shades:
             shade.set_animated(True)
         self.drawn: list[Artist] = []
 
     def artists(self, frame: int) -> list[Artist]:
-        """Return what is to be drawn of a frame, from the back to the front."""
+        """Return the artists of a frame, from the back to the front."""
         for bars in list(self.axes.containers):
             bars.remove()
         for artist in self.drawn:
@@ -212,18 +212,18 @@ class Graph:
         return [*self.shades, *([self.cursor] if self.cursor.get_visible() else []), *self.drawn]
 
     def _since(self, before: set[Artist]) -> list[Artist]:
-        """Return what has been drawn since, from the back to the front."""
+        """Return the artists of the axes that are not among the given ones, from the back to the front."""
         new = [artist for artist in self.axes.get_children() if artist not in before]
         return sorted(new, key=lambda artist: artist.get_zorder())
 
     def _below(self, frame: int) -> Rectangle:
-        """Return the part of the axes up to where the first curve has come."""
+        """Return the part of the axes below the point that the first curve has reached in a frame."""
         up = self.curves[self.lines[0][0]].y[frame]
         top = self.axes.transAxes.inverted().transform(self.axes.transData.transform((self.axes.get_xlim()[0], up)))[1]
         return Rectangle((0.0, 0.0), 1.0, float(top), transform=self.axes.transAxes)
 
     def _draw_so_far(self, line: Line, index: int, frame: int) -> None:
-        """Draw a curve up to a frame, and a dot at its head."""
+        """Draw a curve up to a frame, and a dot at its last point."""
         x, y, error = self.curves[line]
         each = x.size == self.time.size
         past = np.arange(x.size) <= frame if each else x <= self.time[frame]

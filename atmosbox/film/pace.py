@@ -1,4 +1,4 @@
-"""Which frames of a run a film shows, and for how long each."""
+"""Which frames of a run a film shows, and how many a second."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from atmosbox.errors import SettingError
 __all__ = ["Pace", "pace"]
 
 SECONDS = 12.0
-"""How long a film lasts if nothing is said."""
+"""Default duration of a film [s]; it is shorter for a run of few frames."""
 SMOOTH, APART = 20.0, 10.0
-"""Pictures a second where molecules are seen to move, and where they are elsewhere in each picture."""
+"""Default pictures a second if molecules move little from frame to frame, and if they move far."""
 FASTEST, LONGEST = 50.0, 3600.0
+"""Greatest number of pictures a second, and greatest duration of a film [s]."""
 MOST = 5000
-"""Pictures that a film may have."""
+"""Greatest number of pictures of a film."""
 
 
 @dataclass(frozen=True)
 class Pace:
-    """Which frames a film shows, and how many a second.
+    """The frames of a run that a film shows, and how many a second.
 
     Parameters
     ----------
@@ -43,7 +44,7 @@ class Pace:
 
     @property
     def seconds(self) -> float:
-        """How long the film lasts."""
+        """Duration of the film [s]."""
         return self.frames.size / self.fps
 
 
@@ -55,30 +56,32 @@ def pace(
     smooth: bool = False,
     along: NDArray[np.float64] | None = None,
 ) -> Pace:
-    """Choose evenly spaced frames of a run, the last one included, so that the film lasts as long as wanted.
+    """Choose evenly spaced frames of a run, including the last one, for a film of the wanted duration.
 
     Parameters
     ----------
     frames : int
-        How many frames the run has.
+        Number of frames of the run.
     fps : float, optional
-        Pictures a second: 10 if nothing is said, 20 where the run is `smooth`.
+        Pictures a second; by default 10, or 20 if ``smooth``.
     seconds : float, optional
-        How long the film is to last: 12 seconds if nothing is said, or as long as the frames reach.
+        Duration of the film [s]; by default 12, or less if the run has too few frames.
     smooth : bool
         Whether molecules move little from one frame to the next.
     along : ndarray of float, (frame,), optional
-        What increases evenly from picture to picture, the logarithm of time for instance; else the number of the frame.
+        A quantity that increases by even steps from picture to picture, for instance the logarithm of time; by default
+        the index of the frame.
 
     Returns
     -------
     Pace
-        The frames. A run of few frames is shown slower if the seconds are given and the pictures a second are not.
+        The frames. If ``seconds`` is given and ``fps`` is not, a run of few frames is shown with fewer pictures a
+        second.
 
     Raises
     ------
     SettingError
-        If a film cannot have so many pictures, or be so fast or long.
+        If ``fps`` or ``seconds`` is outside its range, or the film would have too many pictures.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Averages up to a frame, from the molecules themselves: speeds, and number and temperature in each layer."""
+"""Averages up to a frame, computed from the saved molecules: speeds, and number and temperature in each layer."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Running"]
 
-_SPEEDS = 6000  # so many speeds make a histogram that can be read
+_SPEEDS = 6000  # number of speeds that is enough for a histogram
 _LAYERED = ("number_density", "air_density", "layer_pressure", "layer_temperature")
-_FEW = {"layer_temperature": 20.0, "number_density": 2.0}  # molecules that a layer must have shown
+_FEW = {"layer_temperature": 20.0, "number_density": 2.0}  # least number of molecules counted in a layer, for a value
 
 Floats = NDArray[np.float64]
 
 
 class Running:
-    """Averages that a file holds for the whole run alone, from the molecules up to a frame.
+    """Averages up to a frame of variables that the file holds only for the whole run, computed from its molecules.
 
-    Histograms of speeds are those of the last frames, which are few enough to show that they change. Of layers, it is
-    the mean so far; number and temperature are scaled to what the run has measured in all, which took more samples than
-    the file has frames.
+    A histogram of speeds is that of the last frames; these are few, so that a change is seen. The value of a layer is
+    the mean over all frames so far. Number and temperature are scaled so that the value at the end is the one of the
+    whole run, which was measured in more samples than the file has frames.
 
     Parameters
     ----------
@@ -79,14 +79,14 @@ class Running:
         self.square = np.cumsum(square, axis=0) / so_far
 
     def at(self, frame: int) -> xr.Dataset:
-        """Return the run with what was seen up to a frame in the place of what it has measured in all."""
+        """Return the dataset with the averages up to a frame in place of those of the whole run."""
         found = {name: self.values(name, frame) for name in self.names}
         return self.still.assign(
             {name: (self.still[name].dims, held, self.still[name].attrs) for name, held in found.items()}
         )
 
     def values(self, name: str, frame: int) -> Floats:
-        """Return one average up to a frame, in the unit of the file; NaN where too little was seen."""
+        """Return one average up to a frame, in the unit of the file; NaN in layers with too few molecules."""
         if name == "speed_probability_density":
             seen = self.speed[max(0, frame + 1 - self.frames) : frame + 1]
             seen = seen[np.isfinite(seen)]
