@@ -1,12 +1,11 @@
-"""Worksheets: what a lecturer hands out with a scene, as PDF and as Markdown, and the same with the answers.
+"""Worksheets that a lecturer hands out with a scene, as PDF and as Markdown, with and without the answers.
 
-The words of a sheet stand beside its scene, in ``my_scene.sheet.toml``; a scene without gets a sheet made from its
-card and its headlines.
+The text of a sheet is in a file beside its scene, ``my_scene.sheet.toml``; for a scene without such a file, a sheet is
+made from its model card and its headlines.
 
-Read in this order: `text` (the words, read from their file) with `sums`, `number_text` and `marks` (what may stand
-in them), `sheet_run` (the runs), `generic` (the words of any scene), `worksheet` (words and runs put together as
-Markdown, by the template ``sheet.md.jinja``), `pdf` (that Markdown on paper), `sheet_file` (a file that appears
-whole).
+Read in this order: `text` (the text, read from its file) with `sums`, `number_text` and `marks` (which sums, numbers
+and marks a text may contain), `sheet_run` (the runs), `generic` (the text for any scene), `worksheet` (text and runs
+together as Markdown, by the template ``sheet.md.jinja``), `pdf` (the Markdown on paper), `sheet_file` (the file).
 """
 
 from atmosbox.sheet.pdf import PAPERS

@@ -1,4 +1,4 @@
-"""What the sheet of any scene can say: of its docstring, its settings and what its runs report."""
+"""The text of a sheet for any scene: from its docstring, its settings and the headlines of its runs."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from atmosbox.sheet.sheet_run import Trial
 __all__ = ["WORDS", "AnyScene", "left_out"]
 
 WORDS = Path(__file__).with_suffix(".sheet.toml")
-"""The words of a sheet for a scene that brings none."""
+"""The text of a sheet for a scene without a sheet of its own."""
 MOST_SETTINGS = 6
+"""Greatest number of settings that the sheet names."""
 
 
 def left_out(story: str) -> str:
-    r"""Return what the docstring of a scene says is left out and exaggerated; nothing if it does not say.
+    r"""Return the part of a scene's docstring on what is left out and exaggerated; empty if there is none.
 
     Examples
     --------
@@ -30,12 +31,12 @@ def left_out(story: str) -> str:
 
 
 class AnyScene:
-    """What the words of `WORDS` call ``scene``.
+    """The object that the text of `WORDS` calls ``scene``.
 
     Parameters
     ----------
     runs
-        The runs of the sheet; the first was made, and all if the sheet has answers.
+        The runs of the sheet; those that have been made give their headline numbers.
     """
 
     def __init__(self, runs: Sequence[Trial]) -> None:

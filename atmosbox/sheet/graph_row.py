@@ -1,4 +1,4 @@
-"""What is read off the graphs of a page that runs: the table of a sheet that is done without commands."""
+"""The table of a sheet that is done without commands: values that students read off the graphs of a running page."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ __all__ = ["graph_rows", "until"]
 
 _TIME = "elapsed_time"
 _FRAMES = 20
-"""What scatters is read as the mean of its last frames, of so many as the gauges of a page take."""
+"""Number of last frames over which a value is averaged, the same as for the gauges of a page."""
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
-_FIGURES = 3
+_FIGURES = 3  # significant digits
 
 
 def until(prepared: Prepared) -> str:
-    """Return the sentence that says for how long a run plays.
+    """Return the sentence that tells how long to let a run play.
 
     Examples
     --------
@@ -40,18 +40,18 @@ def until(prepared: Prepared) -> str:
 
 
 def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
-    """Return the rows of the table: for each curve that is measured its graph, its name, and a line for each run.
+    """Return the rows of the table: for each measured curve its graph, its name, and a line for each run.
 
     Parameters
     ----------
     runs
-        The runs; of those that were made the numbers are filled in.
+        The runs; numbers are filled in for the runs that have been made.
 
     Returns
     -------
     list of dict
-        ``graph``, ``curve`` with its unit, and ``lines``: of each run its letter, what is read off, what theory says,
-        and the difference.
+        ``graph``, ``curve`` with its unit, and ``lines``: for each run its letter, the value from the graph, the value
+        of theory, and the difference.
     """
     prepared = runs[0].prepared
     panels = prepared.module.panels
@@ -81,7 +81,7 @@ def _si_unit(panel: Panel, line: Line) -> str:
 
 
 def _where(panel: Panel, line: Line) -> str:
-    """Return where a curve is read."""
+    """Return the phrase that tells where a curve is read."""
     if panel.kind == "line" and line.x == _TIME:
         return ", at the end"
     if panel.kind == "histogram":
@@ -92,7 +92,7 @@ def _where(panel: Panel, line: Line) -> str:
 
 
 def _theory(panel: Panel, line: Line) -> str | None:
-    """Return the variable that theory draws for a curve, None if it draws none."""
+    """Return the variable of the theory that belongs to a curve; None if there is no such theory."""
     name = line.x if panel.kind == "profile" else line.y
     told = [each.x if panel.kind == "profile" else each.y for each in panel.lines if each.role == "theory"]
     data = {each.x if panel.kind == "profile" else each.y for each in panel.lines if each.role == "data"}
@@ -103,7 +103,7 @@ def _theory(panel: Panel, line: Line) -> str | None:
 
 
 def _line(run: Trial, panel: Panel, line: Line, theory: str | None) -> tuple[str, str, str, str]:
-    """Return what a run says of a curve."""
+    """Return the line of a run for a curve: letter, measured value, theory, difference."""
     blank = "" if theory else "–"
     if run.outcome is None:
         return run.letter, "", blank, blank
@@ -117,7 +117,7 @@ def _line(run: Trial, panel: Panel, line: Line, theory: str | None) -> tuple[str
 
 
 def _last(run: Trial, panel: Panel, name: str) -> float | None:
-    """Return what a series comes to at the end, in the unit of its graph."""
+    """Return the mean of a series over its last frames, in the unit of its graph; None if there is none."""
     dataset = run.outcome.dataset if run.outcome is not None else {}
     if name not in dataset:
         return None

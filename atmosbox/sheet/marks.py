@@ -1,4 +1,4 @@
-"""The marks of a text: those of Markdown that a line can have, and what is raised and lowered."""
+"""The marks of a text: those of Markdown within a line, and superscripts and subscripts."""
 
 from __future__ import annotations
 
@@ -18,22 +18,23 @@ __all__ = ["PARSER", "TYPED", "as_paragraph", "check"]
 PARSER = MarkdownIt("commonmark", {"html": True}).enable("table")
 TYPED = "DejaVuSansMono"
 LONGEST = 60
-"""What is typed and not longer stands on one line [characters]."""
+"""Typed text of at most this length is not broken into lines [characters]."""
 SMALLER = 0.72
+"""Size of superscripts and subscripts, in units of the type size."""
 _RISE = {"sup": 0.38, "sub": 0.16}
-"""How far a mark rises or falls, in the size of the type."""
+"""Height of a superscript above the line and depth of a subscript below it, in units of the type size."""
 _TAGS = {"em_open": "<i>", "em_close": "</i>", "strong_open": "<b>", "strong_close": "</b>", "link_close": "</a>"}
 _KNOWN = {"text", "text_special", "softbreak", "code_inline", "link_open", *_TAGS}
 _HTML = {"<sub>", "</sub>", "<sup>", "</sup>"}
 
 
 def check(text: str) -> None:
-    """Refuse a text with marks that are not printed: pictures, lists, headings, and of HTML all but sub and sup.
+    """Refuse a text with marks that are not printed: pictures, lists, headings, and all HTML except sub and sup.
 
     Raises
     ------
     ConfigError
-        If it has such a mark.
+        If the text has such a mark.
 
     Examples
     --------
@@ -54,12 +55,12 @@ def check(text: str) -> None:
 
 
 def as_paragraph(tokens: Sequence[Token], size: float) -> str:
-    """Return the marks of a line as those of a paragraph of reportlab.
+    """Return a line of Markdown as the text of a paragraph of reportlab.
 
     Parameters
     ----------
     tokens
-        What `PARSER` found in the line.
+        The tokens that `PARSER` found in the line.
     size
         The size of the type [points].
 

@@ -1,4 +1,4 @@
-"""Numbers and units as a page prints them: with a true minus, raised powers, and no more digits than are known."""
+"""Numbers and units as a page prints them: with a true minus sign, superscripts, and only the digits that are known."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _UNITS = {"degC": "°C", "percent": "%", "um": "µm", "us": "µs"}
 
 
 def spelled(unit: str) -> str:
-    """Return a unit as it is printed; nothing for a pure number.
+    """Return a unit as it is printed; empty for a pure number.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def _easy(size: float) -> bool:
 
 
 def bare(value: float, figures: int = 3) -> str:
-    """Return a number with so many significant figures.
+    """Return a number as text with some significant figures.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def bare(value: float, figures: int = 3) -> str:
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, and never "-0".
+    """Return a number as text with some decimals, and never "-0".
 
     Examples
     --------
@@ -59,7 +59,7 @@ def fixed(value: float, decimals: int) -> str:
 
 
 def measured(value: float, error: float) -> str:
-    """Return a measurement with its standard error, of which two figures are shown.
+    """Return a measurement with its standard error; the error has two significant figures.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def measured(value: float, error: float) -> str:
 
 
 def theoretical(value: float, error: float) -> str:
-    """Return a number of theory with the digits of the measurement that has this error.
+    """Return a number of theory with as many digits as a measurement with this standard error.
 
     Examples
     --------

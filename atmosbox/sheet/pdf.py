@@ -1,4 +1,4 @@
-"""A sheet as PDF: what belongs together stays on a page, and the same sheet gives the same bytes."""
+"""A sheet as PDF: parts that belong together stay on one page, and the same sheet gives the same bytes."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ PAPERS = {"a4": (210.0 * MM, 297.0 * MM), "letter": (612.0, 792.0)}
 MARGIN = 17.0 * MM
 FOOT = 16.0 * MM
 PADDING = 6.0
-"""What the frame of a page keeps free on either side."""
+"""Free space at the left and the right side of a page's frame [points]."""
 ROOM = (1.0, 0.95, 0.9, 0.85, 0.8)
-"""What is tried of the usual room to write, until the sheet fits on two pages."""
+"""Factors on the usual room to write; they are tried in this order until the sheet fits on two pages."""
 MOST_PAGES = 2
 BODY, BOLD, SLANTED = "DejaVuSans", "DejaVuSans-Bold", "DejaVuSans-Oblique"
 WRITING = 7.0 * MM
-"""Distance of the lines to write on."""
+"""Distance between the lines to write on."""
 ROW = 6.1 * MM
 """Height of a line of the table that is to be filled in."""
 AXES = 34.0 * MM
 LONG = 100
-"""How many characters of answers to tick stand beside each other."""
+"""Number of characters of answers to tick that fit side by side."""
 GREY = 0.45
 SHARES = (0.43, 0.06, 0.24, 0.15, 0.12)
-"""Widths of the columns of the table, in that of the text."""
+"""Widths of the columns of the table, in units of the width of the text."""
 
 
 class Printed(NamedTuple):
@@ -82,7 +82,7 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     Returns
     -------
     Printed
-        The bytes, and how many pages they are.
+        The bytes, and the number of pages.
 
     Raises
     ------
@@ -93,8 +93,8 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
 
     Notes
     -----
-    The type is embedded, so that every sign is seen everywhere and can be searched for. Neither the date nor chance
-    enters the file.
+    The fonts are embedded, so that every character is shown on every computer and can be searched for. The file
+    contains neither a date nor a random number.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
 
 @functools.cache
 def load_fonts() -> None:
-    """Make the fonts known that come with matplotlib.
+    """Register the fonts that come with matplotlib.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def load_fonts() -> None:
 
 
 def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
-    """Return a sheet whose feet say how many pages it has, with so much of the usual room to write."""
+    """Return a sheet with a factor on the usual room to write; the foot of each page gives the number of pages."""
     from reportlab.platypus import SimpleDocTemplate
 
     width, height = PAPERS[paper]
@@ -167,14 +167,14 @@ def _laid_out(sheet: Worksheet, paper: str, room: float, pages: int) -> Printed:
 
 
 class _Layout:
-    """Turns the Markdown of a sheet into what reportlab lays out.
+    """Converts the Markdown of a sheet to the elements that reportlab lays out (flowables).
 
     Parameters
     ----------
     width
         Width of the text [points].
     room
-        How high lines to write on, empty axes and rows of the table are, in their usual height.
+        Height of lines to write on, empty axes and rows of the table, in units of their usual height.
     """
 
     def __init__(self, width: float, room: float) -> None:
@@ -204,13 +204,13 @@ class _Layout:
     def table(
         self, rows: Sequence[Sequence[Any]], widths: Sequence[float], style: Sequence[Any], **more: Any
     ) -> Flowable:
-        """Return a table with columns of these shares of the width."""
+        """Return a table; the widths of its columns are shares of the width of the text."""
         from reportlab.platypus import Table
 
         return Table(rows, colWidths=[share * self.width for share in widths], style=style, **more)
 
     def story(self, sheet: Worksheet, title: str) -> list[Flowable]:
-        """Return the whole sheet; a heading and what begins in bold stay with what follows."""
+        """Return the elements of the whole sheet; headings and paragraphs that begin in bold stay with the next one."""
         from reportlab.platypus import KeepTogether, Spacer
 
         name, share = (
@@ -233,7 +233,10 @@ class _Layout:
         return [head, Spacer(1.0, 3.0), about, *map(KeepTogether, parts)]
 
     def blocks(self, tokens: Sequence[Token]) -> Iterator[tuple[str, Flowable]]:
-        """Yield what follows the head of the sheet, each with whether it is a heading, begins something or goes on."""
+        """Yield the elements after the head of the sheet, each with its kind.
+
+        A "heading", the "begin" of a part that stays on one page, or "on" for an element that continues a part.
+        """
         from reportlab.platypus import HRFlowable
 
         starts = [number for number, token in enumerate(tokens) if token.level == 0 and token.nesting >= 0]
@@ -265,13 +268,13 @@ class _Layout:
                     yield "begin", self.measurements(inside)
 
     def barred(self, lines: Sequence[Token]) -> Flowable:
-        """Return an answer, with a bar beside it."""
+        """Return an answer, with a vertical bar beside it."""
         style = [("LINEBEFORE", (0, 0), (0, -1), 1.6, (0.0, 0.447, 0.698)), ("TOPPADDING", (0, 0), (-1, -1), 0.5),
                  ("BOTTOMPADDING", (0, 0), (-1, -1), 0.5), ("LEFTPADDING", (0, 0), (-1, -1), 0.0)]  # fmt: skip
         return self.table([[[self.line(line, self.answer) for line in lines]]], (1.0,), style, spaceAfter=4.0)
 
     def choices(self, items: Sequence[str]) -> Flowable:
-        """Return boxes to tick, beside each other as far as there is room."""
+        """Return boxes to tick, side by side as far as there is room."""
         texts = [item.replace("[ ]", "☐", 1).replace("[x]", "☑", 1) for item in items]
         columns = max(min(len(texts), LONG // max(map(len, texts))), 1)
         columns = 2 if columns == 3 and len(texts) == 4 else columns
@@ -282,7 +285,7 @@ class _Layout:
         return self.table(rows, [1.0 / columns] * columns, style, spaceAfter=3.0)
 
     def measurements(self, cells: Sequence[Token]) -> Flowable:
-        """Return the table; the formula stands below its quantity, and the lines of one quantity stay together."""
+        """Return the table; a formula is below its quantity, and the lines of one quantity stay together."""
         from reportlab.platypus import Paragraph
 
         texts = [as_paragraph(cell.children or (), self.cell.fontSize) for cell in cells]

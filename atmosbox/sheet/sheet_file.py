@@ -1,4 +1,4 @@
-"""A sheet as a file: the same sheet gives the same bytes, and a file appears only when it is whole."""
+"""A sheet as a file: the same sheet gives the same bytes, and a file appears only when it is complete."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ FORMATS = ("pdf", "md")
 
 
 def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str = "a4", force: bool = False) -> Path:
-    """Return the file that a sheet is to be written to, or refuse it before a run is spent on it.
+    """Return the path of the file of a sheet, or refuse it before time is spent on a run.
 
     Parameters
     ----------
     path : str or path-like
-        The file. Its suffix says the format; where ``format`` says it, a suffix that is missing is added.
+        The file. Its suffix gives the format; if ``format`` is given, a missing suffix is added.
     format : {"pdf", "md"}, optional
-        The format.
+        The format, by default that of the suffix.
     paper : {"a4", "letter"}
         The paper of a PDF.
     force : bool
@@ -36,7 +36,7 @@ def check(path: str | os.PathLike[str], format: str | None = None, *, paper: str
     Raises
     ------
     FileError
-        If the file exists, its folder does not, or reportlab is missing, which writes PDF.
+        If the file exists, its folder does not, or reportlab, which writes PDF, is not installed.
     SettingError
         If the format or the paper is unknown.
 
@@ -66,9 +66,9 @@ def save(
     Parameters
     ----------
     sheet : Worksheet
-        From `worksheet`.
+        The sheet, from `worksheet`.
     path, format, paper, force
-        As `check` takes them.
+        See `check`.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def save(
     Raises
     ------
     FileError
-        If the file is in the way or cannot be written.
+        If the file exists already or cannot be written, or reportlab is not installed.
     SettingError
         If the format or the paper is unknown.
 

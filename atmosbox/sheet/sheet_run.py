@@ -1,4 +1,4 @@
-"""A run of a sheet: what is typed for it, what is known of it beforehand, and what it has found."""
+"""A run of a sheet: the command for it, its settings, and its results."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ _LETTERS = "ABCD"
 
 @dataclass(frozen=True)
 class Trial:
-    """A run of a sheet, made or yet to be made.
+    """A run of a sheet, made or not yet made.
 
     Parameters
     ----------
     letter
-        What the sheet calls it.
+        Its letter in the sheet.
     title
-        What is special about it.
+        A short text on what differs in it.
     prepared
         The scene with its settings.
     outcome
-        What it has found; None before it was made.
+        Its results; None before the run was made.
     """
 
     letter: str
@@ -43,7 +43,7 @@ class Trial:
 
     @property
     def file(self) -> str:
-        """The file that it writes.
+        """Name of the file that it writes.
 
         Examples
         --------
@@ -55,7 +55,7 @@ class Trial:
 
     @property
     def command(self) -> str:
-        """What to type for it.
+        """The command that makes it.
 
         Examples
         --------
@@ -71,7 +71,7 @@ class Trial:
 
     @property
     def plot_command(self) -> str:
-        """What to type for its figure.
+        """The command that draws its figure.
 
         Examples
         --------
@@ -82,7 +82,7 @@ class Trial:
 
     @property
     def page(self) -> str:
-        """The page in which it runs, for a sheet that is done without Python.
+        """Name of the page in which it runs, for a sheet that is done without Python.
 
         Examples
         --------
@@ -93,21 +93,21 @@ class Trial:
 
     @property
     def headlines(self) -> Mapping[str, Headline]:
-        """The numbers that it has found, by name."""
+        """Its headline numbers by name; empty before the run was made."""
         return {} if self.outcome is None else {each.name: each for each in self.outcome.headlines}
 
     def fact(self, name: str) -> Any:
-        """Return a number that it has found, a setting, or a variable of its file.
+        """Return a headline number, a setting, or a variable of the run by its name.
 
         Parameters
         ----------
         name
-            Looked for among the headlines, then the settings, then the variables.
+            The name, which is searched among the headlines, then the settings, then the variables.
 
         Raises
         ------
         ConfigError
-            If nothing has this name, or only a run that was not made.
+            If nothing has this name, or if the run has not been made and the name is not that of a setting.
 
         Examples
         --------
@@ -126,7 +126,7 @@ class Trial:
 
     @cached_property
     def _measured(self) -> dict[str, Measured]:
-        """The headlines in their units; one number each, so that a sum knows what it has in common with itself."""
+        """The headlines in their units; one object each, so that the error of a number minus itself is zero."""
         found = {}
         for name, each in self.headlines.items():
             unit, theory = each.display_unit, each.theory
@@ -136,21 +136,21 @@ class Trial:
 
 
 def trials(first: runner.Prepared, changes: Sequence[Change]) -> tuple[Trial, ...]:
-    """Return the runs of a sheet: as it comes, and with one thing changed.
+    """Return the runs of a sheet: the first without a change, and one for each change.
 
     Parameters
     ----------
     first
-        The scene with the settings of all.
+        The scene with the settings that all runs share.
     changes
-        What the others change, with its sums worked out.
+        The changes of the other runs; sums in them have been worked out.
 
     Raises
     ------
     SettingError
         If a changed value is not allowed.
     ConfigError
-        If a change changes nothing.
+        If a change has no effect on the settings.
 
     Examples
     --------
@@ -177,12 +177,17 @@ def execute(asked: Sequence[Trial], progress: Callable[[float, str], None] | Non
     asked
         The runs.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a short text on the present step.
+
+    Returns
+    -------
+    tuple of Trial
+        The runs with their results.
 
     Raises
     ------
     PhysicsError
-        If the energy of a run is not accounted for.
+        If the energy ledger of a run does not close.
     EngineError
         If the engine cannot go on.
 

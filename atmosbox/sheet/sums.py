@@ -1,8 +1,8 @@
 """The sums in the texts of a sheet: ``{{ B.mean_temperature - A.mean_temperature }}``, worked out by Jinja.
 
-A file of a sheet is data and runs no code. Of Jinja's language it may use expressions alone, no loops and no macros;
-these know the runs, the functions below and the parts of a number, and no attribute, method or filter of Python's.
-Errors go through a sum with the package ``uncertainties``.
+The file of a sheet is data and runs no code. It may use only expressions of Jinja's language, no loops and no macros.
+An expression may contain the runs, the functions below and the parts of a number, but no attribute, method or filter
+of Python. The package ``uncertainties`` propagates standard errors through a sum.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ __all__ = ["Facts", "Measured", "SetNumber", "check", "filled"]
 
 MOST_DIGITS = 12
 LONGEST = 4000
-"""How many characters a text may have."""
+"""Greatest length of a text [characters]."""
 
 
 @runtime_checkable
 class Facts(Protocol):
-    """Something whose facts a sum may ask for by name."""
+    """An object whose facts can be used in a sum by their names."""
 
     def fact(self, name: str) -> Any:
         """Return a fact; raise ConfigError if there is none of that name."""
 
 
 class SetNumber(float):
-    """A number that was set, and is shown with all the digits that it was given."""
+    """The number of a setting, which is shown with all its digits."""
 
 
 class Measured(Variable):  # type: ignore[misc]
-    """A number with its standard error, which goes with it through a sum, and with what theory says of it.
+    """A number with its standard error, which is propagated through a sum, and with its value in theory.
 
     Parameters
     ----------
     value, error
         The number and its standard error.
     theory
-        What theory says of it; None where it says nothing.
+        Its value in theory; None if there is no theory of it.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class Measured(Variable):  # type: ignore[misc]
 
 
 def _part(number: Any, name: str) -> Any:
-    """Return a part of a number by name."""
+    """Return a part of a number: value, error, theory, misfit, or sigmas (the misfit in standard errors)."""
     theory = getattr(number, "theory", None)
     if name in ("theory", "misfit", "sigmas") and theory is None:
         raise ConfigError(f"theory says nothing of a number whose {name} is asked for: leave it out")
@@ -82,22 +82,22 @@ def _part(number: Any, name: str) -> Any:
 
 
 def _late(series: Any) -> np.ndarray:
-    """Return the last four fifths of a series, which have forgotten how it began."""
+    """Return the last four fifths of a series, in which the initial state no longer matters."""
     return np.asarray(series, dtype=float)[len(series) // 5 :]
 
 
 def _digits(number: float) -> int:
-    """Return how many digits are asked for, as far as they fit on a line."""
+    """Return the number of digits that is asked for, limited to what fits on a line."""
     return int(min(max(number, 0), MOST_DIGITS))
 
 
 def _round(number: Any, digits: float = 0) -> str:
-    """Return a number with so many digits behind the point."""
+    """Return a number as text with some decimals."""
     return fixed(float(nominal_value(number)), _digits(digits))
 
 
 def _at(level: float, along: Any, series: Any) -> float:
-    """Return where a curve is at a level of its abscissa."""
+    """Return the value of a curve at a level of its abscissa, by linear interpolation."""
     order = np.argsort(along)
     return float(np.interp(level, np.asarray(along)[order], np.asarray(series)[order]))
 
@@ -123,7 +123,7 @@ _ALLOWED = (
     nodes.Template, nodes.Output, nodes.TemplateData, nodes.Const, nodes.Name, nodes.Getattr, nodes.Call,
     nodes.Add, nodes.Sub, nodes.Mul, nodes.Div, nodes.Pow, nodes.Neg, nodes.Concat, nodes.CondExpr,
 )  # fmt: skip
-"""All of Jinja's language that a text may hold: no statement, and nothing that could go on for long."""
+"""The parts of Jinja's language that a text may contain: no statements, and nothing that could run for long."""
 _NUMBERS = (bool, int, float, UFloat, np.ndarray)
 
 
@@ -133,7 +133,7 @@ class _Sandbox(SandboxedEnvironment):
     intercepted_binops = frozenset(SandboxedEnvironment.default_binop_table)
 
     def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:
-        """Work out a sum of numbers; in floating point, so that no power of whole numbers fills the memory."""
+        """Work out a sum of numbers; powers in floating point, so that no power of integers fills the memory."""
         if not (isinstance(left, _NUMBERS) and isinstance(right, _NUMBERS)):
             raise SecurityError(f"{operator} stands between things that are no numbers")
         return super().call_binop(context, operator, left * 1.0 if operator == "**" else left, right)
@@ -149,7 +149,7 @@ class _Sandbox(SandboxedEnvironment):
 
 
 def _printed(result: Any) -> str:
-    """Return what a sum came to as text."""
+    """Return the result of a sum as text."""
     match result:
         case str():
             return result.replace("<", "&lt;")
@@ -166,7 +166,7 @@ def _printed(result: Any) -> str:
 
 
 def _typed(result: Any) -> str:
-    """Return what a sum came to as it is typed for a setting."""
+    """Return the result of a sum as it is typed for a setting."""
     return f"{result:.12g}" if isinstance(result, float) else str(result)
 
 
@@ -176,7 +176,7 @@ _SETTINGS = _TEXTS.overlay(finalize=_typed)
 
 
 def _syntax(text: str) -> None:
-    """Refuse what is more than texts and sums, or longer than a sheet has space for."""
+    """Refuse a text that contains more than words and sums, or is too long for a sheet."""
     if len(text) > LONGEST:
         raise SecurityError(f"a text of more than {LONGEST} characters")
     for node in _TEXTS.parse(text).find_all(nodes.Node):
@@ -185,12 +185,12 @@ def _syntax(text: str) -> None:
 
 
 def check(text: str) -> None:
-    """Refuse a text whose sums cannot be understood, or are more than sums; none of them is worked out.
+    """Refuse a text whose sums cannot be parsed or are more than sums; no sum is worked out.
 
     Raises
     ------
     ConfigError
-        If a brace is open, or a text holds a loop, a macro or a filter.
+        If a brace is not closed, or the text contains a loop, a macro or a filter.
 
     Examples
     --------
@@ -210,14 +210,15 @@ def filled(text: str, names: Mapping[str, Facts], *, setting: bool = False) -> s
     Parameters
     ----------
     text
-        The text. A sum becomes a number of three figures, or a measurement with its error; ``round(x, 1)`` says how
-        many decimals, ``figures(x, 2)`` how many figures. Other functions are abs, sqrt, exp, ln; of a series of a run
-        first, last, lowest, highest, mean and scatter (of its last four fifths), and ``at(level, along, series)``;
-        and ``word(x, 'warmer', 'colder')``, which is the first word if x is above zero.
+        The text. A sum becomes a number with three significant figures, or a measurement with its error;
+        ``round(x, 1)`` sets the number of decimals, ``figures(x, 2)`` the number of significant figures. Other
+        functions are abs, sqrt, exp, ln; for a series of a run first, last, lowest, highest, mean and scatter (the
+        latter two over its last four fifths), and ``at(level, along, series)``; and ``word(x, 'warmer', 'colder')``,
+        which is the first word if x is above zero.
     names
         The runs by their letters.
     setting
-        Whether it is a setting, with all digits and signs as they are typed.
+        Whether the text is the value of a setting, to be written with all digits as it is typed.
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""The words of a sheet: what a lecturer writes about a scene, read from a file beside it.
+"""The text of a sheet: what a lecturer writes about a scene, read from a file beside the scene.
 
-The file of ``my_scene.py`` is ``my_scene.sheet.toml``. It is data: nothing in it runs. Its texts may hold sums (see
+The file for ``my_scene.py`` is ``my_scene.sheet.toml``. It is data and runs no code. Its texts may contain sums (see
 `sums`) and marks (see `marks`).
 """
 
@@ -23,11 +23,11 @@ __all__ = ["SECTIONS", "Change", "Prediction", "Question", "Row", "SheetText", "
 
 SUFFIX = ".sheet.toml"
 SECTIONS = {"notice": "Notice", "try": "Try", "differ": "Why do they differ?", "further": "Go further"}
-"""The headings of the questions by their names in the file."""
+"""The headings of the groups of questions, by their names in the file."""
 
 
 def _checked(text: str) -> str:
-    """Return a text on one line, if its sums and marks can be understood."""
+    """Return a text as one line; refuse it if its sums or marks are not allowed."""
     text = " ".join(text.split())
     sums.check(text)
     marks.check(re.sub(r"\{\{.*?\}\}", "0", text))
@@ -44,14 +44,14 @@ class _Entry(BaseModel):
 
 
 class Sketch(_Entry):
-    """Empty axes to draw a guess into; what they show, with units."""
+    """Empty axes into which students draw a guess; ``x`` and ``y`` are their labels, with units."""
 
     x: Needed
     y: Needed
 
 
 class Question(_Entry):
-    """A question with empty lines below it, or with its answer; ``lab`` whether pages that run can answer it."""
+    """A question with empty lines below it, or with its answer; ``lab`` tells whether running pages can answer it."""
 
     ask: Needed
     answer: Text = ""
@@ -60,7 +60,7 @@ class Question(_Entry):
 
 
 class Prediction(Question):
-    """What is written down before the run: answers to tick, of which one is right, axes to draw into, or free lines."""
+    """A prediction that is written down before the run: answers to tick, one of them right; a sketch; or free lines."""
 
     choices: tuple[Needed, ...] = ()
     right: int | None = None
@@ -76,7 +76,7 @@ class Prediction(Question):
 
 
 class Change(_Entry):
-    """A run beside the first that differs in one thing, by one setting or by those few that make it up."""
+    """The change of a further run, which differs from the first in one respect, by one or several settings."""
 
     title: Needed
     set: Annotated[dict[str, Any], Field(min_length=1)]
@@ -88,11 +88,11 @@ class Row(_Entry):
     Attributes
     ----------
     headline
-        The name of a headline of the scene.
+        Name of a headline of the scene.
     label, unit
-        What the table calls it and the unit it is in, as the headline has them.
+        Its name in the table and its unit, as the headline has them.
     theory
-        The formula from which the student works out what theory says; empty where a computer must.
+        The formula with which students compute the value of theory; empty if that needs a computer.
     runs
         The letters of the runs that report it.
     """
@@ -105,24 +105,24 @@ class Row(_Entry):
 
 
 class SheetText(_Entry):
-    """All words of the sheet of a scene.
+    """The whole text of the sheet of a scene.
 
     Attributes
     ----------
     goal
-        What it is about, in two sentences.
+        The subject of the sheet, in two sentences.
     predict
-        What is to be written down before the run.
+        The predictions that students write down before the run.
     change
-        The runs beside the first.
+        The changes of the runs after the first.
     row
-        The rows of the table; none to take whatever the scene reports.
+        The rows of the table; if there are none, the table has all headlines of the scene.
     notice, try_, differ, further
         The questions.
     constants
-        What the formulas need, above the table.
+        The constants that the formulas need, printed above the table.
     leaves_out
-        What the model leaves out; what the scene's docstring says where it is empty.
+        What the model leaves out; if it is empty, the scene's docstring tells it.
     """
 
     goal: Needed
@@ -138,7 +138,7 @@ class SheetText(_Entry):
 
 
 def text_of(module: ModuleType) -> Path | None:
-    """Return the file with the words of a scene; a variant without its own has that of its original.
+    """Return the file with the text of a scene's sheet; a variant without a file has that of its original scene.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def text_of(module: ModuleType) -> Path | None:
 
 
 def read(path: str | os.PathLike[str]) -> SheetText:
-    """Read the words of a sheet.
+    """Read the text of a sheet.
 
     Parameters
     ----------
@@ -174,14 +174,14 @@ def read(path: str | os.PathLike[str]) -> SheetText:
     Returns
     -------
     SheetText
-        Its words, with the sums in them not yet worked out.
+        The text; its sums are not yet worked out.
 
     Raises
     ------
     FileError
-        If it cannot be read.
+        If the file cannot be read.
     ConfigError
-        If it is not TOML, lacks what a sheet needs, or says what a sheet does not know.
+        If the file is not TOML, lacks an entry that a sheet needs, or has an unknown or wrong entry.
 
     Examples
     --------
@@ -210,7 +210,7 @@ _PROBLEMS = {
 
 
 def _problem(error: ValidationError) -> str:
-    """Return what is wrong with the first wrong entry, by name and number: 'notice 2, ask is missing: add it'."""
+    """Return a message on the first wrong entry, with its name and number: 'notice 2, ask is missing: add it'."""
     first = error.errors()[0]
     place = ", ".join(str(part) for part in first["loc"])
     place = re.sub(r", (\d+)", lambda n: f" {int(n[1]) + 1}", place)

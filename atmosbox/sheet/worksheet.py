@@ -1,4 +1,4 @@
-"""From the words of a sheet and its runs to its text, in Markdown, by the template ``sheet.md.jinja``."""
+"""From the text and the runs of a sheet to its Markdown, by the template ``sheet.md.jinja``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from atmosbox.version import __version__
 __all__ = ["Worksheet", "worksheet"]
 
 _COMMAND = "`--"
-"""What only those can do who type commands begins so."""
+"""A question that contains this needs commands."""
 _KNOBS = {
     "ask": "Begin A anew, and turn a knob above its graphs while it plays. Write down first what each graph will do.",
     "answer": "",
@@ -46,17 +46,17 @@ class Worksheet:
     Parameters
     ----------
     scene, title
-        What it is about.
+        Name and title of the scene.
     about
         The line below the title: number of molecules, seed, engine.
     text
-        All of it, as Markdown.
+        The whole sheet as Markdown.
     answers
-        Whether it is the lecturer's.
+        Whether it has the answers, for the lecturer.
     disagreements
-        What of its runs disagrees with theory, a sentence each.
+        A sentence for each headline of a run that disagrees with theory.
     runs
-        Its runs, of which a sheet for pages needs a page each.
+        Its runs; a sheet for pages needs a page for each.
     lab
         Whether it is a sheet for pages.
     """
@@ -87,27 +87,27 @@ def worksheet(
     scene
         A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
     settings
-        What all its runs have in common, as for `atmosbox.run`.
+        The settings that all its runs share, as for `atmosbox.run`.
     engine
-        What lets time pass in them.
+        The engine of its runs, as for `atmosbox.run`.
     answers
-        Whether its runs are made and its answers given. A scene whose sheet names no rows of the table is run once for
-        the blank sheet, too: only a run tells which numbers it reports.
+        Whether the runs are made and the answers given. A scene whose sheet names no rows of the table is run once even
+        without answers, because only a run tells which numbers it reports.
     lab
-        Whether the sheet is done with a page for each run, see `atmosbox.lab`: it names buttons in place of commands,
-        and asks for what is read off graphs in place of what a run reports.
+        Whether the sheet is done with a page for each run (see `atmosbox.lab`). It then names buttons in place of
+        commands, and asks for values that are read off graphs in place of headline numbers.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a short text on the present step.
 
     Returns
     -------
     Worksheet
-        What `save` takes.
+        The sheet, which `save` writes to a file.
 
     Raises
     ------
     AtmosboxError
-        If the scene, a setting or the words of its sheet are refused, or a run fails.
+        If the scene, a setting or the text of the sheet is refused, or a run fails.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def worksheet(
     changes = [Change(**alone.all(each.model_dump(), f"change {n}")) for n, each in enumerate(words.change, 1)]
     runs = trials(first, changes)
     if path != WORDS:
-        _Filling(path, runs).sheet(words)  # a slip is refused before a run is spent on it
+        _Filling(path, runs).sheet(words)  # a mistake is refused before time is spent on a run
     if answers:
         runs = execute(runs, progress)
     elif not words.row and not lab:
@@ -131,34 +131,34 @@ def worksheet(
 
 
 class _Filling:
-    """Works out the sums in the words of a sheet.
+    """Works out the sums in the text of a sheet.
 
     Parameters
     ----------
     path
-        The file of the words, for refusals.
+        The file of the text, for error messages.
     runs
         The runs of the sheet.
     answers
         Whether answers are given.
     differs
-        Whether they are not those that the words were written for, so that a sum of an answer may find no number.
+        Whether the settings are not those for which the text was written, so that a sum in an answer may fail.
     """
 
     def __init__(self, path: Path, runs: Sequence[Trial], *, answers: bool = False, differs: bool = False) -> None:
         self.path, self.answers, self.differs = path, answers, differs
         scene: dict[str, Facts] = {"scene": AnyScene(runs)} if path == WORDS else {}
         self.after = {run.letter: run for run in runs} | scene
-        # what is asked, and what is said beforehand, may not know what a run finds
+        # questions and all other texts except answers may not use results of the runs
         self.before = {run.letter: Trial(run.letter, run.title, run.prepared) for run in runs} | scene
 
     def sheet(self, words: SheetText) -> dict[str, Any]:
-        """Return all words of a sheet."""
+        """Return the whole text of a sheet, with its sums worked out."""
         content = words.model_dump(by_alias=True, exclude={"change"})
         return {key: self.all(value, key) for key, value in content.items()}
 
     def all(self, value: Any, place: str) -> Any:
-        """Return an entry with all sums in it worked out; a refusal says where it stands."""
+        """Return an entry with all sums in it worked out; an error message names the place of the entry."""
         match value:
             case dict():
                 return {key: self.all(each, f"{place}, {key}") for key, each in value.items()}
@@ -178,7 +178,7 @@ class _Filling:
 
 
 def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool, lab: bool) -> Worksheet:
-    """Return the sheet."""
+    """Return the sheet as Markdown, with what belongs to it."""
     first = runs[0].prepared
     differs = bool(first.settings.changed().keys() - {"seed"}) or bool(first.unusual_engine)
     content = _Filling(path, runs, answers=answers, differs=differs).sheet(words)
@@ -225,7 +225,7 @@ def _written(path: Path, words: SheetText, runs: Sequence[Trial], answers: bool,
 
 
 def _about(first: runner.Prepared, answers: bool) -> str:
-    """Return number of molecules, seed and engine."""
+    """Return the line below the title: number of molecules, seed and engine."""
     molecules = getattr(first.settings, "molecules", None)
     parts = [] if molecules is None else [f"N = {molecules}"]
     parts.append(f"seed {first.settings.seed}")
@@ -234,7 +234,7 @@ def _about(first: runner.Prepared, answers: bool) -> str:
 
 
 def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
-    """Return what a run says of a quantity: its letter, measurement, theory and misfit; to be filled in by students."""
+    """Return the line of a run for a quantity: letter, measurement, theory, misfit; without answers to be filled in."""
     if not answers:
         return run.letter, "±", "", ""
     if name not in run.headlines:
@@ -247,7 +247,7 @@ def _line(run: Trial, name: str, answers: bool) -> tuple[str, str, str, str]:
 
 
 def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
-    """Return why a number of the table may be off, where it is by more than chance."""
+    """Return sentences on numbers of the table whose misfit is more than chance, with the reason given by the scene."""
     excuses: dict[str, list[str]] = {}
     for run in runs:
         for each in run.headlines.values():
