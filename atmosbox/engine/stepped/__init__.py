@@ -1,12 +1,12 @@
-"""The time-stepped engine: all move, then those that overlap collide.
+"""The time-stepped engine: all molecules move, then those that overlap collide.
 
-`window`           eight neighbours are compared at once
-`neighbourhood`    which molecules overlap
+`window`           a test of eight neighbours at once
+`neighbourhood`    the search for molecules that overlap
 `filing`           molecules sorted by cell
-`gridding`         how the box is cut into cells
+`gridding`         the division of the box into cells
 `flight`           a step of free flight
-`bounce`           a step of those that come near walls
+`bounce`           a step of molecules that come near walls
 `stepped`          one time step
-`stepped_start`    what a start in time steps must be
+`stepped_start`    checks of the start: time step and overlaps
 `stepped_parcel`   the box, advanced in time steps
 """

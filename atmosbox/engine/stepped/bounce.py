@@ -1,20 +1,20 @@
-r"""A step of a molecule that comes near walls: from hit to hit.
+r"""A step of a molecule that comes near walls: it flies from hit to hit.
 
-A heat bath emits a molecule at the moment of the hit, and it flies for the rest of the step; one that was to wait
-for the next step would leave the gas too hot. The piston, too, is met where it is at that moment. What a smooth
-wall at rest does is a choice, because simple programs choose differently:
+A heat bath emits a molecule at the moment of the hit, and it flies for the rest of the step; if it waited
+for the next step, the gas would be too hot. A hit on the piston also happens where the piston is at that moment. The
+rule for a smooth wall at rest can be chosen, because simple programs have different rules:
 
 ``MIRROR``
-    turns the molecule round at the moment of the hit, as a wall does.
+    reverses the velocity at the moment of the hit, as a wall does.
 ``FOLD``
-    lets it fly and then mirrors its place and velocity. Without gravity that is the same; with it, the floor lifts
-    what it mirrors and so makes energy, :math:`m g^2 \Delta t / 2` per molecule and unit time.
+    lets the molecule fly on and then mirrors its position and velocity. Without gravity that is the same; with it, the
+    floor lifts the molecules that it mirrors and so makes energy, :math:`m g^2 \Delta t / 2` per molecule and time.
 ``FLIP``
-    turns its velocity and leaves it beyond the wall, from where it comes back a step later.
+    reverses the velocity and leaves the molecule beyond the wall, from where it comes back a step later.
 ``CLAMP``
-    turns its velocity and puts it on the wall.
+    reverses the velocity and puts the molecule on the wall.
 ``REWIND``
-    turns its velocity and puts it back to where the step began.
+    reverses the velocity and puts the molecule back to its position at the start of the step.
 """
 
 import math
@@ -34,7 +34,7 @@ _BOUNCES = 200
 
 @kernel
 def _next_wall(at, left, gravity, radius, step, gas, modes):
-    """Return when the next wall that turns molecules at the moment of the hit is hit, and which; -1 for none."""
+    """Return when a molecule hits the next wall that acts at the moment of the hit, and which; -1 for none."""
     x, y, z, vx, vy, vz = at
     box, walls = gas.box, gas.walls
     crude = step.rule != MIRROR
@@ -69,7 +69,7 @@ def _next_wall(at, left, gravity, radius, step, gas, modes):
 
 @kernel
 def _book(wall, impulse, gained, tallies, modes):
-    """Tally a hit: the change of momentum along the wall's axis, and the energy gained."""
+    """Tally a hit: the change of momentum along the wall's axis, and the energy gained by the molecule."""
     tallies.hits[wall] += 1
     tallies.count[4] += 1
     tallies.impulse[wall] += impulse if wall & 1 == 0 else -impulse
@@ -81,9 +81,10 @@ def _book(wall, impulse, gained, tallies, modes):
 
 @kernel
 def _end_along(now, before, axis, low, high, turn, step, walls):
-    """Return place and velocity along one axis at the end of the step, and the smooth wall that turned it, or -1.
+    """Return position and velocity along one axis at the end of the step, and the smooth wall that was hit, or -1.
 
-    ``now``, ``before`` are place and velocity, ``turn`` the side of the box and its inverse if it is periodic, else 0.
+    ``now``, ``before`` are pairs of position and velocity, ``turn`` is the side of the box and its inverse, 0 unless
+    the axis is periodic.
     """
     x, v = now
     old_x, old_v = before
@@ -117,14 +118,14 @@ def bounce(p, step, gas, modes):
     Parameters
     ----------
     p
-        Its slot.
+        Slot of the molecule.
     step, gas, modes
-        The step, all that the engine works on, what the scene requires: see `atmosbox.engine.stepped.stepped`.
+        The step, the data of the engine, and the flags of the scene: see `atmosbox.engine.stepped.stepped`.
 
     Returns
     -------
     float
-        The energy that the scheme itself has made [energy]: what the molecule gained beyond what walls gave.
+        Energy made by the scheme itself [energy]: the energy gained by the molecule minus that given by walls.
     """
     state, kinds, box, walls, tallies = gas.state, gas.kinds, gas.box, gas.walls, gas.tallies
     i = np.int64(state.name[p])

@@ -1,7 +1,7 @@
-"""Molecules filed by cell: what those that look for neighbours read.
+"""Molecules sorted by cell, for the search for neighbours.
 
-Every step the molecules are sorted by cell (a stable counting sort): each row of cells along x is then one stretch of
-memory, and three adjacent cells are one short stretch of it. Every thread counts and files a part of the molecules.
+In every step the molecules are sorted by cell (a stable counting sort): then each row of cells along x is one stretch
+of memory, and three adjacent cells are one short stretch of it. Every thread counts and sorts a part of the molecules.
 """
 
 from typing import Any, NamedTuple
@@ -17,12 +17,12 @@ _FAR = 1e18
 
 
 class Grid(NamedTuple):
-    """The cells: how many along each axis, how many per length along x and y [1/length], a molecule's least height.
+    """The cells: their number along each axis, and the cells per length along x and y [1/length].
 
     There are ``number_z`` layers, fewer when the ceiling comes down so low that they would be thinner than
-    ``thinnest`` [length]. ``wraps_*`` tells where the last cell's neighbour is the first; ``simple`` that every
-    periodic axis has cells enough for that. ``reach`` is the distance of two that touch [length], 0 where it differs;
-    ``margin`` the distance from a wall where the largest may touch it [length].
+    ``thinnest`` [length]. ``wraps_*`` tells whether the last cell's neighbour is the first; ``simple`` whether every
+    periodic axis has enough cells for that. ``reach`` is the distance of two that touch [length], 0 if sizes differ;
+    ``margin`` the distance from a wall within which the largest may touch it [length].
     """
 
     number_x: int
@@ -42,9 +42,9 @@ class Grid(NamedTuple):
 class Records(NamedTuple):
     """The molecules in the order of their cells.
 
-    ``x``, ``y``, ``z``, ``radius : (record,)`` in single precision [length] (radius is None where all are equal),
-    ``slot`` where in memory the molecule is, ``cell`` where it stands. Cell c holds the records ``start[c]`` to
-    ``start[c + 1] - 1``; behind the last cell follows a row of empty ones, which stands for rows that do not
+    ``x``, ``y``, ``z``, ``radius : (record,)`` in single precision [length] (radius is None if all are equal),
+    ``slot`` the place of the molecule in memory, ``cell`` its cell. Cell c holds the records ``start[c]`` to
+    ``start[c + 1] - 1``; after the last cell comes a row of empty ones, which is used for rows that do not
     exist. ``histogram : (part, cell)`` counts molecules, one row for each part of them that a thread takes.
     """
 
@@ -59,7 +59,7 @@ class Records(NamedTuple):
 
 
 def new_records(molecules: int, grid: Grid, parts: int, *, mixed: bool) -> Records:
-    """Return room for the records, its end filled with neighbours that are far from everything.
+    """Return memory for the records; its end is filled with neighbours that are far from everything.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def new_records(molecules: int, grid: Grid, parts: int, *, mixed: bool) -> Recor
 
 @kernel
 def count_up(records, cells, number_x, molecules):
-    """Turn the histograms into places: where each cell starts, and in it the share of each part."""
+    """Turn the histograms into indices: where each cell starts, and in it the molecules of each part."""
     place = 0
     for cell in range(cells):
         records.start[cell] = place
@@ -96,9 +96,9 @@ def count_up(records, cells, number_x, molecules):
 
 @kernel
 def file_molecules(state, records, radius, part, first, last):
-    """File the molecules of one part, slots ``first`` to ``last - 1``, into their cells.
+    """Write the molecules of one part, slots ``first`` to ``last - 1``, into the records of their cells.
 
-    ``state`` are the molecules (`atmosbox.engine.stepped.stepped.State`), ``radius`` is that of the records or None.
+    ``state`` are the molecules (`atmosbox.engine.stepped.stepped.State`), ``radius`` the radius of the records or None.
     """
     x = state.position[0]
     y = state.position[1]

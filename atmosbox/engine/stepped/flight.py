@@ -1,17 +1,17 @@
-r"""One step of free flight, for all that meet no wall.
+r"""One step of free flight, for all molecules that meet no wall.
 
 Nearly all molecules meet no wall in a step. They are moved by three loops, one per axis, that a processor runs
-four molecules at a time. The few that come near a wall are left where they are: see `bounce`.
+for four molecules at a time. The few that come near a wall are not moved here: see `bounce`.
 
-How molecules fall is a choice, because simple programs choose differently:
+The rule for the fall in gravity can be chosen, because simple programs have different rules:
 
 ``PARABOLA``
-    as bodies do, :math:`z + v \Delta t - g \Delta t^2 / 2`.
+    the exact parabola, :math:`z + v \Delta t - g \Delta t^2 / 2`.
 ``EULER``
-    with the velocity from before the step, :math:`z + v \Delta t`, which heats by :math:`m g^2 \Delta t / 2` per
+    with the velocity before the step, :math:`z + v \Delta t`, which heats by :math:`m g^2 \Delta t / 2` per
     molecule and unit time.
 ``SEMI_IMPLICIT``
-    with the velocity from after it, :math:`z + (v - g \Delta t) \Delta t`, which cools by as much.
+    with the velocity after the step, :math:`z + (v - g \Delta t) \Delta t`, which cools by the same amount.
 """
 
 import math
@@ -27,15 +27,15 @@ PARABOLA, EULER, SEMI_IMPLICIT = 0, 1, 2
 
 _AWAY = np.int32(-(1 << 28))
 BLOCK = 512
-"""How many molecules are moved together: so many that what is known of them fits into the nearest cache."""
+"""Number of molecules that are moved together; their data fit into the nearest cache."""
 
 
 class Axis(NamedTuple):
     """An axis along which molecules move.
 
-    The side of the box, and its inverse if the axis is periodic, else 0; between ``low`` and ``high`` no wall is near
-    [length]; how many cells there are to a length [1/length], and in all; by how much the number of a cell grows from
-    one to the next; whether the box is periodic at all.
+    The side of the box and its inverse, 0 unless the axis is periodic; ``low`` and ``high``: no wall is near between
+    them [length]; the number of cells per length [1/length], and in all; the step of a cell's number from
+    one cell to the next; whether the box is periodic along any axis.
     """
 
     side: float
@@ -50,7 +50,7 @@ class Axis(NamedTuple):
 
 @kernel
 def _ahead(x, v, dt, fall, axis):
-    """Return where a coordinate is a step later; on a periodic axis back in the box."""
+    """Return a coordinate one step later; on a periodic axis, brought back into the box."""
     x = x + v * dt - fall
     if axis.periodic:
         x = x - axis.side * np.floor(x * axis.inverse)
@@ -60,14 +60,14 @@ def _ahead(x, v, dt, fall, axis):
 
 @kernel
 def _along(at, axis):
-    """Return what a coordinate adds to the number of a cell; a very negative number near a wall."""
+    """Return what a coordinate contributes to the number of a cell; a very negative number near a wall."""
     here = min(np.int32(at * axis.per_length), np.int32(axis.number - 1)) * np.int32(axis.stride)
     return _AWAY if (at < axis.low) | (at > axis.high) else here
 
 
 @kernel
 def _glide(x, v, old, cell, dt, axis):
-    """Move molecules along a level axis, keep where they were, and add the axis to their cells."""
+    """Move molecules along a horizontal axis, store their old coordinates, and add the axis to their cell numbers."""
     for p in range(x.size):
         at = _ahead(x[p], v[p], dt, 0.0, axis)
         old[p] = x[p]
@@ -77,7 +77,7 @@ def _glide(x, v, old, cell, dt, axis):
 
 @kernel
 def _fall(z, v, cell, dt, fall, gain, axis):
-    """Add the upright axis to the cells of molecules, and move along it those that come near no wall at all."""
+    """Add the vertical axis to the cell numbers of molecules, and move along it those that come near no wall at all."""
     for p in range(z.size):
         at = _ahead(z[p], v[p], dt, fall, axis)
         cell[p] += _along(at, axis)
@@ -94,21 +94,21 @@ def drift(part, first, last, step, layers, gas, modes):
     Parameters
     ----------
     part, first, last
-        The part, and its slots ``first`` to ``last - 1``. Its row of the histogram is filled with how many will stand
-        in each cell, without those that come near a wall.
+        The part, and its slots ``first`` to ``last - 1``. Its row of the histogram is filled with the number of
+        molecules in each cell after the step, without those that come near a wall.
     step
         The step: see `atmosbox.engine.stepped.stepped.Step`.
     layers
         Number of layers of cells now.
     gas, modes
-        All that the engine works on: see `atmosbox.engine.stepped.stepped.Filed`; what the scene requires. Of the
-        molecules ``cell`` is filled with the cell that each will be in, a negative number for one that comes near a
-        wall; ``hitting``, from ``first`` on, with those.
+        The data of the engine, see `atmosbox.engine.stepped.stepped.Filed`; the flags of the scene. Of the
+        molecules, ``cell`` is filled with the cell of each after the step, or a negative number if it comes near a
+        wall; ``hitting``, from ``first`` on, with the slots of the latter.
 
     Returns
     -------
     int
-        How many come near a wall.
+        Number of molecules that come near a wall.
     """
     state, grid, box = gas.state, gas.grid, gas.box
     before, histogram = state.before[part], gas.records.histogram[part]
@@ -117,7 +117,7 @@ def drift(part, first, last, step, layers, gas, modes):
     share = 0.5 if step.motion == PARABOLA else (1.0 if step.motion == SEMI_IMPLICIT else 0.0)
     fall = share * gain * dt
     top = step.ceiling + step.ceiling_velocity * dt
-    # where the ceiling comes down the lowest that it is counts; a parabola may reach it although neither end does
+    # if the ceiling comes down, its lowest height counts; a parabola may reach it although neither of its ends does
     low_top = min(step.ceiling, top) - 0.5 * gain * dt
     near_x = grid.margin if box.inverse_x == 0.0 else -math.inf
     near_y = grid.margin if box.inverse_y == 0.0 else -math.inf

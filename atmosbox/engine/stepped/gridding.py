@@ -1,4 +1,4 @@
-"""How the box is cut into cells for the search of pairs in overlap."""
+"""The division of the box into cells, for the search for overlapping pairs."""
 
 import math
 
@@ -26,38 +26,38 @@ def choose_cells(
     scale_height: float = math.inf,
     equal: bool = True,
 ) -> Grid:
-    """Return cells as wide as the largest molecule or wider, holding one or two where they are most crowded.
+    """Return cells at least as wide as the largest molecule, with one or two molecules each in the densest places.
 
     Parameters
     ----------
     sides
         The three sides of the box [length].
     periodic
-        Which axes are periodic.
+        Whether each axis is periodic.
     diameter : (molecule,)
         Diameters [length].
     planar
         Whether all centres lie in one plane of x and z.
     scale_height
-        In which the density falls to 1/e [length].
+        Height in which the density falls to 1/e [length].
     equal
         Whether all molecules are equal.
 
     Returns
     -------
     Grid
-        The cells; one where molecules have no size.
+        The cells; a single one if molecules have no size.
 
     Raises
     ------
     RefusedError
         If a periodic axis is so short that molecules would meet their own images, or if sizes differ so much
-        that thousands of small molecules stand in every cell.
+        that there would be thousands of small molecules in every cell.
 
     Notes
     -----
-    Measured, a step takes least time with 1.3 to 2 molecules to a cell: with more, three cells often hold more than
-    are looked at together; with fewer, there are more cells than molecules to count.
+    Measured: a step is fastest with 1.3 to 2 molecules to a cell. With more, three cells often hold more than
+    are tested together; with fewer, there are more cells than molecules to count.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def choose_cells(
 
 
 def _width(sides: list[float], molecules: int, share: float) -> float:
-    """Return the width of cells that hold few molecules each where they are densest, and are not too many."""
+    """Return the width of cells that hold few molecules each in the densest places, and are not too many [length]."""
     free = sorted(sides)
     while True:
         space = math.prod(free) * share * _OCCUPANCY / molecules

@@ -1,9 +1,9 @@
-"""Who overlaps whom: a search of half of each molecule's neighbourhood.
+"""Which molecules overlap: a search of half of each molecule's neighbourhood.
 
-Cells are at least as wide as the largest molecule, so that two which overlap stand in the same cell or in
-adjacent ones, and molecules are filed by cell (`filing`). A molecule looks at what follows it in its own row and at
-the four rows that follow its own, above and behind; those that precede it have looked already. It looks at eight at a
-time in each of these rows, in single precision.
+Cells are at least as wide as the largest molecule, so two molecules that overlap are in the same cell or in
+adjacent ones, and molecules are sorted by cell (`filing`). Each molecule is compared with those that follow it in its
+own row and with those in the four rows that follow its own, above and behind; those that precede it have been compared
+already. In each of these rows eight are compared at a time, in single precision.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ __all__ = ["find_pairs"]
 
 @kernel
 def _search_closely(q, where, reach, radius, pairs, found, gas, modes):
-    """Note every later neighbour of record q within reach; return how many pairs there are now.
+    """Store every later neighbour of record q within reach; return the number of pairs stored so far.
 
     ``where`` is its cell along x, y and z, and the number of layers of cells.
     """
@@ -43,7 +43,7 @@ def _search_closely(q, where, reach, radius, pairs, found, gas, modes):
             for turn in range(2):
                 left = max(ix - 1, 0)
                 right = min(ix + 1, grid.number_x - 1)
-                if turn == 1:  # the cell on the far side, where the row goes on round the box
+                if turn == 1:  # the cell on the far side, where a periodic row continues
                     if not grid.wraps_x or (ix > 0 and ix < grid.number_x - 1) or (own and ix == 0):
                         break
                     left = right = 0 if ix > 0 else grid.number_x - 1
@@ -66,7 +66,7 @@ def _search_closely(q, where, reach, radius, pairs, found, gas, modes):
 
 @kernel
 def _row(grid, iy, iz, layers, cells, shift_y, shift_z):
-    """Return where a row of cells begins and by how much the searcher is to be moved to stand before it."""
+    """Return where a row of cells begins, and the shifts along y and z that bring the searcher next to that row."""
     y = np.float32(0.0)
     z = np.float32(0.0)
     if iz == layers:
@@ -84,9 +84,9 @@ def _row(grid, iy, iz, layers, cells, shift_y, shift_z):
 
 @kernel
 def _glance(records, radius, first, at_x, y, z, reach):
-    """Tell who is within reach in five stretches of records; each stretch has its own `LANES` bits of the answer.
+    """Return which records are within reach in five stretches of records, each with its own `LANES` bits of the answer.
 
-    ``first``, ``y``, ``z`` are five numbers each: where a stretch begins, and from where it is looked at.
+    ``first``, ``y``, ``z`` are five numbers each: where a stretch begins, and the shifted coordinates of the searcher.
     """
     xs, ys, zs = records.x, records.y, records.z
     return (
@@ -100,7 +100,7 @@ def _glance(records, radius, first, at_x, y, z, reach):
 
 @kernel
 def find_pairs(part, first, last, layers, slack, radius, gas, modes):
-    """Find all pairs nearer than their mean diameter plus a slack, whose earlier record is in a part of all.
+    """Find all pairs nearer than their mean diameter plus a slack whose earlier record is in a part of the records.
 
     Parameters
     ----------
@@ -110,16 +110,16 @@ def find_pairs(part, first, last, layers, slack, radius, gas, modes):
     layers
         Number of layers of cells now.
     slack
-        By how much single precision may misjudge a distance, more than enough [length].
+        An upper limit of the error of a distance in single precision [length].
     radius
-        That of the records; None where all are equal.
+        Radius of the records; None if all are equal.
     gas, modes
-        All that the engine works on: see `atmosbox.engine.stepped.stepped.Filed`; what the scene requires.
+        The data of the engine, see `atmosbox.engine.stepped.stepped.Filed`; the flags of the scene.
 
     Returns
     -------
     int
-        How many pairs there are; more than ``pairs`` holds if it is too short.
+        Number of pairs; larger than ``pairs`` if that array is too short.
     """
     records, grid, box, pairs = gas.records, gas.grid, gas.box, gas.pairs[part]
     found = 0
@@ -194,7 +194,7 @@ def find_pairs(part, first, last, layers, slack, radius, gas, modes):
                 beyond += LANES
                 if beyond >= longest:
                     break
-                # beyond the end of a row, and of all rows, whatever is seen does not count
+                # results beyond the end of a row, and of all rows, are ignored
                 begin_a, begin_b, begin_c = min(a + beyond, end), min(b + beyond, end), min(c + beyond, end)
                 further = (begin_a, begin_b, begin_c, min(d + beyond, end), min(e + beyond, end))
                 bits = _glance(records, radius, further, at_x, from_y, from_z, reach)

@@ -1,28 +1,29 @@
-r"""The time-stepped engine: all move, then those that overlap and approach collide.
+r"""The time-stepped engine: all molecules move, then those that overlap and approach collide.
 
-This is how simple programs do it. A step of length :math:`\Delta t` has three parts: every molecule moves as if alone
+Simple programs work in this way. A step of length :math:`\Delta t` has three parts: every molecule moves as if alone
 (`flight`, `bounce`); the pairs that now overlap are found (`neighbourhood`); every pair that overlaps and still
-approaches gets the impulse of a collision (`pair`). Each collision comes late by up to one step, deeper than it
-should, and a pair that grazes may part before it is seen. With :math:`\delta = \Delta t \sqrt{kT/m} / \sigma` that
-makes, in a dilute gas,
+approaches gets the impulse of a collision (`pair`). Each collision comes late by up to one step, so the pair is nearer
+than it should be, and a pair that grazes may move apart before it is found. With
+:math:`\delta = \Delta t \sqrt{kT/m} / \sigma` this makes, in a dilute gas,
 
 .. math:: \frac{Z - 1}{Z_{exact} - 1} = 1 - \frac{4}{\sqrt{\pi}} \delta, \qquad
           \frac{\nu}{\nu_{exact}} = 1 - \frac{8}{3} \delta^2
 
-(in a plane :math:`3/\sqrt{\pi}` and 1). In a denser one both are low by another :math:`6.6\, \phi\, \delta` (in a plane
-2.8), because molecules that overlap have more space. Energy is kept to rounding by each impulse, however
-wrong the rest: it says nothing about accuracy.
+(in a plane :math:`3/\sqrt{\pi}` and 1). In a denser gas both are low by another :math:`6.6\, \phi\, \delta` (in a plane
+2.8), because molecules that overlap have more free space. Each impulse conserves energy to rounding, however
+large the other errors: so conservation of energy says nothing about accuracy.
 
-The virial takes r as it is, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls aside, between
-collisions the sum of r . p changes by twice the kinetic energy alone, and at each by what the virial counts.
+The virial is computed with the actual r, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls
+aside, between collisions the sum of r . p changes by twice the kinetic energy alone, and at each collision by the
+amount that the virial counts.
 
-Rotation shares the energy of a contact as in the exact engine, but for one thing. Fast pairs are seen too seldom; so an
-outcome is taken with the chance that its reverse would be seen, which keeps detailed balance, and rotation and
-translation at one temperature, for any step.
+Rotation takes part in the energy of a contact as in the exact engine, with one difference. Fast pairs are found too
+rarely; so an outcome is accepted with the probability that its reverse would be found. This keeps detailed balance, and
+rotation and translation at one temperature, for any step.
 
 Notes
 -----
-The rare things, hits on walls and collisions, are done one after the other in the order of the molecules in
+The rare events, hits on walls and collisions, are computed one after the other in the order of the molecules in
 memory, whichever thread found them; so a run has the same bits for any number of threads.
 """
 
@@ -49,11 +50,11 @@ _SINGLE = 2.0**-23
 
 
 class State(NamedTuple):
-    """The molecules, in an order of their own: neighbours are kept near each other in memory.
+    """The molecules, in an order that keeps neighbours near each other in memory.
 
-    ``position``, ``velocity : (axis, slot)`` [length, length/time], ``name : (slot,)`` which molecule it is,
-    ``size : (slot,)`` its radius [length], ``cell : (slot,)`` where it stands, ``hitting : (slot,)`` room for those
-    that come near a wall, ``before : (part, 2, BLOCK)`` for where some of them were (`flight`).
+    ``position``, ``velocity : (axis, slot)`` [length, length/time], ``name : (slot,)`` index of the molecule,
+    ``size : (slot,)`` its radius [length], ``cell : (slot,)`` its cell, ``hitting : (slot,)`` memory for the slots of
+    those that come near a wall, ``before : (part, 2, BLOCK)`` for old coordinates of some of them (`flight`).
     """
 
     position: Any
@@ -66,9 +67,9 @@ class State(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One step: when it begins and how long it is [time], the ceiling then [length] and its velocity, the rules.
+    """One step: its start and its length [time], height [length] and velocity of the ceiling then, and the rules.
 
-    ``motion`` is how molecules fall (`flight`), ``rule`` what smooth walls do (`bounce`).
+    ``motion`` is the rule for the fall (`flight`), ``rule`` the rule for smooth walls (`bounce`).
     """
 
     time: float
@@ -80,9 +81,9 @@ class Step(NamedTuple):
 
 
 class Filed(NamedTuple):
-    """The molecules filed by cell.
+    """The molecules sorted by cell.
 
-    ``pairs : (part, pair, 2)`` are slots of those that overlap, in the order of the records.
+    ``pairs : (part, pair, 2)`` are the slots of overlapping pairs, in the order of the records.
     """
 
     state: State
@@ -93,11 +94,11 @@ class Filed(NamedTuple):
 
 
 class SteppedGas(NamedTuple):
-    """What is done to molecules one after the other works on this; the types say what is what.
+    """The data for everything that is computed for one molecule after the other; see the types of its parts.
 
-    ``numbers : (part, 2)`` how many pairs were found, and how many molecules came near a wall; ``seen : (1,)`` counts
-    pairs that overlap and part; ``made : (1,)`` is the energy that the scheme makes of itself [energy]; ``total_mass``
-    that of all molecules [mass]; ``pairs`` see `Filed`.
+    ``numbers : (part, 2)``: number of pairs found, and of molecules that came near a wall; ``seen : (1,)``: number of
+    overlapping pairs that were moving apart; ``made : (1,)``: energy made by the scheme itself [energy];
+    ``total_mass``: mass of all molecules [mass]; ``pairs``: see `Filed`.
     """
 
     state: State
@@ -113,10 +114,10 @@ class SteppedGas(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """How steps are made: their length [time], how molecules fall, what smooth walls do, who collides.
+    """The rules of a run: the length of a step [time], fall, smooth walls, and which pairs collide.
 
-    ``motion`` is how molecules fall (`flight`), ``rule`` what smooth walls do (`bounce`), ``approaching`` whether pairs
-    that part are left alone.
+    ``motion`` is the rule for the fall (`flight`), ``rule`` the rule for smooth walls (`bounce`), ``approaching``
+    whether pairs that move apart are left unchanged.
     """
 
     step_length: float
@@ -126,15 +127,15 @@ class Rules(NamedTuple):
 
 
 _MOST_TRIES = 1000
-"""How often an outcome is drawn anew at most; only grazing pairs come near it."""
+"""Largest number of draws of an outcome; only grazing pairs come near it."""
 
 
 @kernel
 def _meet(p, q, gas, rules, modes):
-    """Let two molecules collide that overlap and approach; count those that overlap and part.
+    """Resolve the collision of two molecules that overlap and approach; count those that overlap and move apart.
 
-    A pair is seen if a step ends on the first half of its way through the overlap: with the chance of that half over
-    its way in a step, if that is longer. With that chance for its reverse, an outcome with another speed is taken.
+    A pair is found if a step ends on the first half of its path through the overlap: with the probability (that half) /
+    (path in a step), at most 1. An outcome with another speed is accepted with this probability for its reverse.
     """
     state, kinds, box, tallies, seen = gas.state, gas.kinds, gas.box, gas.tallies, gas.seen
     x = state.position
@@ -189,20 +190,21 @@ def _meet(p, q, gas, rules, modes):
 
 @functools.cache
 def specialise(modes: Modes, parallel: bool) -> Any:
-    """Return the kernel that marches, for one set of modes, on one thread or on several.
+    """Return the kernel that advances by time steps, for one set of modes, on one thread or on several.
 
-    It is called as ``march(state, records, radius, grid, box, gas, rules, span)``: the radius of the records once more,
-    by whose type None the compiler knows that all are equal; ``span`` is which step is the first, how many there are,
-    and a phase. It returns how many steps are complete, and stops early if ``gas.pairs`` is too short;
-    ``gas.numbers[:, 0]`` then tells how long it should be, and the step that has begun is completed when it is called
-    again with phase 1. With phase 2 nothing moves and nothing collides: only the pairs are found.
+    It is called as ``march(state, records, radius, grid, box, gas, rules, span)``. ``radius`` is that of the records,
+    passed separately because the compiler knows from its type None that all are equal; ``span`` is the number of the
+    first step, the number of steps, and a phase. The kernel returns the number of complete steps, and stops early if
+    ``gas.pairs`` is too short; ``gas.numbers[:, 0]`` then tells the length that is needed, and the step that has begun
+    is completed when the kernel is called again with phase 1. With phase 2 nothing moves and nothing collides: only
+    the pairs are found.
 
-    A parallel loop knows a tuple only if it is an argument, and not part of another: they are put together inside.
+    A parallel loop can use a tuple only if it is an argument, not part of another: so tuples are put together inside.
     """
 
     @kernel(entry=True, parallel=parallel)
     def march(state, records, radius, grid, box, gas, rules, span):
-        """Advance by so many steps: see `specialise`."""
+        """Advance by a number of steps: see `specialise`."""
         kinds, walls, pairs, numbers, made = gas.kinds, gas.walls, gas.pairs, gas.numbers, gas.made
         step_length, motion, rule = rules.step_length, rules.motion, rules.rule
         first, steps, phase = span
@@ -253,7 +255,7 @@ def specialise(modes: Modes, parallel: bool) -> Any:
                             state, records, radius, part, molecules * part // parts, molecules * (part + 1) // parts
                         )
             if modes.contacts:
-                # single precision misplaces each coordinate by half a unit in its last digit
+                # single precision rounds each coordinate by up to half a unit in its last digit
                 slack = 4.0 * _SINGLE * max(box.length_x, box.length_y, top)
                 for part in prange(parts):
                     low, high = molecules * part // parts, molecules * (part + 1) // parts

@@ -1,4 +1,4 @@
-"""The parcel of air advanced in time steps, as simple programs do it: all move, those that overlap collide."""
+"""The parcel of air advanced in time steps, as simple programs do it: all move, then those that overlap collide."""
 
 import math
 from typing import Any, ClassVar, Unpack
@@ -32,40 +32,40 @@ _GO, _GO_ON, _LOOK = 0, 1, 2
 class SteppedParcel(MarchingParcel):
     r"""A set of molecules with its box, advanced step by step: those that overlap and approach collide.
 
-    What it is given, and what it tells, is described at `Parcel`; what it gets wrong, at `stepped`.
+    Its other parameters, and its properties, are described at `Parcel`; the errors of the scheme, at `stepped`.
 
     Parameters
     ----------
     position, velocity, **box
         See `Parcel`.
     delta
-        Length of a step, as the part of the smallest diameter that the thermal speed of the lightest molecule
-        crosses in it, :math:`\Delta t \sqrt{kT/m} / \sigma`, at the warmest that molecules and walls are at the start.
+        Length of a step, as the fraction of the smallest diameter that the thermal speed of the lightest molecule
+        crosses in it, :math:`\Delta t \sqrt{kT/m} / \sigma`, at the highest of the temperatures of molecules and walls.
     dt
-        Length of a step [time], instead of ``delta``; where all diameters are 0 there is no other way.
+        Length of a step [time], instead of ``delta``; it is needed if all diameters are 0.
     motion
-        How molecules fall: "parabola" (exact), "euler" or "semi-implicit": see `flight`.
+        Rule for the fall: "parabola" (exact), "euler" or "semi-implicit": see `flight`.
     smooth_walls
-        What specular walls at rest do: "mirror" (exact), "fold", "flip", "clamp" or "rewind": see `bounce`.
+        Rule for specular walls at rest: "mirror" (exact), "fold", "flip", "clamp" or "rewind": see `bounce`.
     approaching
-        Whether only pairs that approach collide. Without that test, a classic mistake, a pair still in overlap a step
-        later collides once more and is drawn together again.
+        Whether only pairs that approach collide. Without that test, a common mistake, a pair that still overlaps a step
+        later collides once more, so that its molecules approach again.
     threads
-        On how many threads; the result is the same for any number, bit by bit.
+        Number of threads; the result has the same bits for any number.
 
     Raises
     ------
     RefusedError
-        As `Parcel` does; or if the step is so long that a molecule would cross the box in it.
+        As `Parcel`; or if the step is so long that a molecule would cross the box in it.
 
     Warns
     -----
     CoarseStepWarning
-        If the fastest molecule crosses more than a tenth of the smallest radius in a step.
+        If the fastest molecule moves by more than a tenth of the smallest radius in a step.
 
     Examples
     --------
-    Two molecules that approach each other along x bounce once and keep their energy:
+    Two molecules that approach each other along x collide once and keep their energy:
 
     >>> pair = SteppedParcel([[1, 2, 2], [3, 2, 2]], [[1, 0, 0], [-1, 0, 0]], length=(4, 4, 4), delta=0.01)
     >>> pair.advance(1.0)
@@ -96,38 +96,38 @@ class SteppedParcel(MarchingParcel):
         self._threads = whole(threads, "threads", least=1)
         super().__init__(position, velocity, **box)
 
-    # ------------------------------------------------------------------ what it tells
+    # ------------------------------------------------------------------ the state
 
     @property
     def delta(self) -> float:
-        """Length of a step as the part of a diameter that a molecule crosses in it; 0 where diameters are 0."""
+        """Length of a step as the fraction of a diameter that a molecule crosses in it; 0 if diameters are 0."""
         return self._time_step * self._speed / self._smallest if self._smallest > 0.0 else 0.0
 
     @property
     def receding(self) -> int:
-        """How many times a pair was found that overlaps and parts.
+        """Number of times that an overlapping pair was found moving apart.
 
-        One that collided has parted a step later, so in a dilute gas these are collisions missed: three in four of
-        them are seen this way, when the pair has passed the place where it is nearest but is still in overlap.
+        A pair that collided has moved out of overlap a step later. So in a dilute gas these are missed collisions:
+        three in four of those are found in this way, when the pair has passed its nearest distance but still overlaps.
         """
         return int(self._seen[0])
 
     @property
     def numerical_heat(self) -> float:
-        """Energy that the scheme itself has made since the start [energy], negative where it has lost some.
+        """Energy that the scheme itself has made since the start [energy], negative if it has lost some.
 
-        With gravity the Euler motions make some in every step, and smooth walls that fold or clamp at every hit.
+        With gravity the Euler rules make energy in every step, and smooth walls that fold or clamp at every hit.
         The exact motion between walls that mirror, flip or rewind makes none, and no collision ever does.
         """
         return float(self._made[0])
 
     def memory(self) -> int:
-        """Return the bytes that molecules and all that finds their collisions take."""
+        """Return the memory of the molecules and of the search for their collisions [bytes]."""
         held = (*self._state, *self._records, *self._kinds, self._pairs)
         return sum(int(array.nbytes) for array in held if array is not None)
 
     def snapshot(self) -> Snapshot:
-        """Return all molecules as they are now; nothing in the box changes by being looked at."""
+        """Return all molecules as they are now; the box does not change."""
         position = np.empty((self.number, 3))
         velocity = np.empty((self.number, 3))
         position[self._state.name] = self._state.position.T
@@ -135,7 +135,7 @@ class SteppedParcel(MarchingParcel):
         spin = np.array(self._kinds.rotational_energy) if self._rotates else np.zeros(self.number)
         return Snapshot(self.time, position, velocity, spin)
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ how steps are made
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         for axis in range(3):
@@ -208,7 +208,7 @@ class SteppedParcel(MarchingParcel):
             raise RefusedError("molecules without size have no delta: give the length of a step as dt")
         else:
             step = self._delta * (self._smallest / self._speed if self._speed > 0.0 else self._spread)
-            # however large the molecules, a step is shorter than their hops on the floor
+            # however large the molecules are, a step is shorter than the time of their hops on the floor
             self._time_step = min(step, 0.5 * self._speed / self._gravity) if self._gravity > 0.0 else step
         if not self._number:
             return
@@ -220,7 +220,7 @@ class SteppedParcel(MarchingParcel):
         judge_step(self._time_step, speed, room, 0.5 * self._smallest)
 
     def _renew(self) -> None:
-        self._box = self._box._replace(gravity=self._gravity)  # every march is told how long a step is
+        self._box = self._box._replace(gravity=self._gravity)  # the length of a step is passed with every march
         self._modes = self._modes._replace(gravity=self._gravity > 0.0)
         self._find_kernels()
 
@@ -246,7 +246,7 @@ class SteppedParcel(MarchingParcel):
             raise StalledError(why_crushed(self))
 
     def _advance(self, first: int, steps: int, phase: int) -> None:
-        """Call the kernel, again and again with more room for pairs if it runs out of it."""
+        """Call the kernel, again with more memory for pairs whenever that is too short."""
         if self._threads > 1:
             use_threads(self._threads)
         rules = Rules(self._time_step, self._motion, self._rule, self._approaching)
@@ -268,7 +268,7 @@ class SteppedParcel(MarchingParcel):
             self._pairs = np.zeros((self._threads, room, 2), np.uint32)
 
     def _reorder(self) -> None:
-        """Move neighbours next to each other in memory: the order of the records becomes that of the molecules."""
+        """Put neighbours next to each other in memory: molecules take the order of the records."""
         order = self._records.slot
         self._state = self._state._replace(
             position=np.take(self._state.position, order, axis=1),
@@ -279,7 +279,7 @@ class SteppedParcel(MarchingParcel):
 
 
 def _choice(value: Any, choices: dict[str, int], name: str) -> int:
-    """Return the number of a choice, or refuse."""
+    """Return the number of a named choice, or refuse the name."""
     if not isinstance(value, str) or value not in choices:
         raise RefusedError(f"{name} = {shown(value)} is unknown: give one of {', '.join(choices)}")
     return choices[value]

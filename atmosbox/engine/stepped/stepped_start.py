@@ -1,4 +1,4 @@
-"""What a start in time steps must be: no step too long for the box, and no molecules that overlap."""
+"""Checks of a start in time steps: the step must not be too long for the box, and no molecules may overlap."""
 
 import math
 import warnings
@@ -23,11 +23,11 @@ def judge_step(step: float, speed: Array, room: Array, radius: float) -> None:
     step
         Length of the step [time].
     speed : (axis,)
-        Of the fastest molecule along each axis [length/time].
-    room : (axis,)
-        How far a centre can go along each axis [length].
+        Speed of the fastest molecule along each axis [length/time].
+    room
+        How far a centre can move along each axis [length].
     radius
-        Of the smallest molecule [length]; 0 where they have no size.
+        Radius of the smallest molecule [length]; 0 if molecules have no size.
 
     Raises
     ------
@@ -74,18 +74,18 @@ def judge_overlap(pairs: Array, position: Array, diameter: Array, sides: Array, 
     Parameters
     ----------
     pairs : (pair, 2)
-        Which molecules are near each other.
+        Pairs of molecules that are near each other.
     position : (axis, molecule)
         Centres [length].
     diameter : (molecule,)
         Diameters [length].
     sides, periodic
-        The sides of the box [length], and which axes are periodic.
+        The sides of the box [length], and whether each axis is periodic.
 
     Raises
     ------
     RefusedError
-        If a pair overlaps, naming the deepest.
+        If a pair overlaps; the message names the deepest overlap.
 
     Examples
     --------

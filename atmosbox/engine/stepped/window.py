@@ -1,7 +1,7 @@
-"""A glance at eight neighbours at once, which tells who of them is within reach.
+"""A test of eight neighbours at once: which of them are within reach.
 
 Most molecules have no neighbour within reach, and to find that out is most of the work of a step. The processor
-compares eight single-precision numbers in one instruction; what it finds is a hint, which exact arithmetic then judges.
+compares eight single-precision numbers in one instruction. The result is only a hint: exact arithmetic then decides.
 """
 
 import llvmlite.ir as ir
@@ -14,22 +14,22 @@ from atmosbox.engine.core.jit import COMPILED
 __all__ = ["LANES", "within"]
 
 LANES = 8
-"""How many neighbours are looked at together; arrays must be readable so far beyond their last molecule."""
+"""Number of neighbours tested together; arrays must be readable that far beyond their last molecule."""
 
 if COMPILED:
 
     @intrinsic
     def within(typing_context, x, y, z, radius, first, at_x, at_y, at_z, reach):
-        """Tell which of the records ``first`` to ``first + LANES - 1`` are within reach of a point.
+        """Return which of the records ``first`` to ``first + LANES - 1`` are within reach of a point.
 
         Parameters
         ----------
         x, y, z : (record,)
-            Where the neighbours stand, float32 [length].
+            Coordinates of the neighbours, float32 [length].
         radius : (record,)
-            What each adds to the reach, float32 [length]; None where that is the same for all.
+            What each neighbour adds to the reach, float32 [length]; None if that is the same for all.
         first
-            The first record looked at.
+            The first record tested.
         at_x, at_y, at_z, reach
             The point and the reach [length].
 
@@ -73,7 +73,7 @@ if COMPILED:
 else:
 
     def within(x, y, z, radius, first, at_x, at_y, at_z, reach):
-        """Tell which of ``LANES`` records are within reach of a point."""
+        """Return which of ``LANES`` records are within reach of a point."""
         some = slice(int(first), int(first) + LANES)
         total = reach if radius is None else reach + radius[some]
         squared = (x[some] - at_x) ** 2 + (y[some] - at_y) ** 2 + (z[some] - at_z) ** 2
