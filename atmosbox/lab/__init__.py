@@ -1,10 +1,10 @@
 """A scene that runs in a web page: the engine's kernels as WebAssembly, and the page around them.
 
-Read in this order: `kernels` (what is measured and seen; how time passes stands in the engine); `bench`
-(a box as the arrays that they work on; of molecules that attract each other, `well_bench`) and `work` (what is called
-with what); `memory_image` (where it stands in the memory of a module) and `wasm_module` (the modules, which
-``tools/wasm.py`` makes); `theory_table` and `lab_plan` (what the page is told), `lab_start` (other numbers of
-molecules), `lab_file`.
+Read in this order: `kernels` (functions that measure and draw; the functions that move molecules are in the engine);
+`bench` (a box as the arrays that the kernels work on; `well_bench` for molecules that attract each other) and `work`
+(the arguments of each kernel); `memory_image` (the layout of a module's memory) and `wasm_module` (the modules, which
+``tools/wasm.py`` makes); `theory_table` and `lab_plan` (data for the page), `lab_start` (other numbers of molecules),
+`lab_file` (the HTML file).
 """
 
 from atmosbox.lab.lab_file import save_lab

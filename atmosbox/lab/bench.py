@@ -1,4 +1,4 @@
-"""A box with all that a page needs beside it, as the arrays that its kernels work on."""
+"""A box with its instruments and picture, as the arrays that the kernels of a page work on."""
 
 from __future__ import annotations
 
@@ -57,19 +57,19 @@ __all__ = ["Bench", "bench", "refuse"]
 _CORNERS = 4
 _SPARE = 1.5
 _LONGER = 4
-"""How many times as long as at the start there is memory for rows of names to become."""
+"""Factor by which the rows of cells can grow, because memory is reserved for that."""
 _INSTRUMENTS = (Air, Clusters, Discs, Layers, Leaving, Lift, Mixing, MoistLift, Nuclei, Speeds, Water)
 _BOXES = (ParcelSet, AttractingParcelSet, MoistParcelSet, DropParcelSet)
 _READINGS = 64
 
 
 class Bench(NamedTuple):
-    """A box at its start, as a page gets it.
+    """A box at its start, as the arrays and settings of a page.
 
-    ``layers`` is the average of the profiles of three quantities, one after the other, ``speeds`` that of the shares of
-    molecules by speed; both are empty in a scene that shows neither. Where molecules attract each other, ``gas`` and
-    ``layout`` are those of `well_bench`, and ``crowd`` is what is kept of drops; else it is 0. ``start`` is how
-    molecules are placed with another seed, if ``seeded``.
+    ``layers`` is the average of the profiles by height, one quantity after the other, and ``speeds`` the average of the
+    shares of molecules by speed; they are empty in a scene that does not show them. If molecules attract each other,
+    ``gas`` and ``layout`` are those of `well_bench`, and ``crowd`` holds the data of the drops; otherwise it is 0.
+    ``start`` says how molecules are placed with another seed, if ``seeded``.
     """
 
     prepared: Prepared
@@ -99,22 +99,22 @@ class Bench(NamedTuple):
 
     @property
     def module(self) -> str:
-        """The name of the module that holds its kernels."""
+        """The name of the module that contains the kernels of this box."""
         return module_name(self.modes, wells=self.attracts)
 
     @property
     def warmed(self) -> tuple[int, int]:
-        """The first wall that a knob warms, and the one behind the last: all, or the sides between floor and piston."""
+        """The range of walls that a knob warms, first and last + 1: all six, or the four sides if there is a piston."""
         return (0, 6) if not self.modes.piston else (0, 4)
 
 
 def refuse(prepared: Prepared, setup: Setup) -> None:
-    """Refuse a box that no module is made for.
+    """Refuse a box for which there is no module.
 
     Raises
     ------
     SettingError
-        With what to use instead.
+        If there is no module for the box; the message says what to use instead.
     """
     parcel: Any = setup.parcel
     unknown = [type(each).__name__ for each in setup.instruments if type(each) not in _INSTRUMENTS]
@@ -134,14 +134,14 @@ def refuse(prepared: Prepared, setup: Setup) -> None:
 
 
 def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -> Bench:
-    """Return the box of a scene as a page gets it.
+    """Return the box of a scene for a page.
 
     Parameters
     ----------
     prepared
         The scene.
     picture
-        Tells what the page shows of a box; without it three molecules are shown, which is enough to compile.
+        Function that returns what the page shows of a box; without it three molecules are shown, enough to compile.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def bench(prepared: Prepared, picture: Callable[[Setup], Stage] | None = None) -
 
 
 def _layout(parcel: Any) -> Layout:
-    """Return how the cells are laid out now, with memory for other cells."""
+    """Return the present layout of the cells, with memory for other layouts."""
     c = parcel._cells
     column = _column(parcel)
     # rows begin as short as in Python, and grow when molecules are placed
@@ -204,7 +204,7 @@ def _layout(parcel: Any) -> Layout:
 
 
 def _column(parcel: Any) -> Any:
-    """Return what decides on the layers of cells of a column, 0 without gravity."""
+    """Return the data from which the layers of cells of a column are chosen; 0 without gravity."""
     if not parcel._modes.gravity:
         return 0
     walls = parcel._walls
@@ -219,7 +219,7 @@ def _column(parcel: Any) -> Any:
 
 
 def _gas(parcel: Any, layout: Layout) -> Gas:
-    """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if they move."""
+    """Return the gas before its molecules are placed, with memory for longer rows, and for other cells if needed."""
     cells, number, copies = parcel._cells, parcel._molecules.size, parcel._cells.copies
     many = cells.number_x * cells.number_y * cells.number_z
     most = layout.edge.shape[1] - 1
@@ -249,21 +249,21 @@ def _gas(parcel: Any, layout: Layout) -> Gas:
 
 
 def _larger(table: Any, shape: tuple[int, ...], rest: float) -> Any:
-    """Return a table in memory of another shape; the rest of it says nothing."""
+    """Return a table copied into a larger array, which is filled up with `rest`."""
     made = np.full(shape, rest)
     made[tuple(slice(0, number) for number in table.shape)] = table
     return made
 
 
 def _ascent(parcel: Any) -> Any:
-    """Return what turns the piston, with memory for a course that is changed by hand; 0 for a box without."""
+    """Return the data that control the piston, with memory for a course changed by hand; 0 for a box without ascent."""
     if not parcel._ascends:
         return 0
     (ascent,) = parcel._ascent()
     lift = ascent.lift
     time, moment = np.full(_CORNERS, math.inf), np.full(_CORNERS, lift.course_moment[-1])
     time[: lift.course_time.size], moment[: lift.course_time.size] = lift.course_time, lift.course_moment
-    # the energy of the start is in the book
+    # the energy at the start is kept in `Book`
     return ascent._replace(lift=lift._replace(course_time=time, course_moment=moment), start_energy=0.0)
 
 
@@ -272,7 +272,7 @@ def _of(setup: Setup, kind: type) -> Any:
 
 
 def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
-    """Return what the instruments keep at their start, with room for some more readings."""
+    """Return the data of the instruments at their start, with memory for further readings."""
     air, speeds, layers, discs = (_of(setup, kind) for kind in (Air, Speeds, Layers, Discs))
     edges = np.zeros(1) if speeds is None else speeds._edges
     number = 0 if layers is None else layers._number
@@ -300,7 +300,7 @@ def _gauges(prepared: Prepared, setup: Setup) -> Gauges:
 
 
 def _mixture(setup: Setup) -> Mixture:
-    """Return two gases that mix, and nothing where none do."""
+    """Return the data of two gases that mix; empty arrays in a scene without them."""
     instrument, parcel = _of(setup, Mixing), setup.parcel
     moments = [] if instrument is None else list(instrument._moments.values())
     bins = 0 if instrument is None else instrument._bins
@@ -322,10 +322,10 @@ def _mixture(setup: Setup) -> Mixture:
 
 
 def _averages(setup: Setup) -> tuple[Average, Average]:
-    """Return the averages of the shares by speed, and of the profiles.
+    """Return the averages of the shares by speed, and of the profiles by height.
 
-    A block of the latter is twice as long as the energy of the column remembers, so that blocks know little of each
-    other.
+    A block of the profiles is twice as long as the correlation time of the column's energy, so that blocks are nearly
+    independent.
     """
     speeds, layers = _of(setup, Speeds), _of(setup, Layers)
     shares = 0 if speeds is None else speeds._edges.size - 1

@@ -1,4 +1,4 @@
-"""The page of a scene that runs in it, as a file, which is there whole or not at all."""
+"""The page in which a scene runs, as an HTML file, which is written whole or not at all."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from atmosbox.simulation.preparation import Prepared
 __all__ = ["lab_text", "save_lab"]
 
 _MOST_BYTES = 310_000
-"""How much a page carries of its module and of boxes at their start, compressed: with it it stays below 1.5 MB."""
+"""Largest size of the module and the starts of a page, compressed [bytes]: the page then stays below 1.5 MB."""
 
 
 def lab_text(
@@ -70,13 +70,13 @@ def save_lab(
     theme : {"auto", "light", "dark"}
         The colours of the page.
     language : {"auto", "en", "de", "es"}
-        Its words.
+        Its language.
     others
-        Whether the page offers other numbers of molecules, too.
+        Whether the page offers other starts too, such as other numbers of molecules.
     force
         Whether a file of that name may be replaced.
     progress
-        Called with the share of the page that is filled and a word on what is being done.
+        Function that is called with the share of the page that is filled and the name of the present step.
 
     Returns
     -------

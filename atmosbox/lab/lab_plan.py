@@ -1,4 +1,4 @@
-"""What a page must know of its engine, as JSON: where everything stands in memory, in which unit, what it means."""
+"""The plan of a page, as JSON: the addresses, units and meanings of the data in the memory of its engine."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ if TYPE_CHECKING:
 __all__ = ["STATE", "lab_plan"]
 
 STATE = ("gas.molecules", "gas.kinds.rotational_energy", "gas.tallies.count", "gas.tallies.heat", "gas.tallies.random")
-"""What makes two boxes the same, to the last bit."""
+"""The arrays that are equal, to the last bit, if two boxes are in the same state."""
 
 _SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _WAY = 401
 _FIGURES = 4
-"""Of a curve that is drawn and not saved: a line on a screen is thicker than what is left out."""
+"""Significant digits of a curve that is drawn and not saved: the rounding is less than the width of a line."""
 _KNOBS = ("temperature", "altitude", "way", "open_pool", "attraction")
 _WALLS = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 
@@ -93,7 +93,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     found, numbers = _knobs(box)
     known = short_run(prepared)
     readings = _readings(box)
-    if not np.isfinite(known.air_pressure.values).any():  # no wall that could tell it
+    if not np.isfinite(known.air_pressure.values).any():  # no wall on which pressure is measured
         readings = [each for each in readings if each[0] != "air_pressure"]
     if box.attracts:
         readings += drop_readings(setup, set(prepared.module.theory(known, prepared.settings)))
@@ -125,7 +125,7 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "fastest": stage.record["speed"]["high"],
         "ledger": Reading.LEDGER.value,
         "readings": readings,
-        # discs of a table have an energy that no thermometer shows
+        # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.half.size else _gauges(prepared, [name for name, _, _ in readings]),
         "profiles": _profiles(box),
         "fixed": _fixed(box),
@@ -140,15 +140,15 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
 
 
 def _against_each_other(panels: tuple[Panel, ...], readings: set[str]) -> bool:
-    """Tell whether a graph draws one series against another: see `live.summary.Report`."""
+    """Return whether a graph draws one series against another: see `live.summary.Report`."""
     times = readings - {"elapsed_time"}
     return any({line.x, line.y} <= times for panel in panels for line in panel.lines)
 
 
 def _drawn(found: list[dict[str, Any]], panels: tuple[Panel, ...]) -> list[dict[str, Any]]:
-    """Return tables of theory without the profiles that no panel draws, the others in so many figures as can be seen.
+    """Return tables of theory without profiles that no panel draws; the other profiles are rounded to `_FIGURES`.
 
-    Series are saved, too, and keep theirs.
+    Series are not rounded, because they are saved too.
     """
     drawn = {name for panel in panels for line in panel.lines for name in (line.x, line.y, line.error, line.minus)}
     for table in found:
@@ -165,7 +165,7 @@ def _seen(row: list[float | None]) -> list[float | None]:
 
 
 def _readings(box: Bench) -> list[tuple[str, int, float]]:
-    """Return which readings are shown: the name of each, its place, and its factor to SI or to the unit of the page."""
+    """Return the readings that are shown: name, index, and factor to SI units or to the unit of the page."""
     setup = box.setup
     scale = setup.scale
     found: list[tuple[str, int, float]] = [
@@ -202,7 +202,7 @@ def _readings(box: Bench) -> list[tuple[str, int, float]]:
 
 
 def _gauges(prepared: Prepared, names: list[str]) -> list[dict[str, Any]]:
-    """Return the gauges beside the box: of each what it shows of which variable."""
+    """Return the gauges beside the box, as data for the page."""
     return [
         {"name": name, "variable": known, "unit": unit, "factor": factor, "offset": offset, **_few(name)}
         for name, variables, unit, factor, offset in gauges_of(prepared.settings)
@@ -211,12 +211,12 @@ def _gauges(prepared: Prepared, names: list[str]) -> list[dict[str, Any]]:
 
 
 def _few(name: str) -> dict[str, Any]:
-    """Return how many molecules must saturate the air for a hygrometer to say anything: see `live.gauge`."""
+    """Return the smallest number of molecules of saturated vapour, if this is a hygrometer: see `live.gauge`."""
     return {"few": ["vapor_molecule_count", FEW]} if name == "hygrometer" else {}
 
 
 def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[str, Any]:
-    """Return the challenges of the scene that can be met here; other settings than the page's own it cannot take."""
+    """Return the challenges of the scene that can be met in the page; presets are left out."""
     names = {name for name, _, _ in readings}
     told = lesson_of(prepared.module).record()
     met = [each for each in told["challenges"] if names.issuperset(goal["name"] for goal in each["reach"])]
@@ -224,7 +224,7 @@ def _lesson(prepared: Prepared, readings: list[tuple[str, int, float]]) -> dict[
 
 
 def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
-    """Return which averages are shown: name, array, first, how many, and their factor to SI."""
+    """Return the averages that are shown: name, array, first index, number, and factor to SI units."""
     scale = box.setup.scale
     bins, layers = box.gauges.counts.size, box.gauges.sums.shape[1]
     found = [("speed_probability_density", "speeds", 0, bins, 1.0 / scale.velocity)] if bins else []
@@ -249,7 +249,7 @@ def _profiles(box: Bench) -> list[tuple[str, str, int, int, float]]:
 
 
 def _fixed(box: Bench) -> dict[str, Any]:
-    """Return what does not change: the middles of bins, of layers, and of parts of a box in which gases mix, in SI."""
+    """Return the coordinates that do not change: the middles of bins of speed, layers and bins of distance, in SI."""
     edges, layers = box.gauges.edges * box.setup.scale.velocity, box.gauges.sums.shape[1]
     found = {"speed": plain(0.5 * (edges[1:] + edges[:-1]))} if edges.size > 1 else {}
     if layers:
@@ -264,7 +264,7 @@ def _fixed(box: Bench) -> dict[str, Any]:
 
 
 def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
-    """Return the knobs that act in a page, and what each does with its value."""
+    """Return the knobs that act in a page, and for each the kernel that it calls and the conversion of its value."""
     setup = box.setup
     kept = [knob for knob in setup.knobs if knob.name in _KNOBS]
     numbers: dict[str, Any] = {}
@@ -281,14 +281,14 @@ def _knobs(box: Bench) -> tuple[list[Any], dict[str, Any]]:
             told = {"kernel": "attract", "argument": "3", "factor": 1.0, "offset": 0.0}
         elif knob.name == "way":  # a part of its time
             told = {"kernel": "lead", "argument": "3", "factor": (one - zero) * setup.duration, "offset": 0.0}
-        else:  # a height becomes a moment of the way
+        else:  # a height is converted to a moment of the ascent
             told |= {"kernel": "lead", "argument": "3", **_moments(setup)}
         numbers[knob.name] = told
     return kept, numbers
 
 
 def _moments(setup: Setup) -> dict[str, Any]:
-    """Return at which moment of its way a parcel is how high [m]."""
+    """Return a table of moments of the planned ascent and heights of the parcel [m]."""
     moments = np.linspace(0.0, setup.duration, _WAY)
     around = next(each.environment for each in setup.instruments if isinstance(each, Lift | MoistLift))
     heights = [around.height(t * setup.scale.time) for t in moments.tolist()]
@@ -296,7 +296,7 @@ def _moments(setup: Setup) -> dict[str, Any]:
 
 
 def _command(prepared: Prepared) -> str:
-    """Return the command that begins the same run, the seed at its end."""
+    """Return the command that starts the same run, with the seed at its end."""
     changed = {name: value for name, value in prepared.settings.changed().items() if name != "seed"}
     sets = "".join(f" --set {name}={value}" for name, value in changed.items())
     engine = f" --engine {prepared.unusual_engine}" if prepared.unusual_engine else ""

@@ -1,7 +1,8 @@
-"""The starts that a page offers: the box it was written for, and the same with other settings.
+"""The starts that a page offers: the box that it was written for, and boxes with other settings.
 
-Another number of molecules, or another diameter, is another box, another frame and other curves. So each start has a
-plan of its own, made here as a run would make it. Molecules lie in the page only where it cannot place them itself.
+Another number of molecules or another diameter changes the box, the length of a frame and the curves of theory. So each
+start has its own plan, made here as a run would make it. The positions of molecules are stored in the page only if the
+page cannot place the molecules itself.
 """
 
 from __future__ import annotations
@@ -21,23 +22,24 @@ from atmosbox.simulation.preparation import Prepared, prepare
 __all__ = ["AS_WRITTEN", "Start", "lab_starts"]
 
 AS_WRITTEN = "as the page was written"
-"""What leads back from a preset."""
+"""Name of the choice that leads back from a preset to the settings of the page."""
 _TIMES = (0.5, 2.0, 0.25, 4.0)
-"""The other numbers of molecules, over that of the page; those that find no room are left out."""
+"""The other numbers of molecules, relative to that of the page; those for which the page has no room are left out."""
 _WIDER = (0.7, 1.4, 0.5, 2.0)
-"""The other values of what makes molecules meet more or less often, over that of the page."""
+"""The other values of the setting that changes the collision rate, relative to that of the page."""
 _MEETING = ("diameter", "knudsen", "filling", "density", "pressure")
-"""The settings that do so: of those that a scene has the first is offered."""
+"""Settings that change the collision rate; the first one that the scene has is offered."""
 _MISSES = 2
-"""How many starts may find no room before no other is tried."""
+"""Number of starts without room in the page after which no other is tried."""
 _SEEDS = 11
-"""How many other seeds a page offers that cannot place molecules itself."""
+"""Number of other seeds that a page offers if it cannot place molecules itself."""
 
 
 class Start(NamedTuple):
-    """A box at its start: what the page calls it, its settings or the title of a preset; plan and memory.
+    """A box at its start: its key in the page (its settings, or the title of a preset), its plan and its memory.
 
-    ``first`` is the plan of the first start of the page, of which the others say only what differs; it has none.
+    ``first`` is the plan of the first start of the page; the other starts store only the differences from it. It is
+    None for the first start itself.
     """
 
     key: str
@@ -46,11 +48,11 @@ class Start(NamedTuple):
     first: dict[str, Any] | None = None
 
     def stored(self) -> bytes:
-        """Return what is compressed: plan and memory."""
+        """Return the bytes to compress: plan and memory."""
         return self._text() + self.memory
 
     def size(self) -> list[Any]:
-        """Return what the page calls it, and how many bytes plan and memory have."""
+        """Return the key, and the sizes of plan and memory [bytes]."""
         return [self.key, len(self._text()), len(self.memory)]
 
     def _text(self) -> bytes:
@@ -59,7 +61,7 @@ class Start(NamedTuple):
 
 
 def _news(own: Any, first: Any) -> Any:
-    """Return what a plan says that the first one does not; "=" stands before what replaces all that is there.
+    """Return the differences of a plan from the first one; the key "=" marks a value that replaces the whole entry.
 
     Examples
     --------
@@ -80,19 +82,19 @@ def _news(own: Any, first: Any) -> Any:
 def lab_starts(
     prepared: Prepared, most: int, progress: Callable[[float, str], None] = lambda share, word: None
 ) -> tuple[list[Start], str]:
-    """Return the starts of the page of a scene, that of its own settings first, and the name of the module of all.
+    """Return the starts of a page, that with its own settings first, and the name of the module that all starts use.
 
-    The others are half as many molecules and twice as many, the presets of the scene, smaller and larger molecules,
-    then both together, and what differs more. Only those are offered whose box runs with the same kernels.
+    The other starts have half or twice as many molecules, the presets of the scene, smaller or larger molecules,
+    then both together, and larger changes. Only boxes that run with the same kernels are offered.
 
     Parameters
     ----------
     prepared
         The scene.
     most
-        How many bytes module and starts may take; the first start is there in any case, and alone if this is 0.
+        Largest size of module and starts [bytes]; the first start is always included, and is the only one if this is 0.
     progress
-        Called with the share of the page that is filled and a word.
+        Function that is called with the share of the page that is filled and the name of the present step.
 
     Raises
     ------
@@ -122,7 +124,7 @@ def lab_starts(
             plan, memory, its_box = lab_plan(
                 prepare(prepared.scene, settings.changed() | values, engine=prepared.engine)
             )
-        except AtmosboxError:  # not every scene can have every number
+        except AtmosboxError:  # not every scene can run with these settings
             continue
         plan["start"] = own if title else own | {name: str(values[name]) for name in own if name in values}
         start = Start(title or _key(plan["start"]), plan, _content(memory), first)
@@ -130,7 +132,7 @@ def lab_starts(
             continue
         size = len(gzip.compress(start.stored(), 9))
         if size > room:
-            missed += plan["seeded"]  # all that the page places itself take about as much
+            missed += plan["seeded"]  # starts that the page places itself all have about the same size
             continue
         room -= size
         made.append(start)
@@ -140,12 +142,12 @@ def lab_starts(
 
 
 def _key(values: dict[str, str]) -> str:
-    """Return what the page calls a start."""
+    """Return the key of a start in the page."""
     return ", ".join(f"{name}={value}" for name, value in values.items())
 
 
 def _offered(prepared: Prepared, *, seeded: bool) -> dict[str, list[str]]:
-    """Return the values that a page may offer of each setting, its own first."""
+    """Return the values that a page may offer for each setting, the page's own value first."""
     found: dict[str, list[str]] = {}
     parameters = {told.name: told for told in prepared.settings.describe()}
     meeting = next((name for name in _MEETING if name in parameters), None)
@@ -161,12 +163,12 @@ def _offered(prepared: Prepared, *, seeded: bool) -> dict[str, list[str]]:
 
 
 def _said(value: float, told: Parameter) -> str:
-    """Return a value with its unit."""
+    """Return a value with its unit as text."""
     return f"{value:g} {told.unit}" if told.unit != "1" else f"{value:g}"
 
 
 def _others(prepared: Prepared, offered: dict[str, list[str]]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield title and settings of what else a page may offer; only a preset has a title."""
+    """Yield titles and settings of the other starts that a page may offer; only presets have a title."""
     seed: dict[str, Any] = {"seed": prepared.settings.seed}
     names = [name for name in ("molecules", *_MEETING) if name in offered]
     near, far = slice(1, 3), slice(3, None)
@@ -187,7 +189,7 @@ def _others(prepared: Prepared, offered: dict[str, list[str]]) -> Iterator[tuple
 
 
 def _offer(prepared: Prepared, made: list[Start], presets: list[str]) -> None:
-    """Tell all starts which others there are."""
+    """Add to the plan of each start the controls that lead to the others."""
     words = {told.name: told.help for told in prepared.settings.describe()}
     for start in made:
         told = start.plan["told"]

@@ -1,4 +1,4 @@
-"""The memory of a module: every array of a box at its place, and beside them the arguments of each kernel.
+"""The memory of a module: every array of a box at its address, and after them the arguments of each kernel.
 
 ::
 
@@ -8,9 +8,9 @@
                 8 bytes each, as numba passes them
     size        the end
 
-An array is passed as seven or more words: two that only Python needs, its number of elements, the size of one, its
-address, then its shape and its strides. A NamedTuple is passed as its fields. What is all zero, as the rows of cells
-are before the molecules have been placed, is not stored.
+An array is passed as seven or more words: two that only Python needs, its number of elements, the size of an element,
+its address, then its shape and its strides. A NamedTuple is passed as its fields. Memory that is all zero, such as the
+rows of cells before the molecules have been placed, is not stored.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ class Image(NamedTuple):
     Attributes
     ----------
     pieces : list of (int, bytes)
-        What is not zero, and where.
+        The pieces of memory that are not zero, with their addresses.
     size : int
-        How many bytes there are, those before ``BASE`` included.
+        Number of bytes, including those before ``BASE``.
     blocks : dict of str to int
-        Where the arguments of each kernel stand.
+        Address of the arguments of each kernel.
     slots : dict of str to dict of str to int
-        Where the numbers among the arguments of a kernel stand, by their path: "4" is the fifth argument.
+        Address of each number among the arguments of a kernel, by its path: "4" is the fifth argument.
     arrays : dict of str to (int, int, str)
         Address, number of elements and type of each array, by the path of its name: "gas.molecules".
     """
@@ -56,7 +56,7 @@ class Image(NamedTuple):
 
 
 def parts(value: Any, name: str) -> Iterator[tuple[str, Any, str]]:
-    """Return what numba passes of an argument, in order: kind, value, and the path of its name."""
+    """Yield the parts of an argument that numba passes, in order: kind, value, and path of the name."""
     if isinstance(value, np.ndarray):
         yield "word", 0, name
         yield "word", 0, name
@@ -79,7 +79,7 @@ def _address(array: NDArray[Any]) -> int:
 
 
 def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
-    """Return the pieces of memory, from and to, that hold all arrays; views of one buffer share one."""
+    """Return the pieces of memory, as first address and end, that hold all arrays; views of one buffer share one."""
     spans = sorted((np.lib.array_utils.byte_bounds(each) for each in arrays if each.size), key=lambda s: (s[0], -s[1]))
     found: list[tuple[int, int]] = []
     for low, high in spans:
@@ -91,14 +91,14 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
 
 
 def image(works: Works, named: Mapping[str, Any]) -> Image:
-    """Return the memory for some kernels.
+    """Return the memory image for these kernels.
 
     Parameters
     ----------
     works
         The arguments of the kernels, by their names.
     named
-        Arrays, or NamedTuples of them, that are to be found by name.
+        Arrays, or NamedTuples of arrays, whose addresses are listed by name.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What a box with liquid in it has beside its gas, as the arrays that the kernels of a page work on."""
+"""The liquid of a box and its instruments, as the arrays that the kernels of a page work on."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ if TYPE_CHECKING:
 __all__ = ["bins_of", "finer_at_kinks", "hygrometer", "liquid_sight", "moisture", "theory_at"]
 
 _WAY = 801
-"""Values of the table of the adiabat of a parcel."""
+"""Number of values in the table of the adiabat of a parcel."""
 _KINK, _STRAIGHT = 8.0, 1e-9
-"""How many times as bent as usual a curve is at a kink, and below which share of that it is straight."""
+"""Second difference of a curve at a kink, over the median one; and share of the largest below which it is straight."""
 _WIDER = 0.25
-"""How much further than its planned way that table reaches at both ends."""
+"""Distance in the logarithm of pressure by which that table reaches beyond the planned ascent at both ends."""
 _FARTHEST, _OFFSETS = 0.16, 41
-"""How far the logarithm of the pressure may be from that planned, where it rains, and how many values that has."""
+"""If it rains: largest offset of the logarithm of pressure from the planned one, and number of offsets in the table."""
 
 
 def moisture(parcel: Any) -> Any:
-    """Return the liquid of a box, 0 if it has none."""
+    """Return the liquid of a box; 0 if it has none."""
     if not hasattr(parcel, "vapour"):
         return 0
     return Moisture(parcel._reservoir, parcel._vapours, parcel._rotations, getattr(parcel, "_drops", 0))
 
 
 def hygrometer(prepared: Prepared, setup: Setup) -> Any:
-    """Return what measures the water of a box, 0 if it has none."""
+    """Return the data of the instruments for the water of a box; 0 if it has none."""
     parcel: Any = setup.parcel
     if not hasattr(parcel, "vapour"):
         return 0
@@ -64,7 +64,7 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
         before=np.zeros(2),
         met=np.zeros(4),
         contact=np.array(_CONTACT_SERIES.coef),
-        # that of the substance is rounded to nine figures or so
+        # the volatility that the substance holds is rounded to about nine digits
         volatility=float(law.saturation_vapor_pressure(scale.temperature)) / scale.pressure * math.exp(binding),
         power=float(substance.vapour_heat_capacity - substance.heat_capacity),
         binding=binding,
@@ -85,16 +85,16 @@ def hygrometer(prepared: Prepared, setup: Setup) -> Any:
 
 
 def _levels(setup: Setup, lift: MoistLift) -> Any:
-    """Return logarithms of pressure [Pa], falling, that hold all that a parcel may come to."""
+    """Return falling logarithms of pressure [Pa] over the whole range that a parcel may reach."""
     seconds = np.linspace(0.0, setup.duration * setup.scale.time, _WAY)
     ends = np.log([lift.environment.pressure(t) for t in seconds])
     return np.linspace(ends.max() + _WIDER, ends.min() - _WIDER, _WAY)
 
 
 def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
-    """Return levels that are so many times closer together at kinks of a curve, which straight lines would cut off.
+    """Return levels that are `times` closer together at the kinks of a curve, which linear interpolation would cut off.
 
-    That of a parcel has one where the cloud begins, that of a sounding one at each of its levels.
+    The curve of a parcel has a kink where the cloud begins, the curve of a sounding at each of its levels.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def finer_at_kinks(levels: Any, curve: Any, times: int = 64) -> Any:
 
 
 def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
-    """Return the adiabat of a parcel that keeps its water, which depends on the pressure alone: see `Hygrometer`."""
+    """Return the adiabat of a parcel that keeps its water, as a function of pressure alone: see `Hygrometer`."""
     levels = _levels(setup, lift)
     levels = finer_at_kinks(levels, lift._curve(np.exp(levels)))
     kelvin = lift._curve(np.exp(levels))
@@ -125,15 +125,16 @@ def _adiabat(setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
 
 
 def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any, Any, Any]:
-    """Return the adiabat of a parcel whose water rains out, by the moment and the pressure over that planned.
+    """Return the adiabat of a parcel whose water rains out, by moment and by pressure over planned pressure.
 
-    How much water is left depends on the way, and is here as planned; at another pressure it has the same entropy.
+    The remaining water depends on the ascent, and is taken as planned; at another pressure the parcel has the same
+    entropy.
     """
     parcel: Any = setup.parcel
     number = setup.frames * setup.samples
     shares = np.arange(1, number + 1) / number
     around = np.array([lift.environment.pressure(t) for t in (shares * setup.duration * setup.scale.time).tolist()])
-    # theory tells how much water is left in the middle of each frame
+    # theory gives the remaining water in the middle of each frame
     middle = slice(setup.samples // 2 - 1, None, setup.samples)
     kelvin, pressure = lift._curve(around)[middle], around[middle]
     told = theory_at(prepared, pressure, rains=True)
@@ -149,19 +150,19 @@ def _adiabat_with_rain(prepared: Prepared, setup: Setup, lift: MoistLift) -> tup
 
 
 def _environment(prepared: Prepared, setup: Setup, lift: MoistLift) -> tuple[Any, Any]:
-    """Return the virtual temperature of the environment by its pressure, where the scene's theory knows it."""
+    """Return the virtual temperature of the environment as a function of its pressure; empty if theory lacks it."""
     levels, name = _levels(setup, lift), "environment_virtual_temperature"
-    if name not in theory_at(prepared, np.exp(levels[:2])):  # where it rains, theory takes its time
+    if name not in theory_at(prepared, np.exp(levels[:2])):  # two levels only, for theory is slow if it rains
         return np.zeros(0), np.zeros(0)
-    levels = finer_at_kinks(levels, theory_at(prepared, np.exp(levels))[name], 4)  # it has many, and none is sharp
+    levels = finer_at_kinks(levels, theory_at(prepared, np.exp(levels))[name], 4)  # many kinks, and none is sharp
     around = theory_at(prepared, np.exp(levels))[name]
     return levels[::-1] - math.log(setup.scale.pressure), around[::-1] / setup.scale.temperature
 
 
 def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict[str, Any]:
-    """Return what theory says where a parcel and its environment have these pressures [Pa]; it is told nothing else.
+    """Return the curves of theory for a parcel and its environment at these pressures [Pa].
 
-    What it makes of the parcel's own temperature and water, of which it is given any, means nothing.
+    Theory gets arbitrary values of the parcel's temperature and water, so curves that depend on these mean nothing.
     """
     import xarray as xr  # loads slowly
 
@@ -175,7 +176,7 @@ def theory_at(prepared: Prepared, pressure: Any, *, rains: bool = False) -> dict
 
 
 def _leaving(setup: Setup) -> tuple[Any, int, int]:
-    """Return the widths of the bins of the energy of molecules that leave, how many are empty, and what makes one."""
+    """Return the bin widths of the energy of molecules that leave, the number of empty bins, and `_merged`."""
     leaving = next((each for each in setup.instruments if type(each) is Leaving), None)
     if leaving is None:
         return np.zeros(0), 0, 1
@@ -186,14 +187,14 @@ def _leaving(setup: Setup) -> tuple[Any, int, int]:
 
 
 def bins_of(setup: Setup, leaving: Leaving) -> Any:
-    """Return the bounds of the bins of energy, ``(bin, 2)`` [J]."""
+    """Return the bounds of the bins of energy : (bin, 2) [J]."""
     fresh = Leaving(leaving._binding, leaving._merged)
     fresh.end_frame(setup.parcel, setup.parcel.snapshot())
     return fresh.readings(setup.scale, 0)["energy_bnds"]
 
 
 def liquid_sight(parcel: Any, scale: Scale, stage: Stage | None) -> tuple[Any, ...]:
-    """Return what the picture of the liquid is made of: the last fields of `Sight`."""
+    """Return the data for the picture of the liquid: the last fields of `Sight`."""
     record = None if stage is None else stage.record
     water = 0 if record is None else int(record["water"])
     spread = places(water)

@@ -1,4 +1,4 @@
-"""What a page must know of the water in its box: readings, knobs, and the curves of theory."""
+"""The part of the plan of a page that is about water: readings, knobs, and the curves of theory."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ __all__ = [
 WET_STATE = tuple(
     f"book.moisture.reservoir.{name}" for name in ("energy", "count", "clock", "bound", "absent", "top", "spectrum")
 )
-"""What makes the liquid of two boxes the same, to the last bit."""
+"""The arrays that are equal, to the last bit, if the liquid of two boxes is in the same state."""
 DROP_STATE = (
     "gas.kinds.table",
     *(f"book.moisture.drops.{name}" for name in ("held", "cube", "core", "alive", "solute")),
 )
-"""What makes the drops in it the same."""
+"""The arrays that are equal if the drops of two boxes are in the same state."""
 
 _POINTS = 121
 _WARMEST, _COLDEST, _WARMTHS = 350.0, 240.0, 45
@@ -52,7 +52,7 @@ _WIDER = 1.25
 
 
 def water_readings(box: Bench) -> list[tuple[str, int, float]]:
-    """Return which readings of the water are shown: see `lab_plan`."""
+    """Return the readings of the water that are shown: see `lab_plan`."""
     scale, kinds = box.setup.scale, [type(each) for each in box.setup.instruments]
     rate, ratio, warm, force = scale.weight / scale.time, law.WATER_MASS_RATIO, scale.temperature, scale.pressure
     found: list[tuple[str, int, float]] = [
@@ -98,7 +98,7 @@ def water_readings(box: Bench) -> list[tuple[str, int, float]]:
 
 
 def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
-    """Return the histogram of energies with which molecules leave: see `lab_plan._profiles`."""
+    """Return the histogram of the energies of molecules that leave the liquid: see `lab_plan._profiles`."""
     water: Any = box.gauges.water
     bins = water.width.size
     factor = 1.0 / box.setup.scale.energy
@@ -106,14 +106,14 @@ def leaving_energies(box: Bench) -> list[tuple[str, str, int, int, float]]:
 
 
 def fixed_axes(box: Bench) -> dict[str, Any]:
-    """Return the middles of the bins of that histogram [J], and at which radii of drops theory is drawn [m]."""
+    """Return the middles of the bins of that histogram [J], and the radii of drops at which theory is drawn [m]."""
     leaving, nuclei = _instrument(box.setup, Leaving), _instrument(box.setup, Nuclei)
     found = {} if leaving is None else {"energy": plain(bins_of(box.setup, leaving).mean(axis=1))}
     return found if nuclei is None else found | {"radius": plain(nuclei._radius)}
 
 
 def planned_alone(box: Bench) -> list[str]:
-    """Return which curves of theory hold for a parcel on its planned way alone: where it rains, what has been lost."""
+    """Return the curves of theory that hold only on the planned ascent: if it rains, those that depend on the loss."""
     parcel: Any = box.setup.parcel
     if not box.modes.phases or _instrument(box.setup, MoistLift) is None or not parcel._reservoir.rain > 0.0:
         return []
@@ -122,9 +122,9 @@ def planned_alone(box: Bench) -> list[str]:
 
 
 def moist_knob(knob: Knob, told: dict[str, float], scale: Scale) -> dict[str, Any]:
-    """Return what a knob of a box with liquid does with its value.
+    """Return the kernel that a knob of a box with liquid calls, and the conversion of its value.
 
-    ``leave`` is what makes the box as it was before the knob was first turned.
+    ``leave`` names the kernel that restores the state before the knob was first turned.
     """
     if knob.name == "open_pool":
         return {"kernel": "cover_pool", "argument": "2", **told}
@@ -144,7 +144,7 @@ def moist_tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[di
 
 
 def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
-    """Return what theory says at each temperature of the walls, and where they have none."""
+    """Return the curves of theory by the temperature of the walls, and for walls without a temperature."""
     kelvin = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS)
     here = found.isel(elapsed_time=np.zeros(_POINTS, int))
 
@@ -154,7 +154,7 @@ def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
         return {name: values for name, values in told.items() if np.shape(values) == (_POINTS,)}
 
     of_walls = at(kelvin)
-    if "liquid_saturation_vapor_pressure" in of_walls:  # that of the pool, which is measured
+    if "liquid_saturation_vapor_pressure" in of_walls:  # belongs to the pool, whose temperature is measured
         del of_walls["liquid_saturation_vapor_pressure"]
     table = {"along": "wall_temperature[x_low]", "grid": plain(kelvin), "curves": {}}
     table["curves"] = {name: plain(values) for name, values in of_walls.items()}
@@ -166,7 +166,7 @@ def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
 
 
 def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
-    """Return the energies of molecules that leave and that stay, by the temperature that the liquid had."""
+    """Return the energy distributions of molecules that leave and that stay, by the temperature of the liquid."""
     grid = np.linspace(_COLDEST, _WARMEST, _WARMTHS)
     curves: dict[str, list[Any]] = {}
     ones = np.ones(found.sizes["elapsed_time"])
@@ -179,7 +179,7 @@ def _energies(prepared: Prepared, found: xr.Dataset) -> dict[str, Any]:
 
 
 def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the environment along the way, and what theory says at each pressure that the parcel may come to."""
+    """Return the environment along the ascent, and the curves of theory by the pressure of the parcel."""
     frames = (np.arange(setup.frames) + 0.5) * setup.frame
     moments = np.union1d(np.linspace(0.0, setup.duration, _WAY), frames)
     around, unit = lift.environment, setup.scale.time
@@ -198,7 +198,7 @@ def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -
         "times": {"parcel_temperature_se": "parcel_temperature"},
     }
     rains = "rain_mixing_ratio" in found
-    # where it rains, theory takes its time, and by the pressure alone there is only a straight curve
+    # if it rains, theory is slow, and the only curve by pressure alone is straight
     levels = np.geomspace(_WIDER * outside.max(), outside.min() / _WIDER, _WAY // 2 if rains else 2 * _WAY - 1)
     if not rains:
         levels = finer_at_kinks(levels, theory_at(prepared, levels)["cloud_liquid_water_mixing_ratio_theory"])
@@ -208,7 +208,7 @@ def _way(prepared: Prepared, setup: Setup, lift: MoistLift, found: xr.Dataset) -
         curves |= {name: plain(values) for name, values in told.items() if name.startswith("environment_")}
     known = [name for name in by_pressure if not name.startswith(("environment_", "parcel_", "relative_humidity"))]
     tables = [{"along": "moment", "grid": plain(moments), "curves": curves}, spread]
-    if rains:  # how much has rained out, and what is left, depends on the way
+    if rains:  # the water that has rained out, and that which is left, depend on the ascent
         planned = theory_at(prepared, middle, rains=True)
         along = {name: plain(values) for name, values in planned.items() if "mixing_ratio" in name}
         tables.append({"along": "moment", "grid": plain(frames), "curves": along})

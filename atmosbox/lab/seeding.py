@@ -1,4 +1,4 @@
-"""A box that a page can begin with any seed: the memory without molecules, and the proof that nothing else differs."""
+"""A box that a page can start with any seed: its memory without molecules, and a check that nothing else differs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PLACES = ("x", "y", "z", "vx", "vy", "vz")
 
 
 def without_molecules(box: Bench) -> Bench:
-    """Return a box without all that the kernel ``start`` writes.
+    """Return a box in which everything that the kernel ``start`` writes is cleared.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def without_molecules(box: Bench) -> Bench:
     gas = box.gas
     molecules = aligned_records(gas.molecules.size, MOLECULE)
     molecules[:] = gas.molecules
-    gas_alone = slice(box.setup.parcel.number)  # behind it stand the molecules of the liquid, and drops
+    gas_alone = slice(box.setup.parcel.number)  # the molecules of the liquid and the drops follow after these
     for name in _PLACES:
         molecules[name][gas_alone] = 0.0
     blank: dict[str, Any] = {"molecules": molecules, "tallies": gas.tallies._replace(random=np.zeros(1, np.uint64))}
@@ -47,7 +47,7 @@ def without_molecules(box: Bench) -> Bench:
     else:
         copies, boundary = gas.cells.copies._replace(epoch=np.zeros_like(gas.cells.copies.epoch)), gas.cells.boundary
         layers = {}
-        if box.modes.gravity:  # layers follow the temperature of the start
+        if box.modes.gravity:  # layers depend on the temperature at the start
             copies = copies._replace(slack=np.zeros_like(copies.slack), room=np.zeros_like(copies.room))
             copies = copies._replace(centre=copies.centre * [[1.0], [1.0], [0.0]])
             boundary = boundary.copy()
@@ -59,14 +59,14 @@ def without_molecules(box: Bench) -> Bench:
         book = book._replace(clocks=clock)
     if box.modes.phases:
         reservoir = book.moisture.reservoir
-        clock = np.where(np.isinf(reservoir.clock), math.inf, 0.0)  # what never happens does so for every seed
+        clock = np.where(np.isinf(reservoir.clock), math.inf, 0.0)  # an event that never happens does so for no seed
         reservoir = reservoir._replace(clock=clock, bound=reservoir.bound * [0.0, 1.0])
         book = book._replace(clocks=clock, moisture=book.moisture._replace(reservoir=reservoir))
     return box._replace(gas=gas._replace(**blank), book=book)
 
 
 def _without_layers(box: Bench) -> Bench:
-    """Return a box of a column that does not say which layers it has now."""
+    """Return a box of a column in which the data of its present layers are cleared."""
     shape, edge = box.layout.shape.copy(), box.layout.edge.copy()
     shape[[NUMBER + 2, LAST + 2]] = 0
     edge[2] = 0.0
@@ -75,7 +75,7 @@ def _without_layers(box: Bench) -> Bench:
 
 
 def is_the_seed_all(box: Bench) -> bool:
-    """Tell whether a page can begin a box with another seed: the box of one differs in its molecules alone.
+    """Return whether a page can start a box with another seed: boxes of two seeds must differ in molecules only.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def is_the_seed_all(box: Bench) -> bool:
     >>> is_the_seed_all(bench(prepare("temperature", {"molecules": 20})))
     True
 
-    The masses of discs are drawn, and more than their places depends on that:
+    The masses of discs are drawn at random, and more than the positions depends on them:
 
     >>> is_the_seed_all(bench(prepare("elastic-collisions", {})))
     False
@@ -99,9 +99,9 @@ def is_the_seed_all(box: Bench) -> bool:
 
 
 def _content(box: Bench) -> list[Any]:
-    """Return all that the kernels of a box are given; what tells a pile-up of events is of any seed."""
+    """Return all arguments of the kernels of a box, without the limit by which a pile-up of events is detected."""
     empty = without_molecules(box)
-    # the calendar is empty, and as long as its place in memory makes it
+    # the calendar is left out: it is empty, and its length depends on its address in memory
     gas = empty.gas._replace(box=empty.gas.box._replace(stall=0.0), calendar=0)
     given = arguments(empty._replace(gas=gas))
     return [

@@ -1,8 +1,8 @@
 """How a scene draws and places its molecules, so that a page can do it with another seed.
 
-A scene says so in Python, with the functions of `atmosbox.engine.start`. Here it is watched while it does: which of
-them it calls, after how many random numbers, and what becomes of the result. Whether that is all that a seed decides
-is not assumed: the same scene is built with another seed, and the two boxes must differ in nothing else.
+A scene does this in Python, with the functions of `atmosbox.engine.start`. This module records which of them the scene
+calls, after how many random numbers, and with which results. It is not assumed that the seed decides nothing else:
+`seeding` builds the same scene with another seed, and the two boxes must differ in nothing else.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ _GAP = 1e-6
 _WORD = 1 << 64
 _DRAWING = (maxwell_velocities, equal_speeds, rotational_energies, clear_of_drops)
 _PLACING = {"length", "diameter", "periodic", "planar", "top", "scale_height"}
-"""What a scene may say of the places of its molecules."""
+"""The options that a scene may use to place its molecules."""
 
 
 @dataclass
 class Watched:
-    """What a scene has called: with what, what came of it, and how many random numbers had been drawn."""
+    """The recorded calls of a scene: arguments, result, and number of random numbers drawn before the call."""
 
     placed: list[tuple[dict[str, Any], Array, int, int]] = field(default_factory=list)
     moved: list[tuple[str, dict[str, Any], Array, int]] = field(default_factory=list)
@@ -52,14 +52,14 @@ class Watched:
 
 
 def _count(rng: RandomNumbers, seed: int) -> int:
-    """Return how many random numbers have been drawn."""
+    """Return the number of random numbers that have been drawn."""
     gone = (int(rng.state[0]) - int(RandomNumbers(seed).state[0])) % _WORD
     return gone * pow(STEP, -1, _WORD) % _WORD
 
 
 @contextmanager
 def watched(prepared: Prepared) -> Iterator[Watched]:
-    """Watch how a scene begins its box."""
+    """Record which functions a scene calls to start its box."""
     seen, seed = Watched(), int(prepared.settings.seed)
     places = [vars(moisture), prepared.module.build.__globals__]
     usual = [(names, each) for names in places for each in _DRAWING if each.__name__ in names]
@@ -101,7 +101,7 @@ def watched(prepared: Prepared) -> Iterator[Watched]:
 
 
 def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
-    """Return how a page draws and places the molecules of a box that was watched; None if it cannot.
+    """Return the data with which a page draws and places the molecules of a recorded start; None if it cannot.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def start_of(prepared: Prepared, setup: Setup, seen: Watched) -> Start | None:
 
 
 def _rotating(seen: Watched, spin: Array) -> dict[str, Any] | None:
-    """Return how energies of rotation are drawn, None if in no way that is known."""
+    """Return the data with which rotational energies are drawn; None if a page cannot draw them."""
     if len(seen.turned) != 1:
         return None
     _, asked, drawn, first = seen.turned[0]
@@ -161,7 +161,7 @@ def _rotating(seen: Watched, spin: Array) -> dict[str, Any] | None:
     if degrees.shape != spin.shape or np.ndim(asked["kT"]):
         return None
     rotating = 0.0
-    if (spin != drawn).any():  # scaled, to half a kT for each degree of freedom
+    if (spin != drawn).any():  # scaled, to kT / 2 for each degree of freedom
         rotating = 0.5 * float(degrees.sum())
         if (spin != drawn * (rotating / drawn.sum())).any():
             return None
@@ -170,7 +170,7 @@ def _rotating(seen: Watched, spin: Array) -> dict[str, Any] | None:
 
 
 def _numbered(placed: Array, position: Array, after: int, seed: int) -> int | None:
-    """Tell how molecules have been numbered after they were placed, None if in no way that is known."""
+    """Return in which order molecules were numbered after they were placed; None if the order is not a known one."""
     rng = RandomNumbers(seed)
     rng.random(after)
     orders = {
@@ -182,7 +182,7 @@ def _numbered(placed: Array, position: Array, after: int, seed: int) -> int | No
 
 
 def _as_cleared(seen: Watched, position: Array) -> int | None:
-    """Tell how molecules are numbered that have made room for drops, once, and after all else was drawn."""
+    """Return the order of molecules that made room for drops once, after everything else was drawn; otherwise None."""
     _, told, made, first = seen.cleared[0]
     _, placed, _, after = seen.placed[0]
     last = len(seen.cleared) == 1 and first == after >= max(each[-1] for each in (*seen.moved, *seen.turned))
@@ -190,7 +190,7 @@ def _as_cleared(seen: Watched, position: Array) -> int | None:
 
 
 def no_start(setup: Setup) -> Start | None:
-    """Return what stands for the start where a box has the seed of its page alone; None where no module asks for it."""
+    """Return a placeholder start for a box with a fixed seed; None if its module needs no start."""
     parcel: Any = setup.parcel
     if not can_start(parcel._modes):
         return None
@@ -198,7 +198,7 @@ def no_start(setup: Setup) -> Start | None:
 
 
 def _start(parcel: Any, diameter: Array, top: float | None, cleared: Any) -> Start:
-    """Return a start with all that the box decides, its cells apart, for molecules that are placed below ``top``."""
+    """Return a start with all data that follow from the box, without its cells, for molecules placed below ``top``."""
     n, planar = parcel.number, bool(parcel.planar)
     radius = 0.5 * diameter
     sides, turns = np.array(parcel._sides), np.array(parcel._periodic)
@@ -222,7 +222,7 @@ def _start(parcel: Any, diameter: Array, top: float | None, cleared: Any) -> Sta
 
 
 def _spread(parcel: Any, sides: Array) -> Array:
-    """Return how far molecules are from each other, and what is the fastest beside them: see `natural_time`."""
+    """Return the spacing of molecules, and the fastest speed of walls and of a fall over it: see `natural_time`."""
     walls = parcel._walls
     spacing = float(cbrt(math.prod(sides.tolist()) / max(parcel.number, 1)))
     first = zip(walls.law, walls.schedule_kT[walls.schedule[:-1]], strict=True)
@@ -232,13 +232,13 @@ def _spread(parcel: Any, sides: Array) -> Array:
 
 
 def _warm(parcel: Any) -> float:
-    """Return how fast molecules may leave the warmest wall of a box with liquid: see `MoistParcelSet`."""
+    """Return a speed of molecules that leave the warmest wall; 0 in a box without liquid: see `MoistParcelSet`."""
     baths = [float(kT) for kT in parcel.wall_kT() if math.isfinite(kT)]
     return math.sqrt(8.0 * max(baths, default=0.0) / parcel._liquid.substance.mass) if parcel._modes.phases else 0.0
 
 
 def _first_gauges(parcel: Any) -> Any:
-    """Return what the law of a piston asks of the gas at the start, without its energy; 0 where none rises."""
+    """Return the data of the gas that the law of the piston needs at the start, without energy; 0 without ascent."""
     if not parcel._ascends:
         return 0
     open_height = parcel.ceiling - float(parcel.diameter.mean())
@@ -249,7 +249,7 @@ def _first_gauges(parcel: Any) -> Any:
 
 
 def _cleared(parcel: Any, seen: Watched) -> Any:
-    """Return the drops that molecules make room for, 0 in a box without."""
+    """Return the drops that molecules make room for; 0 in a box without drops."""
     if not parcel._modes.drops:
         return 0
     if not seen.cleared:

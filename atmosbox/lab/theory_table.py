@@ -1,4 +1,4 @@
-"""The curves of theory, tabulated: a page cannot ask a scene's formulas, so they are asked beforehand."""
+"""Tables of the curves of theory: a page cannot evaluate the formulas of a scene, so they are evaluated beforehand."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ __all__ = ["short_run", "tables"]
 
 _FRAMES = 3
 _POINTS = 121
-"""Values of a table along a knob, or along the time after a run."""
+"""Number of values in a table along a knob, or along the time after a run."""
 _LONG = 20.0
-"""How many times as long as a run theory is tabulated, for the page goes on."""
+"""Theory is tabulated for this many times the length of a run, because the page goes on."""
 _WAY = 401
-"""Values of a table along the way of a parcel."""
+"""Number of values in a table along the ascent of a parcel."""
 
 
 def short_run(prepared: Prepared) -> xr.Dataset:
-    """Return what is known after three frames, which theory is asked about.
+    """Return the measurements after three frames, as input for the scene's theory.
 
     Raises
     ------
     SettingError
-        If the cells of the box must be laid out anew so early, which a page cannot do.
+        If the modes of the engine change in these frames, because too many molecules crowd together for a page.
     """
     box = Experiment(prepared, time.perf_counter)
     parcel: Any = box.setup.parcel
@@ -59,25 +59,25 @@ def short_run(prepared: Prepared) -> xr.Dataset:
 
 
 def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the curves of theory as functions of what is measured or turned.
+    """Return the curves of theory as functions of a measured variable or of a knob.
 
     Parameters
     ----------
     prepared, setup
         The scene and its box.
     found
-        From `short_run`.
+        The measurements of `short_run`.
 
     Returns
     -------
     list of dict
-        ``along`` the variable that a table goes along, ``grid`` its values, and ``curves`` by name their values at each
-        of them; between two the page takes the straight line. ``otherwise`` what curves are while that variable is not
-        known, and ``times`` by what variable a curve is to be multiplied.
+        ``along`` is the variable that the table is a function of, ``grid`` has its values, and ``curves`` the values of
+        each curve at these; the page interpolates linearly. ``otherwise`` has the values of curves while the variable
+        is not known, and ``times`` names the variable by which a curve is multiplied.
 
     Examples
     --------
-    A wall's temperature is that of theory:
+    Theory predicts that the air has the temperature of the walls:
 
     >>> from atmosbox.simulation.preparation import build, prepare
     >>> scene = prepare("temperature", {"molecules": 20})
@@ -95,7 +95,7 @@ def tables(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str
 
 
 def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return what the scene's theory says as time passes, at each frame of a run and long after."""
+    """Return the curves of theory as functions of time, at each frame of a run and long after."""
     told = prepared.module.theory(found, prepared.settings)
     if any(_is_series(values, found) and np.ptp(values) > 0.0 for values in told.values()):
         run = np.arange(1, setup.frames + 1) * float(found.elapsed_time[0])
@@ -111,7 +111,7 @@ def _course(prepared: Prepared, setup: Setup, found: xr.Dataset) -> list[dict[st
 
 
 def _walls(prepared: Prepared, found: xr.Dataset, knob: Knob) -> dict[str, Any]:
-    """Return what the scene's theory says at each temperature that the walls can have."""
+    """Return the curves of theory as functions of the temperature of the walls."""
     grid = np.linspace(to_si(knob.low, knob.unit), to_si(knob.high, knob.unit), _POINTS).tolist()
     curves: dict[str, list[Any]] = {}
     for kelvin in grid:
@@ -126,7 +126,7 @@ def _is_series(values: Any, found: xr.Dataset) -> bool:
 
 
 def _way(setup: Setup, lift: Lift) -> dict[str, Any]:
-    """Return height, pressure and temperature of the environment at each moment of the way."""
+    """Return height, pressure and temperature of the environment at each moment of the planned ascent."""
     moments = np.linspace(0.0, setup.duration, _WAY)
     around, seconds = lift.environment, (moments * setup.scale.time).tolist()
     curves = {
@@ -138,7 +138,7 @@ def _way(setup: Setup, lift: Lift) -> dict[str, Any]:
 
 
 def _adiabat(setup: Setup, lift: Lift) -> dict[str, Any]:
-    """Return the temperature of the adiabat at each pressure that the parcel may come to."""
+    """Return the temperature of the adiabat at each pressure that the parcel may reach."""
     around = lift.environment
     ends = [around.pressure(t * setup.scale.time) for t in np.linspace(0.0, setup.duration, _WAY)]
     pressures = plain(np.geomspace(0.8 * min(ends), 1.25 * max(ends), _WAY))

@@ -1,4 +1,4 @@
-"""The modules of the package: which box needs which, and of which sources each was made."""
+"""The WebAssembly modules of the package: which box needs which module, and from which sources each was made."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ SCENES: dict[str, dict[str, Any]] = {
     "mountains": {"molecules": 3000},
     "nuclei": {},
 }
-"""The shipped scenes that a page can run, with the settings that they need for it, or to be watched while they run."""
+"""The scenes of atmosbox that a page can run, with settings that they need for it or that suit watching them run."""
 BESIDE: tuple[tuple[str, dict[str, Any]], ...] = (
     ("lifting-dry", {"rotation": False}),
     ("diffusion", {"molecules": 4000, "mass_ratio": 10}),
     ("nuclei", {"molecules": 1500}),
 )
-"""What worksheets ask for beside these, or fewer molecules, and needs kernels of its own."""
+"""Further settings, for worksheets or for fewer molecules, that need kernels of their own."""
 
 
 def module_name(modes: Any, *, wells: bool = False) -> str:
-    """Return the name of the module for one set of modes, and for molecules that attract each other.
+    """Return the name of the module for a set of modes; ``wells`` if molecules attract each other.
 
     Examples
     --------
@@ -52,10 +52,10 @@ def module_name(modes: Any, *, wells: bool = False) -> str:
 
 
 def source_stamp() -> str:
-    """Return what a module that is made now must carry: a digest of the code of the engine and of `kernels`.
+    """Return the stamp of a module that is made now: a digest of the code of the engine and of `kernels`.
 
-    Comments and docstrings do not count. The minor version of Python stands before it, because the syntax trees of two
-    versions differ.
+    Comments and docstrings do not count. The minor version of Python precedes the digest, because the syntax trees of
+    two versions differ.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def source_stamp() -> str:
 
 
 def stamp_of(content: bytes) -> str:
-    """Return the stamp that a module carries, as it lies in the package: its last section.
+    """Return the stamp of a gzipped module: its last section.
 
     Examples
     --------
@@ -80,12 +80,12 @@ def stamp_of(content: bytes) -> str:
 
 
 def module_bytes(name: str, scene: str) -> bytes:
-    """Return a module by its name, as it lies in the package: gzip.
+    """Return a module by its name, gzipped as it is in the package.
 
     Raises
     ------
     EngineError
-        If the package has none, or one of another version of the engine.
+        If the package has no such module, or one of another version of the engine.
     """
     path = FOLDER / f"{name}.wasm.gz"
     if not path.is_file():

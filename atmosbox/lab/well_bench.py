@@ -22,12 +22,12 @@ from atmosbox.scene.setup import Setup
 __all__ = ["crowd", "drop_readings", "has_bath", "lists", "well_gas"]
 
 _LONGER = 4
-"""How many times as long as at the start there is memory for the lists to become."""
+"""Factor by which the lists of neighbours can grow, because memory is reserved for that."""
 _POWERS = 4
 
 
 def well_gas(parcel: Any) -> WellGas:
-    """Return the gas before its neighbours are listed, with memory for longer lists."""
+    """Return the gas before the neighbours of its molecules are listed, with memory for longer lists."""
     number, old = parcel.number, parcel._vicinity
     vicinity = new_vicinity(parcel._sides, parcel._periodic, number, old.reach, planar=parcel._planar)
     entry = np.zeros(number * _LONGER * old.stride, np.uint32)
@@ -40,13 +40,13 @@ def well_gas(parcel: Any) -> WellGas:
 
 
 def lists(parcel: Any) -> Lists:
-    """Return how long the lists are, and how deep the wells can be."""
+    """Return the lengths of the lists of neighbours, and the full depths of the wells."""
     stride = parcel._vicinity.stride
     return Lists(np.array([stride]), _LONGER * stride, parcel._full_depth, np.array([parcel.strength]), np.zeros(1))
 
 
 def crowd(setup: Setup) -> Crowd:
-    """Return what is kept of the drops, before the first of them."""
+    """Return the data of the drops at the start, without any drop."""
     number = setup.parcel.number
     members = next((each._molecules for each in setup.instruments if type(each) is Clusters), 0)
     return Crowd(
@@ -61,7 +61,7 @@ def crowd(setup: Setup) -> Crowd:
 
 
 def _gas_law() -> NDArray[np.float64]:
-    """Return B2 and B3 as sums over powers of x = e^(1 / T*) - 1, which they are, from what theory says at four x.
+    """Return the coefficients of B2 and B3, which are polynomials in x = e^(1 / T*) - 1, from theory at four x.
 
     Examples
     --------
@@ -77,14 +77,14 @@ def _gas_law() -> NDArray[np.float64]:
 
 
 def drop_readings(setup: Setup, theory: set[str]) -> list[tuple[str, int, float]]:
-    """Return what is read off beside the air: the name of each, its place, and its factor to SI.
+    """Return the readings of the drops: name, index, and factor to SI units.
 
     Parameters
     ----------
     setup
         The box.
     theory
-        Which curves the scene's theory has.
+        Names of the curves that the scene's theory has.
     """
     scale, drop = setup.scale, DropReading
     found = [("kinetic_energy", int(Reading.KINETIC), scale.total_energy)]
@@ -109,5 +109,5 @@ def drop_readings(setup: Setup, theory: set[str]) -> list[tuple[str, int, float]
 
 
 def has_bath(setup: Setup) -> bool:
-    """Tell whether a random bath keeps the molecules at its temperature, and not walls."""
+    """Return whether a random bath, and not walls, keeps the molecules at a temperature."""
     return float(setup.parcel._bath.rate) > 0.0  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""The arguments of what a page calls, by the names of `kernels.kernel_table`."""
+"""The arguments of the kernels that a page calls, by their names in `kernels.kernel_table`."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def arguments(box: Bench) -> dict[str, tuple[Any, ...]]:
 
 
 def _knobs(box: Bench) -> dict[str, tuple[Any, ...]]:
-    """Return the arguments of what the knobs of a box with liquid call."""
+    """Return the arguments of the kernels that the knobs of a box with liquid call."""
     if not has_moist_knobs(box.modes):
         return {}
     gas, book = box.gas, box.book

@@ -1,6 +1,6 @@
-"""What a page calls of the engine, and what Python does between two such calls: all of it compiled.
+"""The kernels that a page calls: the engine, and what Python does between two calls of the engine.
 
-Nothing here is called from Python; ``tools/wasm.py`` makes WebAssembly of it. Read `passing` first, then `gauging`,
-`averaging`, `height_profile` and `sight`; `attracting` and `clustering` are what molecules that attract each other need
-instead; `kernel_table` names what a page calls.
+Nothing here is called from Python; ``tools/wasm.py`` compiles it to WebAssembly. Read `passing` first, then `gauging`,
+`averaging`, `height_profile` and `sight`; `attracting` and `clustering` replace some of them for molecules that attract
+each other; `kernel_table` lists the kernels that a page calls.
 """

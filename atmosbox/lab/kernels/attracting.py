@@ -1,7 +1,8 @@
-"""How time passes in a page among molecules that attract each other, and what a hand on a knob changes there.
+"""Advance molecules that attract each other, in a page, and change them with knobs.
 
-It is what `passing` is for hard spheres: the answers of `AttractingParcelSet` between two calls of the engine, in the
-same order and with the same numbers. Here a list of neighbours may become too short, and nothing else can happen.
+This is for attracting molecules what `passing` is for hard spheres: what `AttractingParcelSet` does between two calls
+of the engine, in the same order and with the same numbers. The only thing to handle here is a list of neighbours that
+is too short.
 """
 
 import functools
@@ -24,11 +25,11 @@ _DONE, _BUSY, _ROW_FULL = Status.DONE.value, Status.BUSY.value, Status.ROW_FULL.
 
 
 class Lists(NamedTuple):
-    """The lists of neighbours, and the wells at their full depth.
+    """The sizes of the lists of neighbours, and the depth of the wells.
 
-    ``stride : (1,)`` how many words a list has now, ``longest`` how many there is memory for; ``full_depth :
-    (kind, kind)`` of the wells [energy], ``strength : (1,)`` the depth that they have, over it; ``work : (1,)`` what
-    changes of that have given [energy].
+    ``stride : (1,)`` is the present number of words of a list, ``longest`` the number that there is memory for;
+    ``full_depth : (kind, kind)`` the full depth of the wells [energy], ``strength : (1,)`` their present depth over
+    the full one; ``work : (1,)`` the energy that changes of the strength have given to the molecules [energy].
     """
 
     stride: Any
@@ -50,14 +51,14 @@ def energy_of_wells(wells):
 
 @kernel
 def warm_bath(bath, kT):
-    """Keep the random bath at a temperature [energy] from now on: see `AttractingParcelSet.set_bath_kT`."""
+    """Set the temperature of the random bath [energy]: see `AttractingParcelSet.set_bath_kT`."""
     bath.schedule_kT[:] = kT
     return 0
 
 
 @kernel
 def _as_listed(gas, lists):
-    """Return the gas with its lists as long as they are now."""
+    """Return the gas with the present length of its lists."""
     v = gas.vicinity
     vicinity = Vicinity(
         v.entry, lists.stride[0], v.anchor, v.width, v.cell, v.next, v.previous, v.first, v.mark, v.found, v.gap,
@@ -71,12 +72,12 @@ def _as_listed(gas, lists):
 
 @kernel
 def _longer_lists(gas, lists):
-    """Make all lists twice as long, in the same memory; tell whether there is so much."""
+    """Make all lists twice as long, in the same memory; return whether there is enough memory."""
     old = lists.stride[0]
     if 2 * old > lists.longest:
         return False
     entry = gas.vicinity.entry
-    # from the last one on, so that none is written over before it has been moved
+    # from the last list to the first, so that no list is overwritten before it has been moved
     for i in range(gas.molecules.size - 1, 0, -1):
         for q in range(entry[i * old], -1, -1):
             entry[2 * i * old + q] = entry[i * old + q]
@@ -91,7 +92,7 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def resolve(gas, ascent, book, lists, stop, most):
-        """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
+        """Resolve events up to the local time `stop`, at most `most` of them; see `ParcelSet._resolve`."""
         done = 0
         while True:
             status, some = advance(_as_listed(gas, lists), stop, most - done)
@@ -109,7 +110,7 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def place(gas, book, lists):
-        """List the neighbours of all molecules at the start; when the bath acts first may have been drawn already."""
+        """List the neighbours of all molecules at the start; keep the first time of the bath if it is drawn already."""
         state, clock = gas.tallies.random[0], gas.bath.clock[0]
         placed = place_all(_as_listed(gas, lists), book.now[0]) == _DONE
         while not placed and _longer_lists(gas, lists):
@@ -121,7 +122,7 @@ def attracting(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def attract(gas, book, lists, strength):
-        """Let all wells have another depth from now on: see `AttractingParcelSet.set_strength`."""
+        """Change the depth of all wells: see `AttractingParcelSet.set_strength`."""
         wells = gas.wells
         before = energy_of_wells(wells)
         for one in range(wells.depth.shape[0]):

@@ -1,8 +1,8 @@
 """The average of many frames, and its standard error by blocks, as kernels.
 
-The frames are gathered into blocks of equal length; when there are as many as fit, two neighbours become one. So there
-are always 20 to 40 blocks once there have been 20, and the memory does not grow however long the page is open. The
-scatter of the blocks is that of their average.
+The frames are gathered into blocks of equal length; when there is no room for another block, neighbouring blocks are
+merged in pairs. So there are always 20 to 40 blocks once there have been 20, and the memory does not grow however long
+the page is open. The standard error of the average is computed from the scatter of the blocks.
 """
 
 import math
@@ -13,18 +13,19 @@ from atmosbox.engine.core.jit import kernel
 __all__ = ["BLOCKS", "FEWEST", "FRAMES", "HELD", "LENGTH", "Average", "average", "forget", "gather"]
 
 BLOCKS = 40
-"""How many blocks there can be; half as many are left when two become one."""
+"""Largest number of blocks; half as many are left after a merger."""
 FEWEST = 4
-"""So many blocks at least have a scatter that tells something."""
+"""Smallest number of blocks for a standard error."""
 HELD, FRAMES, LENGTH = range(3)
 
 
 class Average(NamedTuple):
-    """The blocks of some numbers.
+    """The blocks of some quantities.
 
-    ``blocks : (BLOCKS + 1, number)`` the sums over the frames of each block, in the last row of the one that is
-    being filled; ``state : (4,)`` how many are full, how many frames are in the one that is not, how many frames make
-    one, and how many made one at the start. ``mean, error : (number,)``: the error is NaN while blocks are too few.
+    ``blocks : (BLOCKS + 1, number)`` are sums over the frames of each block; the last row is the block that is
+    being filled. ``state : (4,)`` is the number of full blocks, the number of frames in the block that is being filled,
+    the number of frames in a full block, and that number at the start. ``mean, error : (number,)`` are the average and
+    its standard error, NaN while there are too few blocks.
     """
 
     blocks: Any
@@ -35,7 +36,7 @@ class Average(NamedTuple):
 
 @kernel
 def forget(average):
-    """Begin anew."""
+    """Forget all frames."""
     average.state[HELD] = 0
     average.state[FRAMES] = 0
     average.state[LENGTH] = average.state[3]
@@ -46,7 +47,7 @@ def forget(average):
 
 @kernel
 def gather(values, average):
-    """Add the numbers of a frame."""
+    """Add the values of a frame to the blocks."""
     state, blocks = average.state, average.blocks
     for k in range(values.size):
         blocks[BLOCKS, k] += values[k]
@@ -69,7 +70,7 @@ def gather(values, average):
 
 @kernel
 def average(values, average):
-    """Add the numbers of a frame, and bring mean and error up to date."""
+    """Add the values of a frame, and update mean and standard error."""
     gather(values, average)
     state, blocks = average.state, average.blocks
     held, length = state[HELD], state[LENGTH]

@@ -1,6 +1,6 @@
-"""Drops of molecules that attract each other, as a page measures and shows them.
+"""Measure and show drops of molecules that attract each other, in a page.
 
-These are the counts and sums of `atmosbox.scene.instruments.Clusters`, as kernels, beside those of `gauging`.
+These kernels compute the counts and sums of `atmosbox.scene.instruments.Clusters`, in addition to those of `gauging`.
 """
 
 import functools
@@ -23,11 +23,11 @@ from atmosbox.lab.kernels.sight import sight
 __all__ = ["FIRST", "Crowd", "DropReading", "clustering"]
 
 FIRST = int(max(Reading)) + 6
-"""Where in ``Gauges.reading`` the numbers of drops begin: behind the temperatures of the six walls."""
+"""Index in ``Gauges.reading`` of the first reading of drops: after the temperatures of the six walls."""
 
 
 class DropReading(IntEnum):
-    """Where a number stands, from `FIRST` on; all in reduced units."""
+    """Indices of the readings, counted from `FIRST`; all are in reduced units."""
 
     LARGEST = 0
     VAPOUR = 1
@@ -43,13 +43,14 @@ class DropReading(IntEnum):
 
 
 class Crowd(NamedTuple):
-    """What is kept of the drops.
+    """The data of the drops.
 
-    ``members`` how many of the molecules attract each other, the first ones; ``crowded`` in how many wells one of a
-    drop is. ``wells``, ``drop``, ``size : (molecule,)``: in how many wells each is, a member of its drop that stands
-    for all (-1 in the vapour), and how large the drop is that one stands for. ``virial : (1,)`` at the end of the last
-    frame [energy]; ``gas_law : (2, 4)`` what p / n k T - 1 is of a gas: a sum over powers of its density, the first
-    one first, and of e^(strength / kT) - 1, from the zeroth on.
+    ``members`` is the number of molecules that attract each other, which come first; ``crowded`` the smallest number of
+    wells that a molecule inside a drop is in. ``wells``, ``drop``, ``size : (molecule,)``: for each molecule the number
+    of wells that it is in, the molecule that represents its drop (-1 in the vapour), and the size of the drop that it
+    represents. ``virial : (1,)`` is the virial at the end of the last frame [energy]; ``gas_law : (2, 4)`` the
+    coefficients of p / n k T - 1 of a gas: rows for the powers 1 and 2 of its density, columns for the powers 0 to 3
+    of e^(strength / kT) - 1.
     """
 
     members: int
@@ -63,7 +64,7 @@ class Crowd(NamedTuple):
 
 @kernel
 def _count_wells(vicinity, stride, wells):
-    """Count in how many wells each molecule is."""
+    """Count the wells that each molecule is in."""
     for i in range(wells.size):
         number = 0
         for q in range(i * stride + 1, i * stride + 1 + np.int64(vicinity.entry[i * stride])):
@@ -73,7 +74,7 @@ def _count_wells(vicinity, stride, wells):
 
 @kernel
 def _one_for_all(i, drop):
-    """Return which molecule stands for the drop of molecule i, and shorten the way to it."""
+    """Return the molecule that represents the drop of molecule i, and shorten the chain of references to it."""
     while drop[i] != i:
         drop[i] = drop[drop[i]]
         i = drop[i]
@@ -82,7 +83,7 @@ def _one_for_all(i, drop):
 
 @kernel
 def _find_drops(vicinity, stride, crowd):
-    """Tell of each molecule which drop it belongs to: see `instruments.drops_of`."""
+    """Find the drop that each molecule belongs to: see `instruments.drops_of`."""
     wells, drop, entry = crowd.wells, crowd.drop, vicinity.entry
     for i in range(drop.size):
         drop[i] = i if wells[i] >= crowd.crowded else -1
@@ -94,7 +95,7 @@ def _find_drops(vicinity, stride, crowd):
     for i in range(drop.size):
         if drop[i] >= 0:
             drop[i] = _one_for_all(i, drop)
-    # those at a surface: one that touches two drops belongs to the last that is found, in the order of Python
+    # molecules at a surface: one next to two drops belongs to the last that is found, in the same order as in Python
     for lower_is_liquid in (True, False):
         for i in range(drop.size):
             for q in range(i * stride + 1, i * stride + 1 + np.int64(entry[i * stride])):
@@ -113,7 +114,7 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def begin(gas, ascent, book, gauges, crowd):
-        """Begin to measure now."""
+        """Begin to measure."""
         begin_air(gas, ascent, book, gauges)
         gauges.before[7] += energy_of_wells(gas.wells)
         crowd.virial[0] = np.sum(gas.tallies.virial)
@@ -121,7 +122,7 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def gas_pressure(density, kT, strength, law):
-        """Return the pressure of a gas of this density by the gas law with B2 and B3, NaN where that says nothing."""
+        """Return the pressure of a gas by the virial series up to B3; NaN where that is not positive."""
         x = expm1(max(strength, 1e-9) / kT)
         factor, power = 1.0, 1.0
         for k in range(law.shape[0]):
@@ -134,7 +135,7 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_frame(gas, ascent, book, gauges, lists, crowd):
-        """Read what stands at the end of a frame, and finish its means."""
+        """Take the readings at the end of a frame, and complete the means of the frame."""
         lasted = -gauges.before[6]
         end_air(gas, ascent, book, gauges)
         lasted += gauges.before[6]
@@ -181,7 +182,7 @@ def clustering(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def look(gas, book, lists, crowd, sight):
-        """Write where all molecules are, and how many neighbours each attracts."""
+        """Write the positions of all molecules that are shown, and as colour the number of wells each is in."""
         look_at_speeds(gas, book, sight)
         _count_wells(gas.vicinity, lists.stride[0], crowd.wells)
         for k in range(sight.shown.size):

@@ -1,7 +1,7 @@
-"""What is read off a box in a page: thermometer, barometer, layers, speeds, unlike discs, a parcel that rises, mixing.
+"""Measurements in a page: thermometer, barometer, layers, speeds, light and heavy discs, a rising parcel, mixing.
 
-These are the sums of `atmosbox.scene.instruments`, as kernels. What is shown of them, and in which unit, the room's
-`reading` says; the averages of many frames are in `averaging`.
+These kernels compute the sums of `atmosbox.scene.instruments`. `lab_plan` says which of them are shown and in which
+unit; the averages of many frames are in `averaging`.
 """
 
 import functools
@@ -24,20 +24,21 @@ __all__ = ["Gauges", "Reading", "gauging"]
 
 
 class Gauges(NamedTuple):
-    """What the instruments of a box keep.
+    """The data of the instruments of a box.
 
-    ``reading : (Reading,)`` the last ones. ``warmth : (2,)`` the sum of kT over the samples of a frame [energy], and
-    their number; ``before : (8,)`` impulse of the walls and time at the end of the last frame, and the energy at the
-    start of all frames [energy]. ``barometer`` whose walls' impulses are the pressure: 0 all, 4 the floor alone.
+    ``reading : (Reading,)`` has the last readings. ``warmth : (2,)`` is the sum of kT over the samples of a frame
+    [energy], and their number; ``before : (8,)`` the impulses of the walls and the time at the end of the last frame,
+    and the energy at the start of all frames [energy]. ``barometer`` says which walls measure the pressure: 0 all, 4
+    the floor only.
 
-    ``edges : (bin + 1,)`` [velocity], ``counts : (bin,)`` and ``speeds : (bin,)`` the share of molecules by speed
-    [1/velocity]. ``sums : (4, layer)`` number, energy, degrees of freedom and, at the end of the last frame, virial;
-    ``layers : (4 layer,)`` of the last frame: the same, and virials per time; ``scratch : (6, layer)``. All are
-    empty in a scene that does not show them.
+    ``edges : (bin + 1,)`` are the edges of the bins of speed [velocity], ``counts : (bin,)`` the molecules in them, and
+    ``speeds : (bin,)`` the share of molecules by speed [1/velocity]. ``sums : (4, layer)`` are number, energy, degrees
+    of freedom and, at the end of the last frame, virial of each layer; ``layers : (4 layer,)`` the same of the last
+    frame, with virial per time; ``scratch : (6, layer)`` is scratch. All are empty in a scene that does not show them.
 
-    ``half : (molecule,)`` 0 for a light disc, 1 for a heavy one, empty where molecules are alike; ``running : (8,)``
-    sums of the mean energies of both halves [energy], the frames, the first energy, and the first momentum.
-    ``mixture`` two gases that mix; ``water`` vapour and liquid, 0 in a box without.
+    ``half : (molecule,)`` is 0 for a light disc and 1 for a heavy one, empty if molecules are alike; ``running : (8,)``
+    has sums of the mean energies of both halves [energy], the number of frames, the first energy, and the first
+    momentum. ``mixture`` are two gases that mix; ``water`` vapour and liquid, 0 in a box without water.
     """
 
     reading: Any
@@ -57,7 +58,7 @@ class Gauges(NamedTuple):
 
 
 class Reading(IntEnum):
-    """Where in ``Gauges.reading`` a number stands; all in reduced units. Those of water follow: `WaterReading`."""
+    """Indices of ``Gauges.reading``; all readings are in reduced units. Those of water follow: `WaterReading`."""
 
     TIME = 0
     KT = 1
@@ -94,7 +95,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def energies(gas, now):
-        """Return kinetic, rotational and potential energy [energy], and their sum over the three momenta."""
+        """Return kinetic, rotational and potential energy [energy], and the total momentum along x, y and z."""
         kinetic = rotational = potential = px = py = pz = 0.0
         for i in range(gas.molecules.size):
             if is_away(i, gas, modes):
@@ -137,7 +138,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def sample(gas, ascent, book, gauges):
-        """Read what a frame takes its mean of."""
+        """Take a sample for the means of a frame."""
         now = book.now[0]
         twice = 0.0
         bins = gauges.counts.size
@@ -165,7 +166,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def open_faces(gas, now):
-        """Return the areas of the walls across x, y and z that centres can reach: see `open_faces`."""
+        """Return the areas of the walls across x, y and z that centres of molecules can reach: see `open_faces`."""
         mean = 0.0
         for i in range(gas.molecules.size):
             if not is_away(i, gas, modes):
@@ -183,7 +184,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def pressure(gas, now, lasted, gauges):
-        """Return the pressure of the frame by the impulses of the walls [energy/length^3]."""
+        """Return the pressure of the frame from the impulses on the walls [energy/length^3]."""
         ax, ay, az = open_faces(gas, now)
         impulse = area = 0.0
         for wall in range(6):
@@ -194,7 +195,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_halves(gas, book, total, px, py, pz, gauges):
-        """Read the energies of the light and of the heavy discs, and the account of their momentum."""
+        """Measure the energies of the light and of the heavy discs, and check the balance of their momentum."""
         light = heavy = mass_sum = 0.0
         lighter = heavier = 0
         for i in range(gas.molecules.size):
@@ -229,7 +230,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def end_lift(gas, ascent, book, gauges):
-            """Read the state of a parcel that rises, by the ledger of its energy: see `instruments.Lift`."""
+            """Read the state of a rising parcel from its energy ledger: see `instruments.Lift`."""
             lift = ascent.lift
             here = ascent_of(ascent, book, ascent.filled)
             at = ledger_gauges(book.now[0], gas.molecules.size, ascent.freedom, 0.0, gas, here)
@@ -250,11 +251,11 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def end_lift(gas, ascent, book, gauges):
-            """Read nothing: this box does not rise, or `end_water` reads how."""
+            """Read nothing: this box does not rise, or `end_water` reads its state."""
 
     @kernel
     def begin(gas, ascent, book, gauges):
-        """Begin to measure now."""
+        """Begin to measure."""
         now = book.now[0]
         kinetic, rotational, potential, _, _, _ = energies(gas, now)
         for wall in range(6):
@@ -273,7 +274,7 @@ def gauging(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_frame(gas, ascent, book, gauges):
-        """Read what stands at the end of a frame, and finish its means."""
+        """Take the readings at the end of a frame, and complete the means of the frame."""
         reading, now = gauges.reading, book.now[0]
         time = gas.walls.epoch[0] + now
         lasted = time - gauges.before[_TIME]

@@ -19,9 +19,9 @@ def _quantity(which, number, energy, freedom, rate, volume, planes):
 
 @kernel
 def end_profile(gas, gauges, profile):
-    """Add the layers of the frame that has ended, and bring the profiles and their errors up to date.
+    """Add the layers of the frame that has ended, and update the profiles and their standard errors.
 
-    The first numbers of ``profile.mean`` are the densities of the layers, then come their kT, then their pressures.
+    ``profile.mean`` holds first the densities of the layers, then their kT, then their pressures.
     """
     layers = gauges.sums.shape[1]
     if layers == 0:
@@ -52,7 +52,7 @@ def end_profile(gas, gauges, profile):
                     volume,
                     planes,
                 )
-                # the running mean and sum of squares: Welford
+                # running mean and sum of squares by Welford's method
                 step = each - mean
                 mean += step / (block + 1)
                 squares += step * (each - mean)

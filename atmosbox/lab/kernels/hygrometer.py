@@ -1,4 +1,4 @@
-"""What is read off the water in a box, as kernels: the sums of `Water`, `Leaving`, `MoistLift` and `Nuclei`."""
+"""Measurements of the water in a box, as kernels: the sums of `Water`, `Leaving`, `MoistLift` and `Nuclei`."""
 
 import functools
 import math
@@ -27,24 +27,27 @@ __all__ = ["Hygrometer", "WaterReading", "hygrometry"]
 
 
 class Hygrometer(NamedTuple):
-    """What is kept of the water of a box.
+    """The data of the instruments for the water of a box.
 
-    ``sums : (10,)`` over the samples of a frame, see `Sampled`; ``before : (2,)`` how many had condensed and evaporated
-    at the end of the last frame; ``met : (4,)`` sums over all frames of rate times temperature of the liquid and of the
-    gas, of the rate, and how many frames had no liquid.
+    ``sums : (10,)`` are sums over the samples of a frame, see `Sampled`; ``before : (2,)`` the numbers of molecules
+    that had condensed and evaporated at the end of the last frame; ``met : (4,)`` sums over all frames of the rate of
+    evaporation times the temperature of the liquid, of that rate times the temperature of the gas, of the rate itself,
+    and the number of frames without liquid.
 
-    ``contact : (term,)`` the series of the contact value g in phi / (1 - phi), with which Z = 1 + 4 phi g;
-    ``volatility``, ``power``, ``binding`` the law of the vapour pressure, see `Substance`, up to ``critical`` [energy].
+    ``contact : (term,)`` are the coefficients of the contact value g in powers of phi / (1 - phi), with
+    Z = 1 + 4 phi g; ``volatility``, ``power`` and ``binding`` those of the vapour pressure, see `Substance`, up to the
+    temperature ``critical`` [energy].
 
-    ``moment``, ``planned : (row,)`` and ``log_pressure : (place,)`` say for which moments of the way, and for which
-    logarithms of the pressure over the planned one, ``adiabat : (row, place)`` gives the temperature of a parcel by
-    theory [energy]; where that depends on the pressure alone, there is one row, and nothing is planned. ``level``,
-    ``around : (place,)`` the virtual temperature of the environment [energy] by the logarithm of its pressure, and
-    ``mass`` of a molecule of water over one of air. All are empty in a scene without an ascent.
+    ``adiabat : (row, place)`` is the temperature of a parcel by theory [energy], for the moments ``moment : (row,)`` of
+    the ascent and the logarithms ``log_pressure : (place,)`` of the pressure over the planned one, whose logarithm is
+    ``planned : (row,)``; if it depends on the pressure alone, there is one row, and ``planned`` is zero. ``around :
+    (place,)`` is the virtual temperature of the environment [energy] for the logarithms ``level : (place,)`` of its
+    pressure, and ``mass`` the mass of a molecule of water over that of air. The arrays are empty in a scene without an
+    ascent.
 
-    ``width : (bin,)`` [energy], ``mean``, ``error : (bin,)`` [1/energy] the energies of molecules that left, of which
-    the first ``empty`` lie below the binding energy, and ``merged`` of the engine make one; empty in a scene that does
-    not show them.
+    ``width : (bin,)`` [energy], ``mean``, ``error : (bin,)`` [1/energy] are the distribution of the energies of
+    molecules that left the liquid; the first ``empty`` bins lie below the binding energy, and ``merged`` bins of the
+    engine make one bin. The arrays are empty in a scene that does not show them.
     """
 
     sums: Any
@@ -70,7 +73,7 @@ class Hygrometer(NamedTuple):
 
 
 class Sampled(IntEnum):
-    """Where in ``Hygrometer.sums`` a sum stands."""
+    """Indices of ``Hygrometer.sums``."""
 
     KT = 0
     PRESSURE = 1
@@ -85,7 +88,7 @@ class Sampled(IntEnum):
 
 
 class WaterReading(IntEnum):
-    """Where in ``Gauges.reading`` a number about water stands; all in reduced units, ratios in molecules."""
+    """Indices of the readings of water in ``Gauges.reading``; all in reduced units, ratios by number of molecules."""
 
     VAPOUR_PRESSURE = 32
     SATURATION = 33
@@ -116,7 +119,7 @@ class WaterReading(IntEnum):
 
 @kernel
 def saturation_pressure(kT, water):
-    """Return the vapour pressure at which as many molecules leave a liquid as come [energy/length^3]: `Substance`."""
+    """Return the saturation vapour pressure over a liquid [energy/length^3]: see `Substance`."""
     kT = min(kT, water.critical)
     return water.volatility * exp(water.power * log(kT) - water.binding / kT) if kT > 0.0 else 0.0
 
@@ -141,13 +144,13 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def liquid_kT(reservoir):
-        """Return the temperature of the liquid [energy], NaN where there is none and no nuclei."""
+        """Return the temperature of the liquid [energy]; NaN if there are neither liquid nor nuclei."""
         capacity = heat_capacity(reservoir)
         return reservoir.energy[THERMAL] / capacity if capacity > 0.0 else math.nan
 
     @kernel
     def adiabat(time, logarithm, lift, water):
-        """Return the temperature that theory expects of a parcel at a pressure, given by its logarithm [energy]."""
+        """Return the temperature of a parcel by theory [energy], given the logarithm of its pressure."""
         moment = interpolate(time, lift.course_time, lift.course_moment)
         row = 0
         while row < water.moment.size - 2 and water.moment[row + 1] < moment:
@@ -160,7 +163,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def room(gas, drops, volume):
-        """Return the share of the volume of a box that drops leave to the centres of molecules."""
+        """Return the share of the volume of a box that the excluded volume of drops leaves free."""
         taken = 0.0
         for k in range(drops.record.size):
             if drops.alive[k] == 1:
@@ -170,7 +173,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def mean_radius(gas, drops, salted):
-        """Return the mean radius of the drops with salt in them, or of those without [length]."""
+        """Return the mean radius of the drops with salt, or of those without [length]."""
         total = number = 0.0
         for k in range(drops.record.size):
             if drops.alive[k] == 1 and (drops.solute[k] > 0.0) == salted:
@@ -180,7 +183,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def sample(gas, ascent, book, energy, height, gauges):
-        """Read vapour pressure and temperatures, and how much of the water is what."""
+        """Sample vapour pressure, temperatures, and the amounts of vapour, liquid and rain."""
         wet, water, box = book.moisture, gauges.water, gas.box
         reservoir, sums = wet.reservoir, water.sums
         missing = reservoir.top[0]
@@ -212,7 +215,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def condensed_energy(gas, book):
-        """Return the energy of the liquid, of its vapour's binding and of the rain, and of drops [energy]."""
+        """Return the energy of the liquid, of its vapour's binding, of the rain and of drops [energy]."""
         wet = book.moisture
         reservoir = wet.reservoir
         energy = reservoir.binding_energy * (wet.vapours - reservoir.top[0])
@@ -228,7 +231,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def begin(gas, book, gauges):
-        """Begin to measure now."""
+        """Begin to measure."""
         count, water = book.moisture.reservoir.count, gauges.water
         water.sums[:] = 0.0
         water.met[:] = 0.0
@@ -237,7 +240,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_leaving(reservoir, water):
-        """Read how many have left with which energy: see `instruments.Leaving`."""
+        """Read the energies of the molecules that have left the liquid: see `instruments.Leaving`."""
         total = 0.0
         for k in range(reservoir.spectrum.size):
             total += reservoir.spectrum[k]
@@ -255,7 +258,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_frame(gas, ascent, book, time, lasted, gauges):
-        """Read the counters, and finish the means of the frame."""
+        """Read the counters, and complete the means of the frame."""
         reading, water, wet = gauges.reading, gauges.water, book.moisture
         reservoir, sums = wet.reservoir, water.sums
         count = reservoir.count
@@ -280,7 +283,7 @@ def hygrometry(modes: Modes) -> tuple[Callable[..., Any], ...]:
         reading[WaterReading.MOLECULES] = number_in_gas(gas, modes)
         reading[WaterReading.OPEN] = reservoir.rates[STICKING]
         reading[WaterReading.LIQUID_SATURATION] = saturation_pressure(liquid, water) if liquid >= 0.0 else math.nan
-        # how warm the liquid was when molecules left it; where it was gone for a while, the gas tells
+        # the temperature of the liquid when molecules left it; while there was none, that of the gas
         rate = reading[WaterReading.EVAPORATING]
         if liquid >= 0.0:
             water.met[0] += rate * liquid
@@ -326,7 +329,7 @@ def _nothing() -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def condensed_energy(gas, book):
-        """Return that there is none."""
+        """Return zero: there is no water."""
         return 0.0
 
     @kernel

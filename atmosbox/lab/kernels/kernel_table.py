@@ -1,4 +1,4 @@
-"""What a page calls, by name: the kernels for one set of modes, among them those that a hand on a knob needs."""
+"""The kernels that a page calls, by name, for one set of modes; among them those of the knobs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["kernels"]
 
 @kernel
 def warm_walls(walls, kT):
-    """Keep all heat baths at a temperature [energy] from now on: see `ParcelSet.set_wall_kT`."""
+    """Set the temperature of all heat baths [energy]: see `ParcelSet.set_wall_kT`."""
     for wall in range(6):
         if walls.law[wall] == HEAT_BATH:
             for k in range(walls.schedule[wall], walls.schedule[wall + 1]):
@@ -35,7 +35,7 @@ def warm_walls(walls, kT):
 
 @kernel
 def lead(gas, ascent, book, towards):
-    """Let the parcel make for another moment of its plan, at its pace, and rest there: see `Course.lead`."""
+    """Move the parcel to another moment of its planned ascent, at its pace, and stop there: see `Course.lead`."""
     time, lift = gas.walls.epoch[0] + book.now[0], ascent.lift
     here = interpolate(time, lift.course_time, lift.course_moment)
     times, moments = lift.course_time, lift.course_moment
@@ -48,7 +48,7 @@ def lead(gas, ascent, book, towards):
 
 @kernel
 def begin_averages_anew(speeds, layers):
-    """Forget all frames."""
+    """Begin the averages of many frames anew."""
     forget(speeds)
     forget(layers)
     return 0
@@ -63,7 +63,7 @@ def note_frame(gas, gauges, speeds, layers):
 
 
 def kernels(modes: Modes, *, wells: bool = False) -> dict[str, Callable[..., Any]]:
-    """Return the kernels for one set of modes by name, and for molecules that attract each other."""
+    """Return the kernels for a set of modes by name; ``wells`` if molecules attract each other."""
     found: dict[str, Callable[..., Any]] = {"lead": lead} if modes.ascends else {}
     found |= {"start": starting(modes, wells=wells)} if can_start(modes) else {}
     if wells:

@@ -1,8 +1,8 @@
-"""Cells that are laid out in a page, with the functions by which Python lays them out: see `row_cells`.
+"""Lay out the cells in a page, with the same functions as in Python: see `row_cells`.
 
-A piston that has moved far needs others, for molecules of one size between walls. The layers of a column depend on the
-temperature that its molecules have at the start, to its last digit, and so on the seed; and where molecules have come
-together in such numbers that a row is too short for them, layers follow the molecules.
+When a piston has moved far, molecules of one size between walls need other cells. The layers of a column depend on the
+exact temperature of its molecules at the start, and so on the seed; and when so many molecules have come together that
+a row is too short for them, the layers are fitted to the molecules.
 """
 
 import math
@@ -25,15 +25,16 @@ __all__ = [
 ]  # fmt: skip
 
 PLACES, NUMBER, LAST = 0, 1, 4
-"""Where in ``Layout.shape`` the number of places of a row, those of cells and those of the last slots stand."""
+"""Indices of ``Layout.shape``: the number of places of a row, the numbers of cells, and the last slots."""
 
 
 class Layout(NamedTuple):
-    """The cells of a box as they are now.
+    """The present cells of a box.
 
-    ``shape : (7,)`` places of a row, numbers of cells, last slots; ``filled : (1,)`` the height of the ceiling when
-    they were chosen [length]; ``edge : (axis, ...)`` their edges, with memory for more, ``radius`` of all molecules
-    [length]; ``column`` what decides on layers, 0 without gravity.
+    ``shape : (7,)`` holds the places of a row, the numbers of cells and the last slots; ``filled : (1,)`` the height of
+    the ceiling when the cells were chosen [length]; ``edge : (axis, ...)`` the edges of the cells, with memory for
+    more; ``radius`` the radius of all molecules [length]; ``column`` the data for the choice of layers, 0 without
+    gravity.
     """
 
     shape: Any
@@ -44,10 +45,11 @@ class Layout(NamedTuple):
 
 
 class Column(NamedTuple):
-    """What decides on the layers of a column, beside its temperature.
+    """The data, besides its temperature, from which the layers of a column are chosen.
 
-    ``weight`` of a molecule [force], ``bath`` the temperature of the warmest wall [energy], ``wanted`` how many layers
-    are asked for, ``thinnest`` of them [length]; ``count`` and ``old`` are scratch, for as many layers and one more.
+    ``weight`` is that of a molecule [force], ``bath`` the temperature of the warmest wall [energy], ``wanted`` the
+    requested number of layers, ``thinnest`` the smallest height of a layer [length]; ``count`` and ``old`` are scratch,
+    for as many layers and one more.
     """
 
     weight: float
@@ -60,7 +62,7 @@ class Column(NamedTuple):
 
 @kernel
 def choose_cells(filled, molecules, box, layout):
-    """Choose the numbers of cells for a ceiling at the height ``filled``; tell whether there are any that will do."""
+    """Choose the numbers of cells for a ceiling at the height ``filled``; return whether suitable ones exist."""
     x, y = box.length_x, box.length_y
     width = widths_for_rows(x, y, filled, layout.radius, molecules, False)
     walled = (False, False, False)
@@ -92,7 +94,7 @@ def write_cells(gas, layout, modes):
 
 @kernel
 def write_column(kT, gas, layout):
-    """Write the layers for molecules of a temperature [energy]; tell whether there is memory for them."""
+    """Write the layers for molecules of a temperature [energy]; return whether there is memory for them."""
     column = layout.column
     scale_height = max(kT, column.bath) / column.weight
     found = write_layers(gas.box.length_z, column.wanted, scale_height, column.thinnest, layout.edge[2])
@@ -103,7 +105,7 @@ def write_column(kT, gas, layout):
 
 @kernel
 def follow_molecules(gas, layout, modes):
-    """Write layers that follow the molecules as they are now; tell whether that was possible, and worth it."""
+    """Write layers fitted to the present positions of the molecules; return whether that was possible and worth it."""
     column, layers = layout.column, layout.shape[NUMBER + 2]
     column.count[:] = 0
     for i in range(gas.molecules.size):
@@ -120,7 +122,7 @@ def follow_molecules(gas, layout, modes):
 
 @kernel
 def _describe_column(layers, gas, layout):
-    """Write the tables of a column of so many layers."""
+    """Write the tables of a column of this number of layers."""
     box, edge, shape = gas.box, layout.edge, layout.shape
     edges = (edge[0, : shape[NUMBER] + 1], edge[1, : shape[NUMBER + 1] + 1], edge[2, : layers + 1])
     gas.cells.boundary[0, 2] = math.inf

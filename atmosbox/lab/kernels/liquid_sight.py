@@ -1,4 +1,4 @@
-"""What is seen of the liquid in a box in a page: what `atmosbox.page.page_liquid` draws, as a kernel."""
+"""The picture of the liquid in a box: the data that `atmosbox.page.page_liquid` draws, as a kernel."""
 
 import functools
 import math
@@ -27,7 +27,7 @@ def liquid_sight(modes: Modes) -> Callable[..., Any]:
 
     @kernel
     def draw_layer(number, what, sight):
-        """Draw so many molecules as a layer on the floor."""
+        """Draw this number of molecules as a layer on the floor."""
         if number > 0 and sight.water > 0:
             row = sight.drops[sight.many[0]]
             row[0] = row[1] = 0.0
@@ -37,7 +37,7 @@ def liquid_sight(modes: Modes) -> Callable[..., Any]:
 
     @kernel
     def draw_mist(number, sight):
-        """Draw so many molecules as clumps, all alike and at places that never change."""
+        """Draw this number of molecules as clumps, which are all alike and have fixed places."""
         if number <= 0:
             return
         many = min(sight.spread.shape[0], number)
@@ -50,7 +50,7 @@ def liquid_sight(modes: Modes) -> Callable[..., Any]:
 
     @kernel
     def draw_drops(gas, book, sight):
-        """Draw the drops where they are, as large as they are."""
+        """Draw the drops at their positions, in their size."""
         drops, box = book.moisture.drops, gas.box
         for k in range(drops.record.size):
             if drops.alive[k] == 1:
@@ -64,7 +64,7 @@ def liquid_sight(modes: Modes) -> Callable[..., Any]:
 
     @kernel
     def look_at_liquid(gas, book, sight):
-        """Write which drops, clumps or layers are drawn, in the unit of the page."""
+        """Write the drops, clumps or layers to draw, in the unit of the page."""
         count = book.moisture.reservoir.count
         sight.many[0] = 0
         if modes.drops > 0:

@@ -1,7 +1,7 @@
-"""What passes time in a box, with liquid in it or without: the loop of the engine for one set of modes.
+"""Advance a box with or without liquid: the loop of the engine for one set of modes.
 
-In Python `ParcelSet`, `MoistParcelSet` and `DropParcelSet` each say how time passes in them. Here it is said once for
-each set of modes, in kernels that all take the same arguments.
+In Python `ParcelSet`, `MoistParcelSet` and `DropParcelSet` each advance their own box. Here each set of modes has
+kernels for that, which all take the same arguments.
 """
 
 import functools
@@ -21,10 +21,11 @@ __all__ = ["Moisture", "has_moist_knobs", "moist_knobs", "moist_passing"]
 
 
 class Moisture(NamedTuple):
-    """What a box knows of its liquid.
+    """The data of the liquid of a box.
 
-    ``reservoir`` the liquid; ``vapours`` molecules of water in vapour and liquid, and ``rotations`` rotational degrees
-    of freedom of all molecules, together; ``drops`` what is known of those that can be seen, 0 if there are none.
+    ``reservoir`` is the liquid; ``vapours`` the molecules of water in vapour and liquid together, and ``rotations``
+    the rotational degrees of freedom of all molecules together; ``drops`` the data of drops that are spheres in the
+    box, 0 if there are none.
     """
 
     reservoir: Reservoir
@@ -49,7 +50,7 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def draw(gas, book, speed):
-            """Draw anew when the next molecule leaves a drop."""
+            """Draw the time at which the next molecule leaves a drop anew."""
             drop_begin(gas, book.moisture.drops, book.moisture.reservoir, book.now[0])
 
     else:
@@ -59,7 +60,7 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
             @kernel
             def advance(gas, ascent, book, until, most):
-                """Resolve events of molecules and of the liquid, and turn the piston as it is due."""
+                """Resolve events of molecules and of the liquid, and set a new piston velocity when it is due."""
                 wet = book.moisture
                 here = MoistAscent(ascent, wet.vapours, wet.rotations)
                 return moist_advance(gas, wet.reservoir, here, until, most)
@@ -73,12 +74,12 @@ def moist_passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def draw(gas, book, speed):
-            """Draw anew when the liquid does something, for molecules that may be as fast as a speed [length/time]."""
+            """Draw the next event of the liquid anew, for molecules with speeds up to `speed` [length/time]."""
             moist_begin(gas, book.moisture.reservoir, book.now[0], speed)
 
     @kernel
     def wake(gas, book, speed):
-        """Draw anew if something now moves so fast that molecules may become faster than has been reckoned with."""
+        """Draw the next event of the liquid anew if molecules may now become faster than the bound that was used."""
         if speed > book.moisture.reservoir.bound[0]:
             draw(gas, book, speed)
 
@@ -94,7 +95,7 @@ def _dry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def advance(gas, ascent, book, until, most):
-            """Resolve events, and turn the piston as it is due."""
+            """Resolve events, and change the velocity of the piston when it is due."""
             return loop(gas, ascent, until, most)
 
     else:
@@ -112,7 +113,7 @@ def _dry(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
 
 def has_moist_knobs(modes: Modes) -> bool:
-    """Tell whether knobs change a box with liquid: none does where drops are seen, nor where a cloud rises."""
+    """Return whether a box with liquid has knobs: one with visible drops or with a rising cloud has none."""
     return not modes.drops and (modes.pool or not modes.ascends)
 
 
@@ -125,7 +126,7 @@ def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
 
     @kernel
     def warm_walls(gas, book, first, last, kT):
-        """Make heat baths of some walls [energy]: see `set_wall`, and of those that are some `set_wall_kT`."""
+        """Make walls heat baths of a temperature [energy]: see `set_wall`, and `set_wall_kT` for present heat baths."""
         walls = gas.walls
         wake(gas, book, math.sqrt(8.0 * kT / gas.kinds.table[book.moisture.reservoir.kind].mass))
         for wall in range(first, last):
@@ -137,7 +138,7 @@ def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
 
     @kernel
     def smooth_walls(gas, first, last):
-        """Make smooth walls of heat baths again."""
+        """Make heat baths smooth walls again."""
         walls = gas.walls
         for wall in range(first, last):
             walls.law[wall] = SPECULAR
@@ -146,7 +147,7 @@ def moist_knobs(modes: Modes) -> dict[str, Callable[..., Any]]:
 
     @kernel
     def cover_pool(gas, book, share):
-        """Leave a share of the pool open: see `MoistAccount.set_open_pool`."""
+        """Set the share of the pool that is open: see `MoistAccount.set_open_pool`."""
         cover(book.moisture.reservoir, share)
         draw(gas, book, book.moisture.reservoir.bound[0])
         return 0

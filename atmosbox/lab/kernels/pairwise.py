@@ -1,4 +1,4 @@
-"""Sums as numpy takes them: of halves, their halves and so on, so that rounding grows with the logarithm of the number.
+"""Sums as numpy computes them: by halves, their halves and so on, so that rounding errors grow with the logarithm.
 
 A start in Python sums with numpy; the same start in a page must round in the same way. A test compares the two.
 """
@@ -8,13 +8,13 @@ from atmosbox.engine.core.jit import kernel
 __all__ = ["DEPTH", "pairwise_sum"]
 
 DEPTH = 64
-"""How many pieces may wait at once: more than any number of molecules has halves."""
+"""Largest number of pieces that wait at once: more than any number of molecules can be halved."""
 _PIECE, _LANES = 128, 8
 
 
 @kernel
 def _piece(values, first, number):
-    """Return the sum of at most 128 numbers: eight sums side by side, and what is left over."""
+    """Return the sum of at most 128 numbers: eight partial sums side by side, and the rest."""
     if number < _LANES:
         total = -0.0
         for k in range(first, first + number):
@@ -47,9 +47,9 @@ def pairwise_sum(values, number, waiting, partial):
     values : (at least number,)
         The numbers.
     number
-        How many of them.
+        Number of values to sum.
     waiting : (DEPTH, 2), partial : (DEPTH,)
-        Scratch: pieces that are still to be summed, where they begin and how long they are, and sums of others.
+        Scratch: start and length of the pieces that are still to be summed, and the sums of others.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""How time passes in a page: what `ParcelSet.advance` does between two calls of the engine, as one kernel.
+"""Advance a box in a page: what `ParcelSet.advance` does between two calls of the engine, as one kernel.
 
-In Python the box answers when the engine stops on the way: an epoch of its clocks is over, the copies in the rows of
-cells are too old, a row is full. In a page nothing answers but what has been compiled, so those answers stand here, in
-the same order and with the same numbers; a test compares the bytes.
+In Python the box acts when the engine stops on the way: because an epoch of its clocks is over, the copies in the rows
+of cells are too old, or a row is full. A page has only compiled code, so the kernels here do the same, in the same
+order and with the same numbers; a test compares the bytes.
 """
 
 import functools
@@ -31,11 +31,11 @@ _CRUSHED, _TURNED, _CROWDED = Status.CRUSHED.value, Status.TURNED.value, Status.
 
 
 class Book(NamedTuple):
-    """What a box knows beside its gas.
+    """The data of a box besides its gas.
 
-    ``now : (1,)`` the time that its clocks read [time]; ``epoch_length : (1,)`` after what time they begin anew [time];
-    ``clocks`` of what is no event of a molecule [time]: see `epoch`; ``energy : (1,)`` what it had at the start
-    [energy]; ``moisture`` its liquid, 0 if it has none.
+    ``now : (1,)`` is the time that its clocks show [time]; ``epoch_length : (1,)`` the time after which they are set
+    back [time]; ``clocks`` those of events that are not events of a molecule [time], see `epoch`; ``energy : (1,)`` the
+    energy at the start [energy]; ``moisture`` the liquid, 0 if there is none.
     """
 
     now: Any
@@ -46,11 +46,11 @@ class Book(NamedTuple):
 
 
 class Passed(IntEnum):
-    """How far time has passed.
+    """Why a call of ``pass_time`` has ended.
 
-    ``DONE`` the time asked for is reached; ``BUSY`` there is more to do; ``STALLED`` events pile up without progress;
-    ``FULL`` more molecules have come together in a cell than it has memory for; ``CRUSHED`` the piston is too low;
-    ``CROWDED`` a molecule that evaporates finds no free place.
+    ``DONE``: the requested time is reached; ``BUSY``: the largest number of events is reached; ``STALLED``: events pile
+    up without progress; ``FULL``: more molecules have come together in a cell than it has memory for; ``CRUSHED``: the
+    piston is too low; ``CROWDED``: there is no free place for a molecule that evaporates.
     """
 
     DONE = 0
@@ -63,21 +63,21 @@ class Passed(IntEnum):
 
 @kernel
 def ascent_of(ascent, book, filled):
-    """Return an ascent with the energy of its start, above cells that were laid out for a ceiling of this height."""
+    """Return the ascent with the energy at its start, for cells that were laid out for a ceiling at this height."""
     a = ascent
     return Ascent(a.lift, a.turns, filled, a.lowest, book.energy[0], a.gravity_work, a.freedom, a.diameter)
 
 
 @kernel
 def _stride(layout, modes):
-    """Return how many words the row of a cell takes now: with copies of trajectories, or with names alone."""
+    """Return the present number of words in the row of a cell: with copies of trajectories, or with numbers only."""
     places = layout.shape[PLACES]
     return row_stride(places, modes.mixed) if modes.rows else 1 + places
 
 
 @kernel
 def _as_laid_out(gas, layout, modes):
-    """Return the gas with its cells as they are now."""
+    """Return the gas with its present cells."""
     c, shape = gas.cells, layout.shape
     cells = Cells(
         c.row, _stride(layout, modes), c.boundary, c.first, c.span, c.slot,
@@ -88,7 +88,7 @@ def _as_laid_out(gas, layout, modes):
 
 @kernel
 def _fits(gas, layout, modes):
-    """Tell whether there is memory for all cells and their rows."""
+    """Return whether there is memory for all cells and their rows."""
     shape = layout.shape
     x, y, z = shape[NUMBER], shape[NUMBER + 1], shape[NUMBER + 2]
     if modes.rows and shape[PLACES] > MOST:
@@ -98,7 +98,7 @@ def _fits(gas, layout, modes):
 
 @kernel
 def _longer_rows(gas, layout, modes):
-    """Give the rows more places, in the same memory; tell whether there is so much. Copies of trajectories are lost."""
+    """Give the rows more places in the same memory; return whether there is enough. Copies of trajectories are lost."""
     row, shape, old = gas.cells.row, layout.shape, _stride(layout, modes)
     shape[PLACES] += MORE if modes.rows else old
     if not _fits(gas, layout, modes):
@@ -106,7 +106,7 @@ def _longer_rows(gas, layout, modes):
     if modes.rows:
         row[:] = 0
         return True
-    # rows of names are twice as long: from the last one on, so that none is written over before it has been moved
+    # rows of numbers become twice as long: from the last to the first, so that none is overwritten before it is moved
     for cell in range(shape[NUMBER] * shape[NUMBER + 1] * shape[NUMBER + 2] - 1, 0, -1):
         for place in range(np.int64(row[cell * old]), -1, -1):
             row[2 * cell * old + place] = row[cell * old + place]
@@ -114,11 +114,11 @@ def _longer_rows(gas, layout, modes):
 
 
 def epochs(resolve: Callable[..., Any], modes: Modes) -> Callable[..., Any]:
-    """Return the kernel ``pass_time`` of a box whose events up to a local time ``resolve`` resolves."""
+    """Return the kernel ``pass_time`` of a box; ``resolve`` resolves its events up to a local time."""
 
     @kernel
     def pass_time(gas, ascent, book, layout, until, most):
-        """Let time pass until ``until`` [time since the start], or for so many events; tell how far, and how many."""
+        """Advance to ``until`` [time since the start], or by ``most`` events; return a `Passed` and the events."""
         done = 0
         while True:
             local = until - gas.walls.epoch[0]
@@ -153,7 +153,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def proceed(gas, ascent, book, layout, until, most):
-            """Resolve events, and turn the piston as it is due."""
+            """Resolve events, and change the velocity of the piston when it is due."""
             here = ascent_of(ascent, book, layout.filled[0])
             return advance(_as_laid_out(gas, layout, modes), here, book, until, most)
 
@@ -166,7 +166,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def refilled(gas, now, layout):
-        """Write the copies in all rows anew, in longer rows if need be; tell whether there was memory for them."""
+        """Write the copies in all rows anew, in longer rows if needed; return whether there was memory for them."""
         if modes.rows:
             while refill(_as_laid_out(gas, layout, modes), now):
                 if not _longer_rows(gas, layout, modes):
@@ -175,7 +175,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def placed(gas, now, layout):
-        """Enter all molecules into their cells, where they plan their events; tell whether there was memory."""
+        """Enter all molecules into their cells and plan their events; return whether there was memory."""
         while True:
             gas.calendar.time[:] = math.inf
             gas.calendar.winner[:] = 0
@@ -188,7 +188,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def laid_out(gas, now, layout):
-            """Choose cells for the box as it is now; tell whether that was possible."""
+            """Choose cells for the present box; return whether that was possible."""
             piston = gas.walls.piston
             ceiling = piston[0] + piston[1] * (now - piston[2])
             if not (choose_cells(ceiling, gas.molecules.size, gas.box, layout) and _fits(gas, layout, modes)):
@@ -200,26 +200,26 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
         @kernel
         def laid_out(gas, now, layout):
-            """Tell that a box without a piston keeps its cells."""
+            """Return False: a box without a piston keeps its cells."""
             return False
 
     if modes.gravity and modes.rows and not (modes.piston or modes.mixed):
 
         @kernel
         def closer(gas, layout):
-            """Choose layers that follow the molecules, for rows are too short; tell whether that was possible."""
+            """Fit layers to the molecules, because rows are too short; return whether that was possible."""
             return layout.column.wanted > 1 and follow_molecules(gas, layout, modes) and _fits(gas, layout, modes)
 
     else:
 
         @kernel
         def closer(gas, layout):
-            """Tell that only a column has other layers."""
+            """Return False: only a column has other layers."""
             return False
 
     @kernel
     def entered(gas, now, layout, as_they_are):
-        """Enter all molecules into cells as they are, or closer ones; tell whether there are any that will do."""
+        """Enter all molecules into the present cells, or into layers fitted to them; return whether that succeeded."""
         while as_they_are or closer(gas, layout):
             if placed(gas, now, layout):
                 return True
@@ -228,7 +228,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def resolve(gas, ascent, book, layout, stop, most):
-        """Resolve events up to a local time, at most so many; see `ParcelSet._resolve`."""
+        """Resolve events up to the local time `stop`, at most `most` of them; see `ParcelSet._resolve`."""
         done = 0
         while True:
             status, some = proceed(gas, ascent, book, layout, stop, most - done)
@@ -260,7 +260,7 @@ def passing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def place(gas, book, layout):
-        """Place all molecules at the start; tell how that went."""
+        """Place all molecules at the start; return ``DONE`` or ``FULL``."""
         return Passed.DONE.value if entered(gas, book.now[0], layout, True) else Passed.FULL.value
 
     return epochs(resolve, modes), place

@@ -1,4 +1,4 @@
-"""Which of the molecules that a box has ever held are in its gas now: those in the liquid, and drops, are not."""
+"""Which records of a box are molecules in its gas now: drops, and molecules in the liquid, are not."""
 
 import math
 
@@ -11,7 +11,7 @@ __all__ = ["is_away", "number_in_gas"]
 
 @kernel
 def is_away(i, gas, modes):
-    """Tell whether record i is a drop, or a molecule in the liquid."""
+    """Return whether record i is a drop, or a molecule in the liquid."""
     if not modes.phases:
         return False
     molecule = gas.molecules[i]
@@ -20,7 +20,7 @@ def is_away(i, gas, modes):
 
 @kernel
 def number_in_gas(gas, modes):
-    """Return how many molecules are in the gas now."""
+    """Return the number of molecules in the gas now."""
     if not modes.phases:
         return gas.molecules.size
     number = 0

@@ -1,4 +1,4 @@
-"""What is seen of a box in a page: where its molecules are, written as the page reads a frame."""
+"""The picture of a box in a page: the positions of its molecules, in the format of a frame of the page."""
 
 import functools
 import math
@@ -17,17 +17,17 @@ _FINEST, _FASTEST = 65535, 255
 
 
 class Sight(NamedTuple):
-    """What a picture is made of.
+    """The data of a picture.
 
-    ``shown : (shown,)`` which molecules are drawn; ``length : (3,)`` sides of the box now [length]; ``place :
-    (shown, 3)`` uint16 and ``colour : (shown,)`` uint8, as `atmosbox.page.frame` says; ``highest`` the speed
+    ``shown : (shown,)`` are the molecules that are drawn; ``length : (3,)`` the present sides of the box [length];
+    ``place : (shown, 3)`` uint16 and ``colour : (shown,)`` uint8 as in `atmosbox.page.frame`; ``highest`` is the speed
     at the top of the scale of colours [velocity].
 
-    ``state : (shown,)`` uint8, 1 for a molecule that is not in the gas; ``drops : (drop, 4)`` float32 what is drawn of
-    the liquid, in the unit of the page, and ``many : (1,)`` how much of that there is now. Of a scene with liquid also:
-    ``unit`` of the page over the length of the engine; ``water`` how many molecules of it there are; ``spread : (clump,
-    axis)`` where a mist is drawn, as shares of the box, and ``clump`` how large, if one molecule makes one; ``layers :
-    (2,)`` what stands in place of the radius of a pool, and of rain.
+    ``state : (shown,)`` uint8 is 1 for a molecule that is not in the gas; ``drops : (drop, 4)`` float32 are the pieces
+    of liquid to draw, in the unit of the page, and ``many : (1,)`` their present number. A scene with liquid also has:
+    ``unit``, the unit of the page over the length of the engine; ``water``, the number of molecules of water;
+    ``spread : (clump, axis)``, the places of the clumps of a mist as shares of the box, and ``clump``, the size of a
+    clump of one molecule; ``layers : (2,)``, the values that stand instead of a radius for a pool and for rain.
     """
 
     shown: Any
@@ -52,7 +52,7 @@ def sight(modes: Modes) -> Callable[..., Any]:
 
     @kernel
     def share(u, length, inverse):
-        """Return a coordinate over a side of the box, in steps of a 16-bit number."""
+        """Return a coordinate over a side of the box, as a 16-bit number."""
         part = u / length
         if inverse != 0.0:
             part -= math.floor(part)
@@ -60,7 +60,7 @@ def sight(modes: Modes) -> Callable[..., Any]:
 
     @kernel
     def look(gas, book, sight):
-        """Write where all molecules are, and how fast."""
+        """Write the positions and the colours, by speed, of all molecules that are shown."""
         now, box = book.now[0], gas.box
         piston = gas.walls.piston
         sight.length[0] = box.length_x

@@ -1,8 +1,8 @@
-"""Where molecules stand and how fast they are at the start of another seed, in a page.
+"""Draw the positions and velocities of molecules for another seed, in a page.
 
-It draws and places as the functions of `atmosbox.engine.start` do, in the same order and with the same numbers; what
-pushes overlapping molecules apart, and what clears the places of drops, are the engine's own kernels. `start_recipe`
-tells how a scene uses these functions.
+The kernels draw and place as the functions of `atmosbox.engine.start` do, in the same order and with the same numbers;
+the engine's own kernels push overlapping molecules apart and clear the places of drops. `start_recipe` finds out how a
+scene uses these functions.
 """
 
 import functools
@@ -26,10 +26,10 @@ from atmosbox.lab.kernels.pairwise import pairwise_sum
 __all__ = ["ALONG_X", "AS_PLACED", "PATIENCE", "SHUFFLED", "STEP", "Cleared", "Start", "can_start", "starting"]
 
 AS_PLACED, SHUFFLED, ALONG_X = range(3)
-"""How molecules that have been placed are numbered: as they were, in random order, or from left to right."""
+"""How molecules are numbered after they have been placed: as before, in random order, or from left to right."""
 PATIENCE, _ROUNDS, _GAP = 100, 8, 1e-6
 STEP = 0x9E3779B97F4A7C15
-"""What the state of the random numbers grows by with each."""
+"""Increment of the state of the random numbers with each number."""
 _STEP = np.uint64(STEP)
 _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
@@ -47,22 +47,24 @@ class Cleared(NamedTuple):
 
 
 class Start(NamedTuple):
-    """How the molecules of a box are drawn and placed.
+    """The data with which the molecules of a box are drawn and placed.
 
-    ``place``, ``order``, ``motion``, ``rotation`` after how many random numbers those of each begin; ``numbered`` one
-    of `AS_PLACED`, `SHUFFLED`, `ALONG_X`; ``scale_height`` of the air as it is placed [length], 0 if it is spread
-    evenly; ``planar`` 1 in a plane gas, else 0. ``speed`` that all molecules have [length/time], 0 where speeds differ.
-    ``twice`` the kinetic energy that they have together, twice, with the ``weight`` of them all, ``rotating`` their
-    energy of rotation [energy]: 0 each where it is as drawn. ``warmth`` kT of rotation, ``condensed`` the energy of the
-    liquid [energy]; ``warm`` how fast molecules may leave the warmest wall [length/time], in a box with liquid.
+    ``place``, ``order``, ``motion`` and ``rotation`` say after how many random numbers positions, numbering,
+    velocities and rotational energies are drawn; ``numbered`` is one of `AS_PLACED`, `SHUFFLED`, `ALONG_X`;
+    ``scale_height`` that of the air as it is placed [length], 0 if it is spread evenly; ``planar`` 1 in a plane gas,
+    else 0. ``speed`` is the speed of all molecules [length/time], 0 if speeds differ. ``twice`` is twice the kinetic
+    energy of all molecules [energy], ``weight`` their mass, and ``rotating`` their rotational energy [energy];
+    ``twice`` and ``rotating`` are 0 if the energy stays as drawn. ``warmth`` is kT of rotation [energy], ``condensed``
+    the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the warmest wall [length/time], in a box
+    with liquid.
 
-    ``spheres`` and ``bins`` are what the engine pushes apart; ``factor : (molecule,)`` is sqrt(kT / m) [length/time],
-    ``mass`` and ``degrees : (molecule,)`` mass and rotational degrees of freedom. ``spread : (2,)`` how far molecules
-    are from each other [length], and the fastest speed of the walls and of the fall between two of them [length/time].
-    ``at`` is what the law of the piston asks of the gas, the energy apart, ``layout`` are the cells of a column, and
-    ``cleared`` the drops that molecules make room for: 0 each in a box without. ``velocity : (molecule, axis)``,
-    ``key : (3 molecule,)``, ``rank`` and ``other : (molecule,)``, ``waiting``, ``partial`` and ``state : (1,)`` are
-    scratch.
+    ``spheres`` and ``bins`` are the arguments of the engine's function that pushes molecules apart; ``factor :
+    (molecule,)`` is sqrt(kT / m) [length/time], ``mass`` and ``degrees : (molecule,)`` are mass and rotational degrees
+    of freedom. ``spread : (2,)`` is the spacing of molecules [length], and the fastest speed of the walls and of a fall
+    over that spacing [length/time]. ``at`` has the data of the gas that the law of the piston needs, without the
+    energy, ``layout`` the cells of a column, and ``cleared`` the drops that molecules make room for; each is 0 in a box
+    without. ``velocity : (molecule, axis)``, ``key : (3 molecule,)``, ``rank`` and ``other : (molecule,)``,
+    ``waiting``, ``partial`` and ``state : (1,)`` are scratch.
     """
 
     place: int
@@ -98,7 +100,7 @@ class Start(NamedTuple):
 
 
 def can_start(modes: Modes) -> bool:
-    """Tell whether boxes of a set of modes can be begun in the page."""
+    """Return whether a page can start boxes of a set of modes with another seed."""
     return modes.ascends or not modes.piston
 
 
@@ -113,13 +115,13 @@ def _first_state(seed, first):
 
 @kernel
 def _skip(seed, number, state):
-    """Let the random numbers of a start go on after so many."""
+    """Set the random numbers of a start to the state after `number` of them."""
     state[0] = _first_state(seed, _FIRST_OF_START) + _STEP * np.uint64(number)
 
 
 @kernel
 def _sort(key, rank, other):
-    """Write down in which order keys rise, of equal ones the first first: runs that double are merged."""
+    """Sort keys and write their order, stable for equal keys: a merge sort with runs that double."""
     number = rank.size
     for k in range(number):
         rank[k] = k
@@ -142,7 +144,7 @@ def _sort(key, rank, other):
 
 @kernel
 def _place(seed, start):
-    """Place all molecules at random and push apart those that overlap; tell whether that was possible."""
+    """Place all molecules at random and push apart those that overlap; return whether that was possible."""
     spheres, state = start.spheres, start.state
     x, low, high = spheres.x, spheres.low, spheres.high
     _skip(seed, start.place, state)
@@ -163,7 +165,7 @@ def _place(seed, start):
 
 @kernel
 def _number(seed, start):
-    """Decide which number each molecule has."""
+    """Number the molecules."""
     key, rank = start.key, start.rank
     for i in range(rank.size):
         rank[i] = i
@@ -177,7 +179,7 @@ def _number(seed, start):
 
 @kernel
 def _sum(number, start):
-    """Return the sum of the first numbers of ``key``, as numpy takes it."""
+    """Return the sum of the first numbers of ``key``, as numpy computes it."""
     return pairwise_sum(start.key, number, start.waiting, start.partial)
 
 
@@ -206,7 +208,7 @@ def _move(seed, start):
 
 @kernel
 def _be_at_rest(start):
-    """Take the drift out of the velocities, and give them the energy that they are to have."""
+    """Remove the mean motion from the velocities, and scale them to the prescribed energy."""
     v, mass, key = start.velocity, start.mass, start.key
     px = py = pz = 0.0
     for i in range(mass.size):
@@ -228,7 +230,7 @@ def _be_at_rest(start):
 
 @kernel
 def _turn(seed, start, energy):
-    """Draw the energies of rotation of all molecules of the gas, and return their sum: see `rotational_energies`."""
+    """Draw the rotational energies of all molecules of the gas, and return their sum: see `rotational_energies`."""
     degrees, state, key = start.degrees, start.state, start.key
     _skip(seed, start.rotation, state)
     for i in range(degrees.size):
@@ -272,7 +274,7 @@ def _fastest(start):
 
 @kernel
 def _write_epoch(start, book):
-    """Write after what time clocks begin anew: 1024 times what a molecule takes to its neighbour, or half as much.
+    """Write the length of an epoch of the clocks: 512 to 1024 times the time from a molecule to its neighbour.
 
     It is a power of two: see `natural_time` and `ParcelSet`.
     """
@@ -292,11 +294,11 @@ def _write_epoch(start, book):
 
 @functools.cache
 def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
-    """Return the kernel ``start`` of one set of modes, and for molecules that attract each other."""
+    """Return the kernel ``start`` for a set of modes; ``wells`` if molecules attract each other."""
 
     @kernel
     def prepare_cells(kinetic, gas, book, begun):
-        """Say how long copies in cells may hold, and choose layers of cells; tell whether that was possible."""
+        """Set how long copies in cells are valid, and choose layers of cells; return whether that was possible."""
         if wells:
             return True
         gas.cells.copies.epoch[LONGEST] = book.epoch_length[0]
@@ -325,9 +327,9 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
 
         @kernel
         def begin_liquid(gas, ascent, book, begun):
-            """Give the piston its first velocity, and draw when the liquid does something first."""
+            """Give the piston its first velocity, and draw the first event of the liquid."""
             begin_ascent(gas, ascent, book, begun)
-            # in a loop, so that it is compiled once: for the molecules, and then anew for a piston that is faster
+            # in a loop, so that it is compiled once: for the molecules, and again for a piston that may be faster
             for speed in (max(_fastest(begun), begun.warm), 2.0 * abs(gas.walls.piston[1])):
                 wake(gas, book, speed)
 
@@ -336,7 +338,7 @@ def starting(modes: Modes, *, wells: bool = False) -> Callable[..., Any]:
 
     @kernel
     def start(gas, ascent, book, begun, seed):
-        """Place and move all molecules as the start of a seed does; tell whether that was possible."""
+        """Give all molecules the positions and velocities of a seed; return whether that was possible."""
         word = np.uint64(seed)
         if not _place(word, begun):
             return 1

@@ -1,4 +1,4 @@
-"""Two gases that mix, as kernels: what `atmosbox.scene.instruments.Mixing` measures."""
+"""Two gases that mix: the measurements of `atmosbox.scene.instruments.Mixing`, as kernels."""
 
 import functools
 import math
@@ -15,14 +15,14 @@ __all__ = ["Mixture", "mixing"]
 
 
 class Mixture(NamedTuple):
-    """Two gases, and where they are; all arrays are empty in a scene where none mix.
+    """The data of two gases that mix; all arrays are empty in a scene without such gases.
 
-    ``right : (molecule,)`` 1 for those that began on the right, else 0. ``low`` and ``width`` [length]: from where on,
-    and how far, centres reach along x. ``moments : (moment,)`` when to look [time], ``off : (moment,)`` how far the end
-    of a frame was from it, half a ``frame`` at most [time]; ``expected, scatter : (moment * bin,)`` the share of the
-    left gas that theory has then, and its variance over that of independent draws; ``mean, error : (moment * bin,)``
-    the share that is found, and its standard error. ``counts : (2, bin)`` molecules of both gases at the end of the
-    last frame.
+    ``right : (molecule,)`` is 1 for molecules that were on the right at the start, else 0. ``low`` and ``width`` are
+    the lower end and the length of the range of the centres along x [length]. ``moments : (moment,)`` are the times to
+    measure at [time], ``off : (moment,)`` the distance of the nearest end of a frame, at most half a ``frame`` [time].
+    ``expected, scatter : (moment * bin,)`` are the share of the left gas by theory, and its variance over that of
+    independent draws; ``mean, error : (moment * bin,)`` the measured share and its standard error. ``counts : (2,
+    bin)`` are the molecules of both gases at the end of the last frame.
     """
 
     right: Any
@@ -40,11 +40,11 @@ class Mixture(NamedTuple):
 
 @functools.cache
 def mixing(modes: Modes) -> tuple[Callable[..., Any], ...]:
-    """Return the kernels ``begin`` and ``end_frame`` of one set of modes; the second returns mode and entropy."""
+    """Return the kernels ``begin`` and ``end_frame`` of one set of modes."""
 
     @kernel
     def begin(mixture):
-        """Forget where the gases were."""
+        """Forget the measured shares."""
         mixture.off[:] = math.inf
         mixture.mean[:] = math.nan
         mixture.error[:] = math.nan
@@ -68,13 +68,13 @@ def mixing(modes: Modes) -> tuple[Callable[..., Any], ...]:
 
     @kernel
     def end_frame(gas, now, time, mixture):
-        """Count both gases across the box, and return the slowest mode and the entropy, 1 where they are one gas."""
+        """Count both gases across the box; return the slowest mode, and the entropy of mixing (1 if fully mixed)."""
         counts, bins = mixture.counts, mixture.counts.shape[1]
         counts[:] = 0.0
         amplitude = 0.0
         for i in range(gas.molecules.size):
             across = (motion_at(i, now, gas, modes).x - mixture.low) / mixture.width
-            # rounding may leave one that touches a wall a little behind it
+            # by rounding, a molecule that touches a wall may be a little beyond the range
             inside = min(max(across, 0.0), 1.0)
             cosine, _ = circle(0.5 * inside)
             amplitude += -cosine if mixture.right[i] else cosine
@@ -86,7 +86,7 @@ def mixing(modes: Modes) -> tuple[Callable[..., Any], ...]:
                 for b in range(bins):
                     both = counts[0, b] + counts[1, b]
                     place = m * bins + b
-                    # as in `Mixing`: two molecules where they are expected
+                    # as in `Mixing`: two more molecules, distributed as theory expects
                     guess = (counts[0, b] + PRIOR * mixture.expected[place]) / (both + PRIOR)
                     counted = max(both, 1.0) * (1.0 - both / ((both + PRIOR) * (both + PRIOR)))
                     mixture.mean[place] = counts[0, b] / both if both > 0.0 else math.nan
