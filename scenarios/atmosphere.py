@@ -71,14 +71,14 @@ if TYPE_CHECKING:
 title = "A column of atmosphere"
 FRAMES = 240
 SETTLE = 40
-"""Frames left out of the means at least; after a start out of equilibrium more, see `Column.settling`."""
+"""Least number of frames left out of the means; after a start out of equilibrium more, see `Column.settling`."""
 LEAST = 40
-"""Fewer settled frames than that give no headline."""
+"""Least number of settled frames for a headline."""
 LAYERS = 25
 FILLED = 3.0
-"""How many scale heights of the column hold molecules at a uniform start."""
+"""Height in scale heights that a uniform start fills with molecules."""
 JUMP = 0.563
-"""Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas whose molecules never meet."""
+"""Jump of temperature at a wall, 2.127 mean free paths (Sone 2007), over that of a gas without collisions."""
 
 STIRRED = {
     "rotation": True,
@@ -88,19 +88,19 @@ STIRRED = {
     "start": "equilibrium",
     "duration": 300.0,
 }
-"""What is not set is so in a column that is stirred: air that rotates, a troposphere, and little conduction."""
+"""Defaults of a stirred column: molecules that rotate, a troposphere, and little conduction."""
 PARCEL, LIFTS = 0.05, (0.15, 0.35)
-"""Shares of all molecules that are in a parcel, and by which it rises or sinks, at least and at most."""
+"""Share of all molecules that are in a parcel, and its least and greatest lift, as shares of all molecules."""
 TURN = 0.05
-"""Time between two sets of exchanges, in those that sound takes to climb a scale height."""
+"""Time between two sets of exchanges, in units of the time in which sound climbs a scale height."""
 INNER = 0.1
-"""Below and above so large a part of the molecules the lapse rate is not measured: few parcels come so far."""
+"""Share of the molecules at floor and ceiling where the lapse rate is not measured: few parcels come so far."""
 COLDEST = 0.3
-"""The adiabat may fall so far below the ceiling, in temperatures of the floor: higher up there is hardly any air."""
+"""Least temperature of the adiabat at the ceiling, over that of the floor: higher up there is hardly any air."""
 FOURIER = 8.0
-"""By up to this share, times the Knudsen number, stirred air conducts less heat than Fourier's law says.
+"""Share, per Knudsen number, by which stirred air at most conducts less heat than Fourier's law says.
 
-By a kinetic equation of the column, with the layers at floor and ceiling that no collision reaches (it stands in
+From a kinetic equation of the column that includes the layers without collisions at floor and ceiling (it is in
 tests/oracle): 1.5 to 7.7 for Knudsen numbers of 0.02 to 0.33, stirring of 0.3 to 300, with rotation and without.
 """
 
@@ -112,7 +112,7 @@ ladder = (
     Series("exact", "duration", (50, 100), {"molecules": 3000, "plane": True, "knudsen": 0.05}),
     Series("classic", "delta", (8, 4, 2), {"molecules": 3000, "plane": True, "knudsen": 0.05, "duration": 50}),
 )
-"""What is worth comparing: a column at rest is hardly sensitive to errors, except to a fall that makes energy."""
+"""Runs worth comparing: a column at rest is hardly sensitive to errors, except to a fall that creates energy."""
 
 
 class Settings(SceneSettings):
@@ -174,7 +174,7 @@ class Settings(SceneSettings):
         return lapse
 
     def check(self) -> None:
-        """Refuse what cannot be stirred, and discs that rotate."""
+        """Refuse a column that cannot be stirred, and discs that rotate."""
         if self.stirring and self.plane:
             raise SettingError("stirring", self.stirring, "is for air in space, not in a plane", "give --set plane=off")
         if self.plane and self.rotation:
@@ -204,10 +204,10 @@ class Settings(SceneSettings):
 
 
 class Column:
-    """The column in reduced units: length in scale heights, energy in kT, mass of a molecule.
+    """The column in reduced units: length in scale heights, energy in kT, mass in masses of a molecule.
 
-    A column in the plane stands for a slab of unit thickness, so that molecules per area are as many per volume.
-    With an engine whose molecules have no volume, it has no excess pressure.
+    A column in the plane represents a slab of unit thickness, so that molecules per area are numerically molecules per
+    volume. With an engine whose molecules have no volume, it has no excess pressure.
     """
 
     def __init__(self, settings: Settings, engine: EngineChoice = EXACT) -> None:
@@ -220,7 +220,7 @@ class Column:
         n = settings.molecules
         self.width = 1.0
         if settings.stirring:
-            # a slender column: with ten molecules in a cell its side is a mean free path
+            # a narrow column: with ten molecules in a cell its side is a mean free path
             self.width = rounded(min(math.sqrt(settings.knudsen**3 * n / (10.0 * self.height)), 1.0))
         held = -math.expm1(-min(self.height, 700.0))
         self.per_area = n / self.width ** (self.dimensions - 1)
@@ -232,15 +232,16 @@ class Column:
             self.diameter = math.sqrt(1.0 / (math.sqrt(2.0) * math.pi * density * settings.knudsen))
         self.diameter = rounded(self.diameter)
         self.room = 0.0 if engine.ideal else self.diameter
-        # the floor carries what lies above it; what the ceiling pushes back is small
+        # the floor carries the weight of the air and the pressure of the ceiling, which is small
         floor = self.per_area * (1.0 + math.exp(-min(self.height, 700.0)) / held)
         weight = si.surface_pressure / (self.energy * floor / self.scale_height**3)
         self.scale = Scale(self.scale_height, DRY_AIR.molecule_mass, self.energy, weight)
         self.bottom = 0.5 * self.diameter
         self.top = self.height - self.bottom
         self.works = settings.exchange == "parcels"
-        # the eddy conductivity n f/2 K is so many times that of the molecules: each exchange makes a share
-        # PARCEL / (1 - PARCEL - lift) of those away from the ends rise, and as many sink; K is half their mean square
+        # the eddy conductivity n f/2 K is ``stirring`` times that of the molecules: each exchange makes a share
+        # PARCEL / (1 - PARCEL - lift) of the molecules away from the ends rise, and as many sink; K is half their mean
+        # square
         thin = law.thin_gas_conductivity(1.0, 1.0, self.diameter, self.freedom)
         lift = np.linspace(*LIFTS, 101)
         square = PARCEL * float(np.mean(lift**2 / (1.0 - PARCEL - lift))) * (self.per_area / density) ** 2
@@ -248,19 +249,19 @@ class Column:
 
     @property
     def memory(self) -> float:
-        r"""How long a surplus of energy stays in the column until it has left by the floor [reduced time].
+        r"""Time in which a surplus of energy in the column decays through the floor [reduced time].
 
-        A column of a surplus :math:`c\,\Delta T` per molecule must conduct it to the floor, and the molecules that hit
-        the floor must take it along, :math:`(d + 1) k / 2` each,
+        A column with a surplus :math:`c\,\Delta T` per molecule must conduct it to the floor, and the molecules that
+        hit the floor must carry it away, :math:`(d + 1) k / 2` each,
 
         .. math:: \tau = \frac{0.563\,c N}{(d + 1) k J / 2} + \frac{c N}{\kappa} \int s(z)^2 dz
 
         for the flux :math:`J = n_0 \sqrt{kT / 2 \pi m}`, the share s(z) above z, and the conductivity of a
         thin gas by Chapman and Enskog, :math:`1.025\,(75/64)\,(k/\sigma^2) \sqrt{kT / \pi m}`, of discs
         :math:`1.029 \cdot 2\,(k/\sigma) \sqrt{kT / \pi m}` (Gass 1971, doi:10.1063/1.1675116).
-        Half of the molecules at the floor come from it and are as warm: so the gas there is nearer to the temperature
-        of the floor than the molecules that hit it. Its jump is that along 2.127 mean free paths (Sone 2007), 0.563 of
-        what the hits alone would make it, and taken for discs, too.
+        Half of the molecules at the floor come from the floor and have its temperature: so the gas there is nearer to
+        the temperature of the floor than the molecules that hit it. The jump of the temperature is that along 2.127
+        mean free paths (Sone 2007), 0.563 of the jump from the hits alone; this value is used for discs, too.
         """
         if self.rate:
             return self.stirred().memory
@@ -277,7 +278,7 @@ class Column:
         return total
 
     def stirred(self, kT: float = 1.0, gravity: float = 1.0) -> law.StirredColumn:
-        """Return the profile of the column that is stirred, above a floor of this temperature."""
+        """Return the profile of the stirred column above a floor of the temperature kT."""
         ends = self.bottom, self.top
         return law.stirred_column(
             self.per_area, *ends, kT, gravity, self.diameter,
@@ -285,11 +286,11 @@ class Column:
         )  # fmt: skip
 
     def settling(self, settings: Settings) -> float:
-        r"""Return how long after an uneven start the column has forgotten it [reduced time].
+        r"""Return the time in which the column relaxes after a start out of equilibrium [reduced time].
 
-        The surplus of energy must leave by the floor, or, if that is isolated, find its way to all heights: measured
-        for Knudsen numbers of 0.02 to 5, that takes some 4 Kn times as long as sound needs for a scale height. Of a
-        surplus of a third of the energy less than a tenth of the scatter of a single sample is left after
+        The surplus of energy must leave through the floor, or, if the floor is isolated, spread to all heights:
+        measured for Knudsen numbers of 0.02 to 5, that takes some 4 Kn times as long as sound needs for a scale height.
+        Of a surplus of a third of the energy less than a tenth of the scatter of a single sample is left after
         :math:`(2 + \tfrac12 \ln N)\,\tau`.
         """
         memory = self.memory + (4.0 * settings.knudsen if settings.floor == "isolated" else 0.0)
@@ -301,7 +302,7 @@ class Column:
         return np.asarray(law.hydrostatic_layers(edges, *column, dimensions=self.dimensions))
 
     def equilibrium_kT(self, dataset: "xr.Dataset", settings: Settings) -> float:
-        """Return the temperature of equilibrium: that of the floor, or the one that the energy allows."""
+        """Return the temperature of equilibrium: that of the floor, or the one that follows from the energy."""
         if settings.floor == "heat-bath":
             return float(dataset.wall_temperature.values[-1, 4]) / self.scale.temperature
         stores = dataset.kinetic_energy, dataset.rotational_energy, dataset.potential_energy
@@ -314,7 +315,7 @@ class Column:
     def textbook_pressure(self, height: np.ndarray, kT: float, gravity: float = 1.0) -> np.ndarray:
         r"""Return the pressure of the textbook, :math:`p_0 e^{-m g z / kT}` [kT/scale height^3].
 
-        Its :math:`p_0` is that of as many points between floor and ceiling.
+        Its :math:`p_0` is that of the same number of points between floor and ceiling.
         """
         floor = self.per_area / self.height * kT * float(law.column_floor_ratio(self.height, kT, 1.0, gravity))
         return np.asarray(law.barometric_pressure(height, floor, kT, 1.0, gravity))
@@ -325,27 +326,27 @@ class Column:
         return law.hydrostatic_mean_height(*column, dimensions=self.dimensions)
 
     def pressure(self, density: np.ndarray, kT: float) -> np.ndarray:
-        """Return the pressure of a gas of these molecules [kT/scale height^3]."""
+        """Return the pressure of a gas of the column's molecules [kT/scale height^3]."""
         pressure = law.gas_pressure_discs if self.dimensions == 2 else law.gas_pressure
         return np.asarray(pressure(density, kT, self.room))
 
 
 def _settled(column: Column, settings: Settings) -> int:
-    """Return how many frames pass until equilibrium."""
+    """Return the number of frames until equilibrium."""
     if settings.start == "equilibrium" and not settings.stirring:
         return SETTLE
     return min(max(math.ceil(column.settling(settings) / settings.duration * FRAMES), SETTLE), FRAMES - 1)
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the column runs unless another is asked for: one that can."""
+    """Return the engine on which the column runs unless the user names another: dsmc can stir, exact has discs."""
     if settings.stirring:
         return "dsmc"
     return "exact" if settings.plane else suited(settings.molecules)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
-    """Return the column."""
+    """Return the column at its start."""
     column = Column(settings, engine)
     n = settings.molecules
     plane = settings.plane
@@ -422,7 +423,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _stirring_facts(settings: Settings, column: Column) -> dict[str, str]:
-    """Return what the model card says of the stirring."""
+    """Return the lines of the model card about the stirring."""
     if not settings.stirring:
         return {}
     lift = f"by {100.0 * LIFTS[0]:g} to {100.0 * LIFTS[1]:g} % of the mass of the air"
@@ -437,7 +438,7 @@ def _stirring_facts(settings: Settings, column: Column) -> dict[str, str]:
 def _stirred_theory(
     dataset: "xr.Dataset", column: Column, settings: Settings, kT: float, gravity: float
 ) -> dict[str, np.ndarray]:
-    """Return the profiles of the stirred column, and the adiabat that meets them in the middle of the air."""
+    """Return the profiles of the stirred column, and the adiabat through the middle of the air."""
     scale = column.scale
     profile = column.stirred(kT, gravity)
     edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
@@ -461,13 +462,13 @@ def _stirred_theory(
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the barometric law, and what it becomes between walls, with molecules of some size, or stirred."""
+    """Return the barometric law, the same with walls and excluded volume, and the stirred profiles if it is stirred."""
     column = Column(settings, used(dataset))
     scale = column.scale
     kT = column.equilibrium_kT(dataset, settings)
     edges = np.append(dataset.height_bnds.values[:, 0], dataset.height_bnds.values[-1, 1]) / scale.length
     thick = np.diff(edges)
-    # no centre comes nearer to floor or ceiling than its radius: of the lowest and the highest layer a part is empty
+    # no centre comes nearer to floor or ceiling than its radius: a part of the lowest and the highest layer is empty
     reached = np.maximum(np.minimum(edges[1:], column.top) - np.maximum(edges[:-1], column.bottom), 0.0) / thick
     pull = float(dataset.gravity.values[-1]) / scale.acceleration if "gravity" in dataset else 1.0
     density = column.density(edges, kT, column.room, pull)
@@ -487,7 +488,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headline:
-    """Return the lapse rate of the stirred air; what theory says, in the same layers, with the same weights."""
+    """Return the lapse rate of the stirred air, and that of theory in the same layers with the same weights."""
     profile = column.stirred()
     inner = round(INNER * len(profile.height))
     low, high = profile.height[inner], profile.height[-1 - inner]
@@ -500,10 +501,11 @@ def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headl
     )
     memory = column.memory * FRAMES / settings.duration
     measured = average_beside(late.lapse_rate.values, _energy(late), memory)
-    # the lapse rate is nearly S/(1 + S) of the adiabat's, and S goes as 1 over the conductivity; more than all is none
+    # the lapse rate is nearly S/(1 + S) of the adiabat's, and S goes as one over the conductivity, which is not
+    # negative
     reached = settings.stirring / (1.0 + settings.stirring)
     unknown = min(FOURIER * settings.knudsen * reached, 1.0) / (1.0 + settings.stirring)
-    # and as a parcel keeps the motion of its middle, three of its degrees of freedom do no work
+    # and as a parcel keeps its centre-of-mass motion, three of its degrees of freedom do no work
     unknown += 3.0 / (settings.freedom * PARCEL * settings.molecules)
     return Headline(
         "lapse_rate_of_the_air",
@@ -525,7 +527,7 @@ def _energy(late: "xr.Dataset") -> np.ndarray:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the weight of the air, its temperature, and how fast it thins."""
+    """Return the weight of the air, and its temperature and mean height, or its lapse rate if it is stirred."""
     column = Column(settings, used(dataset))
     settled = _settled(column, settings)
     late = dataset.isel(elapsed_time=slice(settled, None))
@@ -535,7 +537,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     force = late.wall_pressure.values
     weight = force[:, 4] - force[:, 5]
     expected = column.per_area * column.scale.pressure
-    # what floor minus ceiling give beyond the weight is the change of momentum: its variance is N m kT at either end
+    # floor minus ceiling differ from the weight by the change of momentum, whose variance is N m kT at either end
     lasted = float(np.diff(dataset.elapsed_time_bnds.values[[settled, -1], [0, 1]])[0]) / column.scale.time
     chance = math.sqrt(2.0 * column.per_area * kT / column.width ** (column.dimensions - 1)) / lasted
     weight_headline = Headline(

@@ -60,21 +60,21 @@ if TYPE_CHECKING:
 
 title = "Attraction"
 ladder = (Series("exact", "molecules", (200, 400, 800)),)
-"""What is worth comparing: only the exact engine knows an attraction; fewer molecules make fewer clusters."""
+"""Runs worth comparing: only the exact engine has an attraction; with fewer molecules there are fewer clusters."""
 FRAMES = 150
 SETTLE = 50
 BLOCKS = 20
 RANGE = 1.5
 RATE = 0.1
-"""How often the random bath draws a velocity anew where a vapour condenses [1/time]: seldom, so that it warms."""
+"""Rate at which the random bath draws a new velocity where a vapour condenses [1/time]: low, so that the gas warms."""
 FAST_RATE = 0.5
-"""The same where liquid and vapour are there from the start."""
+"""The same rate where liquid and vapour are present from the start [1/time]."""
 GRAVITY = 0.08
-"""Of a pool [depth / (mass diameter)]: the vapour thins out by 1/e over some twelve diameters."""
+"""Gravity of a pool [depth / (mass diameter)]: the density of the vapour falls by 1/e over some twelve diameters."""
 TALL = 4.0
 """Height of the box of a slab or a pool, in widths."""
 THIN = 0.03
-"""Up to this density [diameter^-3] the pressure of a gas is held to its first three virial coefficients."""
+"""Density [diameter^-3] up to which the pressure of a gas is compared with its first three virial coefficients."""
 
 
 class Settings(SceneSettings):
@@ -124,13 +124,13 @@ def _scale(settings: Settings) -> Scale:
 
 
 def _warmth(settings: Settings) -> float:
-    """Return T*, the temperature over the depth of the wells as the attraction makes it."""
+    """Return T*, the temperature over the depth of the wells at the set strength of the attraction."""
     kT = _scale(settings).reduced_temperature(settings.temperature)
     return kT / settings.attraction if settings.attraction > 0.0 else math.inf
 
 
 def _sides(settings: Settings) -> tuple[tuple[float, float, float], int]:
-    """Return the sides of the box [diameter], and how many molecules of air are in it."""
+    """Return the sides of the box [diameter], and the number of molecules of air in it."""
     volume = settings.molecules / (settings.density * law.WELL_CRITICAL_DENSITY)
     air = round(settings.air * law.WELL_CRITICAL_DENSITY * volume)
     tall = TALL if settings.start in ("slab", "pool") else 1.0
@@ -139,21 +139,21 @@ def _sides(settings: Settings) -> tuple[tuple[float, float, float], int]:
 
 
 def _densities(warmth: float) -> tuple[float, float]:
-    """Return about how dense liquid and vapour are [diameter^-3], to begin with: not read by any measurement."""
+    """Return approximate densities of liquid and vapour at the start [diameter^-3]; no measurement uses them."""
     below = max(1.0 - warmth / law.WELL_CRITICAL_TEMPERATURE, 0.0)
     vapour = 1.3 * float(law.well_vapor_pressure(warmth)) / warmth
     return rounded(law.WELL_CRITICAL_DENSITY + 0.57 * below**0.35), rounded(vapour)
 
 
 def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.ndarray:
-    """Return where the molecules stand at the start, those that attract each other first."""
+    """Return the positions of the molecules at the start, those that attract each other first."""
     sides, air = _sides(settings)
     n = settings.molecules
     around = (True, True, not _walled(settings))
     if settings.start == "vapour":
         mixed = engine.scatter(sides, np.ones(n + air), rng, periodic=around)
         return np.asarray(mixed[_shuffled(len(mixed), rng)])
-    # sites as dense as the liquid; it takes those next to its middle, vapour and air some of the others
+    # lattice sites as dense as the liquid: it takes those nearest to its middle, vapour and air some of the others
     dense, thin = _densities(_warmth(settings))
     volume = math.prod(sides)
     sites = lattice_positions(sides, np.ones(int(dense * volume)), periodic=around)
@@ -173,7 +173,7 @@ def _places(settings: Settings, engine: EngineChoice, rng: RandomNumbers) -> np.
 
 
 def _shuffled(number: int, rng: RandomNumbers) -> np.ndarray:
-    """Return the numbers from 0 on, so many of them, in random order."""
+    """Return the integers from 0 to ``number`` - 1 in random order."""
     return np.argsort(rng.random(number), kind="stable")
 
 
@@ -250,7 +250,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the temperature of the bath, the pressure of saturation, and that of the free vapour by the gas law."""
+    """Return the temperature of the bath, the saturation pressure, and the pressure of the free vapour by B2 and B3."""
     scale = _scale(settings)
     frames = dataset.sizes["elapsed_time"]
     found = {}
@@ -264,7 +264,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
         kT = dataset.air_temperature.values / scale.temperature
         depth = max(settings.attraction, 1e-9)
         factor = law.square_well_compressibility(free, kT / depth)
-        # below zero the series says nothing: so cold and dense a vapour must condense
+        # where the series is negative it is not valid: a vapour so cold and dense must condense
         found["virial_pressure_theory"] = np.where(factor > 0.0, free * kT * factor * scale.pressure, np.nan)
     return found
 
@@ -277,11 +277,11 @@ _OF_SLAB = (
     "liquid_well_energy",
     "surface_tension",
 )
-"""What must have been seen of a slab in most frames: a thin layer has no inside, and may stand by no vapour."""
+"""Measurements that most frames of a slab must have: a thin layer has no inside, and may have no vapour beside it."""
 
 
 def _gas_pressure(settings: Settings) -> float:
-    """Return the pressure of the molecules if they stay a gas, with B2 and B3 [Pa]."""
+    """Return the pressure that the molecules have if they stay a gas, with B2 and B3 [Pa]."""
     density = settings.density * law.WELL_CRITICAL_DENSITY
     scale = _scale(settings)
     factor = float(law.square_well_compressibility(density, min(_warmth(settings), 1e9)))
@@ -289,7 +289,7 @@ def _gas_pressure(settings: Settings) -> float:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return what has condensed; of a gas its pressure; of a slab, what vapour and liquid are like."""
+    """Return the size of the drop and the vapour, the pressure of a gas, or the properties of a slab and its vapour."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
@@ -308,7 +308,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if gas and thin and settings.bath != "none" and not settings.air and settings.start == "vapour":
         mean = block_average(late.virial_pressure.values, BLOCKS)
         theory = _gas_pressure(settings)
-        # the next coefficient is some times larger than that of hard spheres, and multiplies the cube of the density
+        # the next coefficient is some times larger than that of hard spheres, and is multiplied by the density cubed
         density = settings.density * law.WELL_CRITICAL_DENSITY
         third = float(law.square_well_third_virial(min(_warmth(settings), 1e9)))
         left_out = 4.0 * abs(third) * density**3 * theory
@@ -330,10 +330,11 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return densities, pressure, latent heat and surface tension of liquid and vapour beside each other.
+    """Return densities, pressure, latent heat and surface tension of liquid and vapour in coexistence.
 
-    The number of molecules in the vapour forgets itself as they meet the liquid: after 4 V / A c in the vapour's volume
-    V with surfaces A, at the mean speed c. Shorter blocks would make the errors too small.
+    The number of molecules in the vapour has the correlation time 4 V / A c, the mean time until a molecule hits the
+    liquid, with the volume V of the vapour, its surfaces A and the mean speed c. Shorter blocks would make the errors
+    too small.
     """
     scale, warmth = _scale(settings), _warmth(settings)
     kT = scale.reduced_temperature(settings.temperature)
@@ -426,7 +427,7 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return how the drop grows, what becomes of the energy, and the pressure; of a slab its profile."""
+    """Return the panels of the drop, the energy, the temperature and the pressure; for a slab its profile."""
     time = "elapsed_time"
     grown = Panel(
         "line",

@@ -49,14 +49,14 @@ title = "Condensation"
 FRAMES = 240
 SETTLE = 40
 PARTS = 24
-"""Into how many equal parts of the logarithmic axis of time its curves are averaged."""
+"""Number of equal parts of the logarithmic axis of time in which its curves are averaged."""
 BLOCKS = 20
 MEMORIES = 4.0
-"""After how many correlation times the start no longer matters."""
+"""Number of correlation times after which the start no longer matters."""
 FEW = 400
-"""How many molecules must have condensed for an error to be read from blocks alone."""
+"""Number of condensed molecules below which blocks alone do not give the error."""
 MOLECULE = 0.52
-"""Radius of the ball that a molecule fills in liquid water, over the diameter of one of air: 0.193 nm to 0.37 nm."""
+"""Radius of the sphere that a molecule fills in liquid water, over the diameter of one of air: 0.193 nm to 0.37 nm."""
 CORE = 20.0
 """Mass of the nucleus of a drop, in molecules of air."""
 
@@ -66,7 +66,7 @@ ladder = (
     Series("exact", "duration", (20, 40), {"molecules": 3000}),
     Series("dsmc", "molecules", (10_000, 30_000)),
 )
-"""What is worth comparing: whatever lets molecules meet the droplets is right; they differ in scatter and in cost."""
+"""Runs worth comparing: the result is the same with any way of hitting the droplets; scatter and cost differ."""
 
 
 class Settings(SceneSettings):
@@ -94,7 +94,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air, by theory."""
+    """Return the moist air at the start, according to theory."""
     si = settings.si
     return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
@@ -160,7 +160,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _faces(settings: Settings, start: MoistBox) -> float:
-    """Return the area of the liquid in faces of the box; of drops, that which they have in the end if none merge."""
+    """Return the area of the liquid in faces of the box; for drops, the final area if none of them merge."""
     if not settings.drops:
         return settings.area
     held = max(start.vapour - start.full, 0.0) / settings.drops
@@ -170,7 +170,7 @@ def _faces(settings: Settings, start: MoistBox) -> float:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return saturation at the temperature of the walls, and the rate at which its vapour meets the liquid."""
+    """Return saturation at the temperature of the walls, and the rate at which its vapour hits the liquid."""
     start = _start(settings, ideal=used(dataset).ideal)
     walls = dataset.wall_temperature.values[:, 0]
     warmths, which = np.unique(walls, return_inverse=True)
@@ -180,7 +180,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     if settings.drops:
         held, drops = dataset.liquid_molecule_count.values, dataset.drop_count.values
         share = share * start.over_drops(held, drops, settings.drop_size * MOLECULE)
-        flux = flux * (held + 1.0) / (held + drops)  # not all have one to give
+        flux = flux * (held + 1.0) / (held + drops)  # an empty drop has no molecule to lose
     return {
         "water_vapor_partial_pressure_theory": share * np.asarray(law.saturation_vapor_pressure(walls)),
         "relative_humidity_theory": share,
@@ -190,15 +190,15 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return humidity, vapour pressure and both rates, once they have met.
+    """Return humidity, vapour pressure and both rates, averaged after equilibrium.
 
-    The humidity is that at the temperature of the walls. At the temperature of the air in each sample it would come
+    The humidity refers to the temperature of the walls. With the temperature of the air in each sample it would come
     out too large: the temperature of so few molecules scatters, and 1 / e_s is convex.
     """
     start = _start(settings, ideal=used(dataset).ideal)
     faces = _faces(settings, start)
     memory = start.memory(faces)
-    # what is too much at the start must have condensed
+    # the excess of vapour at the start must have condensed
     gone = math.ceil(MEMORIES * memory / settings.si.duration * FRAMES) if settings.si.humidity > 1.0 else 0
     late = dataset.isel(elapsed_time=slice(max(SETTLE, gone), None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
@@ -206,7 +206,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     vapour = late.water_vapor_partial_pressure
     lasted = settings.si.duration * late.sizes["elapsed_time"] / FRAMES
     share = start.share
-    # if only few came and went, blocks tell little of the error: that of a Poisson number with this memory
+    # if only few molecules came and went, blocks tell little of the error: use a Poisson number with this memory
     few = start.flux * faces * start.face * lasted < FEW
     alone = math.sqrt(2.0 * memory / lasted * share / start.full) if few else 0.0
     rows = (
@@ -243,7 +243,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return vapour pressure, the two rates and the water against time, and how the drops grow if there are any."""
+    """Return the panels of vapour pressure, both rates and water against time, and of the drops if there are any."""
     grown = history("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", parts=0)
     return (
         history(

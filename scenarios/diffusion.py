@@ -52,19 +52,19 @@ ladder = (
     Series("exact", "molecules", (1500, 3000, 6000, 12_000)),
     Series("dsmc", "molecules", (12_000, 48_000)),
 )
-"""What is worth comparing: molecules walk alike in both; the more there are, the less the shares scatter."""
+"""Runs worth comparing: molecules diffuse equally in both engines; with more molecules the shares scatter less."""
 FRAMES = 120
 SKIP = 2
-"""Frames before the molecules have forgotten how they flew when the wall was taken away."""
+"""Number of frames in which the molecules still remember how they flew when the wall was taken away."""
 BINS = 20
 LEAST_PATHS = 10.0
-"""How many mean free paths the box must be long at least: in a shorter one gases do not diffuse, they fly."""
+"""Least length of the box in mean free paths: in a shorter box gases do not diffuse, they fly through each other."""
 CORRELATED = 0.67
-"""By how much of the packing fraction correlated collisions may change D: measured, 1.2 times Enskog's at 0.3."""
+"""Largest relative change of D by correlated collisions, per packing fraction: measured, 1.2 times Enskog's at 0.3."""
 VISCOSITY = 0.179136
-"""Of a thin gas of hard spheres, in its units (Chapman and Enskog)."""
+"""Viscosity of a thin gas of hard spheres, in its units (Chapman and Enskog)."""
 IMAGES = 2.837297
-"""What a molecule and its images in a periodic cube do to each other (Yeh and Hummer 2004, doi:10.1021/jp0477147)."""
+"""Constant of the effect of a molecule's images in a periodic cube (Yeh and Hummer 2004, doi:10.1021/jp0477147)."""
 
 
 class Settings(SceneSettings):
@@ -85,7 +85,7 @@ class Settings(SceneSettings):
     )
 
     def check(self) -> None:
-        """Refuse what is no gas, and a box so short or so thin that its gases do not diffuse."""
+        """Refuse a gas that is too dense, and a box so short or so narrow that its gases do not diffuse."""
         filled = math.pi / 6.0 * self.si.diameter**3 * self.si.pressure / (BOLTZMANN * self.si.temperature)
         if filled > 0.1:
             widest = math.floor(100.0 * self.diameter * (0.1 / filled) ** (1.0 / 3.0)) / 100.0
@@ -135,7 +135,7 @@ def _diffusivity(settings: Settings, *, ideal: bool) -> float:
 
 
 def _rate(settings: Settings, *, ideal: bool) -> float:
-    """Return how fast the slowest mode decays [reduced]."""
+    """Return the rate at which the slowest mode decays [reduced]."""
     reach = settings.si.length / settings.si.diameter - 1.0
     return law.mixing_decay_rate(_diffusivity(settings, ideal=ideal), reach)
 
@@ -145,7 +145,7 @@ def _scale(settings: Settings) -> Scale:
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
-    """Return both gases at the moment at which the wall is taken away."""
+    """Return both gases at the moment when the wall is taken away."""
     n = settings.molecules
     rng = RandomNumbers(settings.seed)
     scale, (density, side) = _scale(settings), _box(settings)
@@ -184,11 +184,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _spread(settings: Settings) -> float:
-    r"""Return by what share chance makes the decay of one run faster or slower.
+    r"""Return the relative standard deviation of the decay rate of one run.
 
-    The N molecules walk independently, so that the mode is a process of Ornstein and Uhlenbeck with variance
-    :math:`1/2N`, which begins at :math:`2/\pi`; its decay is known with the error
-    :math:`\pi / \sqrt{2 N (1 - e^{-2T})}` after T mixing times.
+    The N molecules walk independently, so that the mode is an Ornstein-Uhlenbeck process with variance :math:`1/2N`
+    that begins at :math:`2/\pi`; the relative error of its decay rate is :math:`\pi / \sqrt{2 N (1 - e^{-2T})}` after T
+    mixing times.
     """
     return math.pi / math.sqrt(-2.0 * settings.molecules * math.expm1(-2.0 * settings.duration))
 
@@ -209,13 +209,13 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def _passed(dataset: "xr.Dataset", settings: Settings) -> np.ndarray:
-    """Return the times of the frames in mixing times of theory."""
+    """Return the times of the frames, in mixing times of theory."""
     rate = _rate(settings, ideal=used(dataset).ideal)
     return np.asarray(dataset.elapsed_time.values * 1e-9 / _scale(settings).time * rate)
 
 
 def _amplitude(passed: np.ndarray, settings: Settings, *, ideal: bool) -> np.ndarray:
-    """Return the slowest mode of theory after so many mixing times."""
+    """Return the slowest mode of theory after ``passed`` mixing times."""
     if settings.mass_ratio == 1.0:
         return np.asarray(np.exp(-passed))
     density, _ = _box(settings)
@@ -227,7 +227,7 @@ def _amplitude(passed: np.ndarray, settings: Settings, *, ideal: bool) -> np.nda
 
 
 def _aged(amplitude: np.ndarray) -> np.ndarray:
-    """Return after how many mixing times gases that differ by a label alone have mixed as far."""
+    """Return the mixing times after which gases that differ only by a label have mixed to the same degree."""
     return np.asarray(-np.log(np.clip(np.abs(amplitude), 1e-300, 1.0)))
 
 
@@ -244,7 +244,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     )
     unit = scale.length**2 / scale.time
     amplitude = _amplitude(passed, settings, ideal=ideal)
-    # measured in theory's own decay, which is faster or slower than D alone would have it if heat flows along
+    # measured relative to the decay of theory, which differs from that by D alone if the diffusion carries heat
     ratio, error = (
         np.array(_decay(dataset.mixing_amplitude.values, passed, settings.molecules))
         / (_decay(amplitude, passed, settings.molecules)[0])
@@ -262,7 +262,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             "diffusion coefficient",
         )
     ]
-    # theory knows what heat and sound do to small waves: where they do much after a mixing time, it says too little
+    # theory includes heat and sound for small waves: if their effect after a mixing time is large, theory is too simple
     place = int(np.abs(passed - 1.0).argmin())
     with_heat, _, steep = _entropy_spread(float(_aged(amplitude[place])), settings.molecules)
     linear = abs(with_heat - _entropy_spread(float(passed[place]), settings.molecules)[0]) <= known * steep
@@ -291,7 +291,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def _decay(amplitude: np.ndarray, passed: np.ndarray, molecules: int) -> tuple[float, float]:
-    r"""Return the rate at which the slowest mode decays, over that of theory, and its standard error.
+    r"""Return the decay rate of the slowest mode, over that of theory, and its standard error.
 
     From each frame to the next the mode is multiplied by r and gets a random part of variance
     :math:`(1 - r^2) \pi^2 / 8 N`; the best estimate of r is :math:`\sum A_i A_{i+1} / \sum A_i^2`.
@@ -304,29 +304,29 @@ def _decay(amplitude: np.ndarray, passed: np.ndarray, molecules: int) -> tuple[f
 
 
 def _entropy_spread(passed: float, molecules: int) -> tuple[float, float, float]:
-    """Return the entropy of mixing, its standard deviation by chance, and by how much a faster decay by 1 raises it.
+    """Return the entropy of mixing, its standard deviation, and its derivative by the logarithm of the decay rate.
 
-    Two things scatter: the slowest mode, and the counts in the bins.
+    Two quantities scatter: the slowest mode, and the counts in the bins.
     """
     edges = np.linspace(0.0, 1.0, BINS + 1)
     low, mean, high = law.mixing_entropy(law.mixed_share(edges, passed * np.array([0.99, 1.0, 1.01]))) / math.log(2.0)
-    slope = (high - low) / (0.02 * passed)  # with time; a relative change of the rate is one of time
+    slope = (high - low) / (0.02 * passed)  # by time; a relative change of the rate equals one of the time
     of_mode = math.sqrt(-math.expm1(-2.0 * passed) * math.pi**2 / (8.0 * molecules)) * math.exp(passed)
     of_counts = math.sqrt(2.0 * BINS) / (2.0 * molecules * math.log(2.0))
     return float(mean), math.hypot(slope * of_mode, of_counts), float(slope * passed)
 
 
 def _known(settings: Settings, *, ideal: bool) -> float:
-    r"""Return by what share the coefficient of theory may be off.
+    r"""Return the relative error of the coefficient of theory.
 
-    Correlated collisions of a gas that is not thin; that a mode decays a little while a molecule forgets its way; the
-    flow around a molecule, which in a box of width w meets its own images and slows it, by
-    :math:`2.837 kT / 6 \pi \mu w`; and of unlike gases that D is not the same on both sides.
+    It has four parts: correlated collisions in a dense gas; the decay of the mode while a molecule still remembers its
+    velocity; the flow around a molecule, which in a box of width w meets its own images and slows the molecule by
+    :math:`2.837 kT / 6 \pi \mu w`; and for unlike gases, that D is not the same on both sides.
     """
     density, side = _box(settings)
     diffusivity, rate = _diffusivity(settings, ideal=ideal), _rate(settings, ideal=ideal)
     lighter = min(_masses(settings))
-    forgotten = rate * diffusivity * lighter  # how much decays while a molecule forgets its way
+    forgotten = rate * diffusivity * lighter  # relative decay while a molecule still remembers its velocity
     dense = 0.0 if ideal else CORRELATED * float(law.packing_fraction(density, 1.0))
     narrow = 0.0 if ideal else IMAGES / (6.0 * math.pi * VISCOSITY * math.sqrt(lighter) * side * diffusivity)
     return dense + forgotten + narrow + law.diffusivity_error(_masses(settings))
@@ -360,6 +360,6 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
 
 
 def _over_time(title: str, name: str, label: str, y_label: str, headline: str) -> Panel:
-    """Return a panel of what changes with time, with its theory."""
+    """Return a panel of one variable against time, with its theory."""
     lines = Line("elapsed_time", name, label), Line("elapsed_time", f"{name}_theory", "theory", "theory")
     return Panel("line", title, lines, x_label="time", y_label=y_label, headlines=(headline,))

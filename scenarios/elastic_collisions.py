@@ -47,7 +47,7 @@ ladder = (
     Series("stepped", "delta", (0.4, 0.1), {"duration": 60}),
     Series("classic", "delta", (0.4, 0.1), {"duration": 60}),
 )
-"""What is worth comparing: every scheme that swaps momentum shares the energy out; they differ in what it costs."""
+"""Runs worth comparing: every scheme that exchanges momentum shares the energy out; they differ in cost."""
 
 
 class Settings(SceneSettings):
@@ -113,7 +113,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the mean energy that all discs come to: what they have had from the start, or that of a warm rim."""
+    """Return the mean energy that all discs reach: that of the start, or that of a warm rim."""
     mean = dataset.kinetic_energy.values[0] / settings.molecules
     rim = BOLTZMANN * dataset.wall_temperature.values[:, 0]
     return {"kinetic_energy_light_theory": np.where(np.isfinite(rim), rim, mean)}
@@ -122,10 +122,10 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 def _memory(dataset: "xr.Dataset") -> float:
     r"""Return the correlation time of the energy of the light discs [s].
 
-    At a contact disc i gets on average :math:`4 m_i m_j / (m_i + m_j)^2` of what j has more, and they meet with the
-    rate :math:`\sigma_{ij} g \sqrt{2 \pi kT (1/m_i + 1/m_j)} / A`. So the energies go back to their mean as
-    :math:`dE/dt = -R E` with a symmetric matrix R, and of the surplus a of the light discs, which is at the cost of
-    the others, the correlation time is :math:`a R^{-1} a / a^2`.
+    In a collision disc i receives on average :math:`4 m_i m_j / (m_i + m_j)^2` of the excess of j's energy, and they
+    collide at the rate :math:`\sigma_{ij} g \sqrt{2 \pi kT (1/m_i + 1/m_j)} / A`. So the energies relax to their mean
+    as :math:`dE/dt = -R E` with a symmetric matrix R, and a surplus a of the light discs, taken from the others, has
+    the correlation time :math:`a R^{-1} a / a^2`.
     """
     mass, diameter = dataset.disc_mass.values, dataset.disc_diameter.values
     area = float(np.prod(dataset.box_length.values[[0, 2]]))
@@ -139,13 +139,13 @@ def _memory(dataset: "xr.Dataset") -> float:
     half = mass.size // 2
     surplus = np.full(mass.size, -1.0 / (mass.size - half))
     surplus[np.argsort(mass, kind="stable")[:half]] = 1.0 / half
-    # the mean energy does not change: a 1 in its place makes the matrix regular and leaves the surplus alone
+    # the mean energy is constant: adding a constant to R makes it regular and does not change the surplus
     back = np.diag(rate.sum(axis=1)) - rate + rate.mean()
     return float(surplus @ np.linalg.solve(back, surplus) / (surplus @ surplus))
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the ratio of mean energies, and how well energy and momentum were kept."""
+    """Return the ratio of mean energies, and the largest errors of energy and momentum."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     found = [
         Headline(
@@ -194,7 +194,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the table, the energies, and what was kept."""
+    """Return the panels of the discs, of the energies, and of the conserved quantities."""
     unlike = settings.mass_ratio > 1.0
     return (
         Panel("discs", "The discs at the end", x_unit="m"),

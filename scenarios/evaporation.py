@@ -55,19 +55,19 @@ title = "Evaporation"
 FRAMES = 400
 BLOCKS = 20
 PARTS = 36
-"""Into how many parts of the logarithmic axis of time curves are averaged."""
+"""Number of equal parts of the logarithmic axis of time in which curves are averaged."""
 HOTTEST = 647.0
-"""Temperature above which nothing saturates, as a pool of one molecule may have for a moment [K]."""
+"""Temperature above which there is no saturation; a pool of one molecule may have it for a moment [K]."""
 LATE = "the piston moves a little late"
 FEW = 100
-"""With fewer molecules than that to come or go, errors are those of chance events, and not read from their scatter."""
+"""Number of molecules that come or go below which the errors are those of random events, and not from blocks."""
 
 
 ladder = (
     Series("exact", "duration", (10, 20)),
     Series("dsmc", "duration", (10, 20, 40)),
 )
-"""What is worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
+"""Runs worth comparing: the longer the pool is watched in equilibrium, the less its means scatter."""
 
 
 class Settings(SceneSettings):
@@ -84,7 +84,7 @@ class Settings(SceneSettings):
     diameter: float = setting(0.37, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.0)
 
     def check(self) -> None:
-        """Refuse water that boils, vapour that leaves no air, and molecules too wide for a gas."""
+        """Refuse water that boils, so much vapour that no air is left, and molecules too wide for a gas."""
         saturated = float(law.saturation_vapor_pressure(self.si.temperature))
         if saturated >= self.si.pressure:
             coldest = float(law.dewpoint(self.si.pressure)) - 273.15
@@ -116,7 +116,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
-    """Return the air over the pool, by theory."""
+    """Return the air over the pool at the start, according to theory."""
     si = settings.si
     vapour_pressure = si.humidity * float(law.saturation_vapor_pressure(si.temperature))
     return AirOverPool(
@@ -125,7 +125,7 @@ def _start(settings: Settings, *, ideal: bool) -> AirOverPool:
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless another is asked for."""
+    """Return the engine on which the scene runs unless the user names another."""
     return suited(settings.molecules)
 
 
@@ -189,7 +189,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _wet_bulb(settings: Settings) -> str:
-    """Return the temperature that an endless pool would reach, or why there is none."""
+    """Return the final temperature over a very large pool, or why there is none."""
     if settings.humidity > 100.0:
         return "none: the air is supersaturated"
     si = settings.si
@@ -199,15 +199,16 @@ def _wet_bulb(settings: Settings) -> str:
 
 
 def _settled(start: AirOverPool, settings: Settings) -> int:
-    """Return how many frames pass until equilibrium."""
+    """Return the number of frames until equilibrium."""
     frame: float = settings.si.duration / start.scale.time / FRAMES
     return math.ceil(min(start.settling / frame, float(FRAMES)))
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the final state, saturation over the pool as it is now, and the energies of those that leave and stay.
+    """Return the final state, saturation over the pool at present, and the energies of molecules that leave and stay.
 
-    The final state is that of walls that let no heat pass, or, from when they have a temperature, that of this one.
+    The final state is that between walls that let no heat pass, or, once the walls have a temperature, that between
+    walls of this temperature.
     """
     start = _start(settings, ideal=used(dataset).ideal)
     rest = start.rest
@@ -233,7 +234,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return temperatures, vapour pressure and both rates, in equilibrium, and the energy of those that leave."""
+    """Return temperatures, vapour pressure and both rates in equilibrium, and the energy of molecules that leave."""
     start = _start(settings, ideal=used(dataset).ideal)
     late = dataset.isel(elapsed_time=slice(_settled(start, settings), None))
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
@@ -249,7 +250,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     def headline(
         name: str, expected: float, heated: float, chance: float, unit: str, shown: str, label: str
     ) -> Headline:
-        # heated: what a kelvin does to it; chance: its error if only few molecules came and went
+        # heated: its change per kelvin; chance: its error if only few molecules came and went
         found = block_average(late[name].values, BLOCKS, memory)
         error = max(float(found.standard_error), chance if met < FEW else 0.0)
         value, error = float(found.mean), math.hypot(error, walk * heated)
@@ -274,9 +275,10 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def _saturation(
     late: "xr.Dataset", vapour: Headline, start: AirOverPool, lost: float, chance: float, memory: float
 ) -> Headline:
-    """Return the vapour pressure over that of saturation at the temperature of the pool, of the air if that is dry.
+    """Return vapour pressure over saturation at the temperature of the pool, or of the air if the pool is dry.
 
-    Both are averaged first: the mean of their quotient would be another number, for they scatter together.
+    Both are averaged first: the mean of their quotient would be another number, because their fluctuations are
+    correlated.
     """
     rest = start.rest
     steep = start.latent / rest.temperature
@@ -293,7 +295,7 @@ def _saturation(
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return temperatures, vapour pressure and the two rates against time, and the energies of those that leave."""
+    """Return the panels of temperatures, vapour pressure and both rates against time, and of the energies."""
     leave = "leaving_energy_probability_density"
     return (
         history(

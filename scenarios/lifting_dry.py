@@ -55,7 +55,7 @@ ladder = (
     Series("dsmc", "molecules", (4000, 16000, 64000), {"ascent": 400}),
     Series("dsmc", "dt", (2, 1, 0.5), {"ascent": 400}),
 )
-"""What is worth comparing: the error of the ascent's speed goes as one over its length."""
+"""Runs worth comparing: the finite-rate error decreases as one over the length of the ascent."""
 
 
 class Settings(SceneSettings):
@@ -78,14 +78,14 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool = False) -> tuple[Scale, float, np.ndarray, float]:
-    """Return the scale, the density, the sides that centres can reach, and (Z - 1) / n [diameters], at the start."""
+    """Return the scale, and density, sides within reach of the centres, and (Z - 1) / n at the start, in diameters."""
     si = settings.si
     scale = Scale(si.diameter, DRY_AIR.molecule_mass, BOLTZMANN * si.temperature)
     return scale, *size_of_parcel(scale, settings.molecules, si.pressure, ideal=ideal)
 
 
 def _ascent(settings: Settings) -> law.Ascent:
-    """Return the ascent, with the error of its finite rate."""
+    """Return the ascent, with its finite-rate error."""
     freedom = 5 if settings.rotation else 3
     _, density, sides, _ = _start(settings)
     height = float(sides[2]) / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
@@ -95,7 +95,7 @@ def _ascent(settings: Settings) -> law.Ascent:
 
 
 def _environment(settings: Settings, duration: float) -> Environment:
-    """Return the environment of a parcel that climbs evenly for so long [s]."""
+    """Return the environment of a parcel that climbs at constant speed for ``duration`` [s]."""
     si = settings.si
     top = float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
     freedom = 5 if settings.rotation else 3
@@ -165,14 +165,14 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the adiabat of dry air, which is also that of the parcel if it rotates."""
+    """Return the adiabat of dry air, which is also that of the parcel if its molecules rotate."""
     si = settings.si
     air = law.dry_adiabat_temperature(dataset.parcel_pressure.values, si.temperature, si.pressure, 5)
     return {"dry_air_adiabat_temperature": np.asarray(air)}
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the temperatures on the way and the lapse rate."""
+    """Return the temperatures along the ascent and the lapse rate."""
     si = settings.si
     freedom = 5 if settings.rotation else 3
     pressure = dataset.parcel_pressure.values
@@ -223,11 +223,11 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def _chance_at_height(level: float, height: np.ndarray, error: np.ndarray, ascent: law.Ascent) -> float:
-    """Return how far chance takes the temperature at a height [K], from its error beside the pressure, by frames.
+    """Return the standard error of the temperature at a height [K], from its error at a pressure, by frames.
 
-    What chance has warmed the parcel within the time in which the piston closes a gap of pressure still shows in its
-    pressure, and counts 2/f times more at the pressure of the environment: see `theory.Ascent.lateness`. Without it the
-    error was 1.4 times too small in 60 ascents of 150 mean free times; with it, 1.00.
+    A random gain of heat within the time in which the piston closes a gap in pressure still shows in the pressure of
+    the parcel, and counts 2/f times more at the pressure of the environment: see `theory.Ascent.lateness`. Without this
+    term the error was 1.4 times too small in 60 ascents of 150 mean free times; with it, the ratio was 1.00.
     """
     frames = np.arange(1.0, len(height) + 1.0)
     now = float(np.interp(level, height, frames))
@@ -237,12 +237,12 @@ def _chance_at_height(level: float, height: np.ndarray, error: np.ndarray, ascen
 
 
 def _levels(settings: Settings) -> list[float]:
-    """Return the levels that are reported [hPa]: 700 hPa on the way, and the top."""
+    """Return the levels that are reported [hPa]: 700 hPa during the ascent, and the top."""
     return [p for p in dict.fromkeys((700.0, settings.top_pressure)) if settings.top_pressure <= p < settings.pressure]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return temperature against pressure and height, and the misfit."""
+    """Return the panels of the parcel on its ascent, and of temperature against pressure and against height."""
     parcel = "parcel_temperature"
     others = (
         ()

@@ -51,7 +51,7 @@ ladder = (
     Series("exact", "molecules", (3000, 10_000), {"ascent": 400}),
     Series("dsmc", "ascent", (100, 200, 400, 1000, 3000)),
 )
-"""What is worth comparing: a fast ascent is off its adiabat, and few molecules scatter."""
+"""Runs worth comparing: a fast ascent deviates from its adiabat, and few molecules scatter."""
 
 
 class Settings(SceneSettings):
@@ -76,14 +76,14 @@ class Settings(SceneSettings):
 
 
 def _top(settings: Settings) -> float:
-    """Return how high the parcel rises [m]."""
+    """Return the height to which the parcel rises [m]."""
     si = settings.si
     return float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
 
 
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
-    """Return the way up, by theory."""
+    """Return the ascent according to theory."""
     si = settings.si
     return MoistAscent(
         molecules=settings.molecules,
@@ -102,7 +102,7 @@ def _ascent(settings: Settings) -> MoistAscent:
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless another is asked for."""
+    """Return the engine on which the scene runs unless the user names another."""
     return suited(settings.molecules)
 
 
@@ -122,15 +122,15 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the adiabat without condensation, and the water of the other one."""
+    """Return the adiabat without condensation, and the water along the moist adiabat."""
     return lifted_theory(dataset, _ascent(settings), FRAMES)
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the cloud base and the temperatures on the way."""
+    """Return the cloud base and the temperatures along the ascent."""
     return lifted_headlines(dataset, _ascent(settings), FRAMES, SAMPLES, ideal=used(dataset).ideal)
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return temperature and liquid against pressure, and the misfit."""
+    """Return the panels of the parcel on its ascent, and of temperature and water against pressure."""
     return lifted_panels(_ascent(settings), "adiabat with rain" if settings.rain else "moist adiabat")

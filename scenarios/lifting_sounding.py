@@ -46,7 +46,7 @@ ladder = (
     Series("exact", "molecules", (5000,), {"ascent": 400}),
     Series("dsmc", "ascent", (200, 400, 1400)),
 )
-"""What is worth comparing: a fast ascent ends too warm, and few molecules scatter."""
+"""Runs worth comparing: a fast ascent ends too warm, and few molecules scatter."""
 
 
 class Settings(SceneSettings):
@@ -69,24 +69,24 @@ class Settings(SceneSettings):
 
 @functools.lru_cache(maxsize=8)
 def _read(name: str) -> air.Sounding:
-    """Return the sounding of a name or a file."""
+    """Return the sounding of this name, or from this file."""
     return air.weisman_klemp() if name == BUILT_IN else air.read(name)
 
 
 @functools.lru_cache(maxsize=8)
 def _height(name: str) -> np.ndarray:
-    """Return the heights of its levels above the lowest [m]."""
+    """Return the heights of the levels of a sounding above the lowest [m]."""
     return np.asarray(air.hydrostatic_height(_read(name)))
 
 
 @functools.lru_cache(maxsize=8)
 def _indices(name: str) -> air.Indices:
-    """Return what MetPy says of it."""
+    """Return MetPy's levels and energies of a sounding."""
     return air.indices(_read(name))
 
 
 def _between(settings: Settings, levels: np.ndarray, pressure: np.ndarray) -> np.ndarray:
-    """Return values of the sounding's levels between them, straight in the logarithm of the pressure."""
+    """Interpolate values at the sounding's levels linearly in the logarithm of the pressure."""
     found: np.ndarray = np.interp(-np.log(pressure), -np.log(_read(settings.sounding).pressure), levels)
     return found
 
@@ -102,7 +102,7 @@ def _around(settings: Settings, pressure: np.ndarray) -> tuple[np.ndarray, np.nd
 
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
-    """Return the way up, by theory; it ends where the sounding does, at the latest."""
+    """Return the ascent according to theory; it ends at the top of the sounding at the latest."""
     found = _read(settings.sounding)
     ground = float(found.pressure[0])
     top = max(settings.si.top_pressure, float(found.pressure[-1]))
@@ -120,12 +120,12 @@ def _ascent(settings: Settings) -> MoistAscent:
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless another is asked for."""
+    """Return the engine on which the scene runs unless the user names another."""
     return suited(settings.molecules)
 
 
 def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
-    """Return the parcel of the ground with its piston."""
+    """Return the parcel at the ground with its piston."""
     ascent = _ascent(settings)
     route = np.array(ascent.route)
     shares = np.linspace(0.0, 1.0, len(route))
@@ -149,7 +149,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _convection(settings: Settings, *, weight: bool = True) -> law.Convection:
-    """Return what theory's parcel can do, with the weight of its droplets or without it."""
+    """Return energies and levels of theory's parcel, with the weight of its droplets or without it."""
     ascent = _ascent(settings)
     path = ascent.planned[1]
     route = np.array(ascent.route)
@@ -182,7 +182,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the levels and the energies of the simulated parcel, and what MetPy says of the sounding."""
+    """Return the levels and the energies of the simulated parcel, and MetPy's numbers of the sounding."""
     ascent, ideal = _ascent(settings), used(dataset).ideal
     found = lifted_headlines(dataset, ascent, FRAMES, SAMPLES, ideal=ideal)
     if dataset.sizes["elapsed_time"] < FRAMES:
@@ -194,7 +194,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def _metpy(settings: Settings) -> tuple[Headline, ...]:
-    """Return MetPy's numbers of the sounding beside those of the pseudo-adiabat from our constants."""
+    """Return MetPy's numbers of the sounding, and those of the pseudo-adiabat with our constants."""
     ascent, metpy = _ascent(settings), _indices(settings.sounding)
     found = _read(settings.sounding)
     levels = np.unique(np.append(found.pressure, np.geomspace(found.pressure[0], found.pressure[-1], 400)))[::-1]
@@ -222,7 +222,7 @@ def _metpy(settings: Settings) -> tuple[Headline, ...]:
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the skew-T, the buoyancy, and the misfit."""
+    """Return the panels of the skew-T, of the buoyancy, and of the parcel on its ascent."""
     verdict = _verdict(settings)
     return (
         Panel(

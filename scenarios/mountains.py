@@ -46,7 +46,7 @@ ladder = (
     Series("exact", "travel", (150, 300)),
     Series("dsmc", "travel", (150, 300, 600, 1200)),
 )
-"""What is worth comparing: a fast journey ends too warm, and few molecules scatter."""
+"""Runs worth comparing: a fast journey ends too warm, and few molecules scatter."""
 
 
 class Settings(SceneSettings):
@@ -80,7 +80,7 @@ class Settings(SceneSettings):
 
 
 def _height(settings: Settings, share: float) -> float:
-    """Return the height of the ground [m] when a share of the way is done: smooth slopes between the five places."""
+    """Return the height of the ground [m] at a share of the way: smooth slopes between the five places."""
     si = settings.si
     places = np.array([0.0, si.first, si.valley, si.second, 0.0])
     ends = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(places)))])
@@ -92,7 +92,7 @@ def _height(settings: Settings, share: float) -> float:
 
 @functools.lru_cache(maxsize=8)
 def _ascent(settings: Settings) -> MoistAscent:
-    """Return the way, by theory."""
+    """Return the journey according to theory."""
     si = settings.si
     return MoistAscent(
         molecules=settings.molecules,
@@ -111,7 +111,7 @@ def _ascent(settings: Settings) -> MoistAscent:
 
 
 def usual_engine(settings: Settings) -> str:
-    """Return the engine on which the scene runs unless another is asked for."""
+    """Return the engine on which the scene runs unless the user names another."""
     return suited(settings.molecules)
 
 
@@ -134,12 +134,12 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return the water on the way, and the temperature if nothing condensed."""
+    """Return the water along the way, and the temperature if nothing condensed."""
     return lifted_theory(dataset, _ascent(settings), FRAMES)
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return how warm and how dry the parcel arrives."""
+    """Return the temperature with which the parcel arrives, and its rain."""
     ascent = _ascent(settings)
     pressure = dataset.parcel_pressure.values
     if len(pressure) < FRAMES:
@@ -186,7 +186,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the way, the temperature along it, and the water."""
+    """Return the panels of the way, of the temperature along it, and of the water."""
     rain = (
         Line("elapsed_time", "rain_mixing_ratio", "rain"),
         Line("elapsed_time", "rain_mixing_ratio_theory", "rain, theory", "theory"),

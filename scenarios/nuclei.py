@@ -55,18 +55,18 @@ FRAMES = 240
 SETTLE = 120
 BLOCKS = 20
 HEAT = 1e8
-"""Heat capacity of the nuclei, in k: they take up the latent heat, and hardly warm."""
+"""Heat capacity of the nuclei, in k: so large that the latent heat hardly warms them."""
 HEAVY = 1e10
-"""Mass of a nucleus, in molecules of air: it rests."""
+"""Mass of a nucleus, in molecules of air: so large that it does not move."""
 IONS = 2.0
-"""Particles that a pair of ions becomes in solution."""
+"""Number of particles that a pair of ions forms in solution."""
 RADII = np.linspace(0.3e-9, 2.5e-9, 221)
-"""Where the curves of theory are drawn [m]."""
+"""Radii at which the curves of theory are drawn [m]."""
 HIGHEST = 4.0
-"""Relative humidity up to which they are drawn."""
+"""Relative humidity up to which these curves are drawn."""
 
 ladder = (Series("exact", "molecules", (1500, 3000, 6000)),)
-"""What is worth comparing: the more molecules there are, the less the humidity scatters."""
+"""Runs worth comparing: the more molecules there are, the less the humidity scatters."""
 
 
 class Settings(SceneSettings):
@@ -109,13 +109,13 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool) -> MoistBox:
-    """Return the moist air, by theory."""
+    """Return the moist air at the start, according to theory."""
     si = settings.si
     return MoistBox(settings.molecules, si.temperature, si.pressure, si.humidity, ideal)
 
 
 def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
-    """Return the growth of the drops, by theory; those with salt first."""
+    """Return the growth of the drops according to theory; those with salt come first."""
     particles = IONS * settings.salt
     kinds = (
         DropKind(settings.salted, particles, particles * law.SALT_VOLUME),
@@ -127,7 +127,7 @@ def _growth(settings: Settings, *, ideal: bool = False) -> DropGrowth:
 
 
 def _side(settings: Settings) -> int:
-    """Return how many drops stand along a side of the box."""
+    """Return the number of drops along a side of the box."""
     side = 1
     while side**3 < settings.salted + settings.pure:
         side += 1
@@ -135,7 +135,7 @@ def _side(settings: Settings) -> int:
 
 
 def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]:
-    """Return where the drops stand in a box of a side [length]: on a lattice, as far apart as they can be."""
+    """Return the positions of the drops in a box of a side [length]: on a lattice, as far apart as possible."""
     along = _side(settings)
     across = [(k + 0.5) * side / along for k in range(along)]
     lattice = [(x, y, z) for x in across for y in across for z in across]
@@ -144,7 +144,7 @@ def _places(settings: Settings, side: float) -> list[tuple[float, float, float]]
 
 
 def _is_salted(settings: Settings) -> np.ndarray:
-    """Tell which drops have salt in them: they are spread among the others."""
+    """Tell which drops have salt in them: these are distributed among the others."""
     number = settings.salted + settings.pure
     so_far = np.arange(number + 1) * settings.salted // number
     return np.asarray(np.diff(so_far) > 0)
@@ -204,7 +204,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
 
 
 def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
-    """Return what is to be said of a box of these settings."""
+    """Return the facts of the model card for these settings."""
     box, si = growth.box, settings.si
     found = {
         "box": f"a cube of {1e9 * (box.side + 1.0) * box.scale.length:.1f} nm, real size",
@@ -228,7 +228,7 @@ def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
 
 
 def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
-    """Return how the drops grow and what vapour they leave, and the humidity over drops of any radius."""
+    """Return the growth of the drops and the humidity, and the humidity over drops of any radius."""
     growth = _growth(settings, ideal=used(dataset).ideal)
     number, humidity = _path(dataset, growth)
     found = {"saturation_ratio_theory": humidity}
@@ -245,13 +245,13 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def _path(dataset: "xr.Dataset", growth: DropGrowth) -> tuple[np.ndarray, np.ndarray]:
-    """Return the numbers of molecules in drops of each kind and the humidity, by theory, at the ends of frames."""
+    """Return the molecules in a drop of each kind and the humidity, according to theory, at the ends of frames."""
     number, humidity = growth.path(np.append(0.0, dataset.elapsed_time.values * 1e-9))
     return number[:, 1:], humidity[1:]
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return the humidity that drops live in beside the one that they need, and how large they become."""
+    """Return the humidity around the drops and the one that they need, and their size."""
     late = slice(SETTLE, None)
     if dataset.sizes["elapsed_time"] - SETTLE < 2 * BLOCKS:
         return ()
@@ -268,14 +268,14 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline:
-    """Return the humidity beside the one by Koehler's law at which drops as large as these gain what they did."""
+    """Return the humidity, and the one at which such drops would gain what they did according to Koehler's law."""
     kind, held = growth.kinds[0], late.drop_molecule_count.values[:, of].astype(float)
     hit = growth.area(held, kind).sum(axis=1)
     needed = (growth.area(held - 1.0, kind) * growth.over(held, kind)).sum(axis=1) / hit.mean()
     time = late.elapsed_time.values * 1e-9
     gained = (held[-1].sum() - held[0].sum()) / ((time[-1] - time[0]) * growth.flux * hit.mean())
     felt = late.saturation_ratio.values * hit / hit.mean()
-    # each molecule that came or left did so at random
+    # each molecule came or left at random
     events = growth.flux * hit.mean() * (time[-1] - time[0]) * (felt.mean() + needed.mean())
     error = math.sqrt(events) / (growth.flux * hit.mean() * (time[-1] - time[0]))
     return Headline(
@@ -292,7 +292,7 @@ def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline
 
 
 def _left(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
-    """Return the humidity that is left when all drops have vanished."""
+    """Return the humidity that remains when all drops have evaporated."""
     found = block_average(dataset.saturation_ratio.values[late], BLOCKS)
     return Headline(
         "humidity_at_the_end",
@@ -308,7 +308,7 @@ def _left(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
 
 
 def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
-    """Return the radius of the drops with salt beside that of theory, which knows of no chance."""
+    """Return the radius of the drops with salt, and that of theory, which leaves fluctuations out."""
     time = np.append(0.0, dataset.elapsed_time.values * 1e-9)
     number, humidity = growth.path(time)
     together, apart, back = growth.scatter(time, number, humidity)
@@ -316,7 +316,7 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
     radius = growth.radius(n, kind)
     steep = law.WATER_VOLUME / (4.0 * math.pi * radius**2)
     bent = np.abs(growth.over(n + 1.0, kind) - 2.0 * growth.over(n, kind) + growth.over(n - 1.0, kind))
-    # unlike drops have another mean radius than those alike, and by the curvature of Koehler's law need other vapour
+    # drops of different size have another mean radius than equal drops, and by Koehler's curve they need other vapour
     spread = together + apart
     off = spread * (steep**2 / radius + 0.5 * steep * bent * growth.flux * growth.area(n, kind) * back)
     span, wait = time[-1] - time[1:][late][0], float(back[1:][late].mean())
@@ -335,7 +335,7 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return the radii and the humidity against time, and the humidity over drops of any radius."""
+    """Return the panels of radii and humidity against time, and of the humidity over drops of any radius."""
     there = [name for name, count in (("salted", settings.salted), ("pure", settings.pure)) if count]
     called = {"salted": "with salt", "pure": "pure water"}
     grow = [Line("elapsed_time", f"{name}_drop_radius", called[name]) for name in there]

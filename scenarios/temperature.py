@@ -52,7 +52,7 @@ ladder = (
     Series("dsmc", "duration", (5, 20, 80, 320)),
     Series("classic", "delta", (0.8, 0.4, 0.2), {"duration": 5}, _LATE),
 )
-"""What is worth comparing: steps miss collisions, by the square of their length."""
+"""Runs worth comparing: steps miss collisions, in proportion to the square of their length."""
 
 
 class Settings(SceneSettings):
@@ -73,7 +73,7 @@ class Settings(SceneSettings):
 
 
 def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, float]:
-    """Return the scale, the density [1/diameter^3], the side that centres can reach [diameters], and Z.
+    """Return the scale, the density [1/diameter^3], the side within reach of the centres [diameters], and Z.
 
     Near a wall a molecule has fewer partners, and so Z - 1 is a little smaller than in open space. Molecules of
     an ideal gas have no volume, and Z is 1.
@@ -92,12 +92,12 @@ def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, flo
 
 
 def _crowding(density: float, side: float, molecules: int) -> float:
-    """Return by how much the excess Z - 1 that `_start` counts on may be off, as a share of it.
+    """Return the relative error of the excess Z - 1 that `_start` uses.
 
-    It leaves out how three molecules and a wall crowd each other. To lowest order in the packing fraction phi, by
-    the surface tension of spheres at a hard wall, that lowers Z - 1 in a cube of side L by 27/4 phi sigma / L; and
-    that a partner, too, has N - 1 partners raises it by 3 phi / N. Measured by the collisions of 200 molecules, in 12
-    runs each: too low by 1.24 +- 0.08 % at 500 bar and by 2.85 +- 0.07 % at 1000 bar, where the sum of both is 1.32 %
+    `_start` leaves out how three molecules and a wall exclude each other. To lowest order in the packing fraction phi,
+    by the surface tension of spheres at a hard wall, that lowers Z - 1 in a cube of side L by 27/4 phi sigma / L; that
+    a partner, too, has N - 1 partners raises it by 3 phi / N. Measured from the collisions of 200 molecules, in 12 runs
+    each: too low by 1.24 +- 0.08 % at 500 bar and by 2.85 +- 0.07 % at 1000 bar, where the sum of both is 1.32 %
     and 2.94 %.
     """
     filled = float(law.packing_fraction(density, 1.0))
@@ -108,8 +108,8 @@ def _memory(density: float, side: float) -> float:
     r"""Return the correlation time of the energy of the gas between its walls [reduced time].
 
     A surplus leaves with the molecules that hit a wall, :math:`2kT` each of the :math:`\tfrac32 kT` that a molecule
-    has, and must first be conducted to the walls: :math:`L / 2\bar c + L^2 / 3 \pi^2 D`, with the diffusivity
-    :math:`D = 0.678 / \tfrac32 n \sigma^2` of a thin gas (Chapman and Enskog), the least there is.
+    has, and must first be conducted to the walls: :math:`L / 2\bar c + L^2 / 3 \pi^2 D`, with the diffusivity :math:`D
+    = 0.678 / \tfrac32 n \sigma^2` of a thin gas (Chapman and Enskog), which is the least value.
     """
     diffusivity = 0.678 / (1.5 * density)
     return side / (2.0 * float(law.mean_speed(1.0, 1.0))) + side**2 / (3.0 * math.pi**2 * diffusivity)
@@ -172,7 +172,7 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
 
 
 def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
-    """Return temperature, pressure, mean speed and how often molecules meet."""
+    """Return temperature, pressure, mean speed and collision rate."""
     si = settings.si
     ideal = used(dataset).ideal
     scale, density, side, factor = _start(settings, ideal=ideal)
@@ -242,7 +242,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
-    """Return temperature and pressure against time, and the speeds."""
+    """Return the panels of temperature and pressure against time, and of the speeds."""
     warming = settings.start_temperature <= settings.temperature
     return (
         Panel(
