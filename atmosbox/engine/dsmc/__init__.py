@@ -1,13 +1,13 @@
 """Direct simulation Monte Carlo: free flight, then collisions with partners drawn at random from the same cell.
 
 `columns`             many molecules as a structure of arrays, sorted into cells
-`streaming`           a step of free flight, with walls on the way
+`streaming`           a step of free flight, with wall hits on the way
 `pairing`             which molecules of a cell collide
-`moist_columns`       what liquid does in a step, and a mist
-`moist_pool`          what a pool does in a step
+`moist_columns`       the events of liquid in a step, and a mist
+`moist_pool`          the events of a pool in a step
 `dsmc`                one time step
-`dsmc_parcel`         the box, advanced so
-`moist_dsmc_parcel`   the box of moist air, advanced so
+`dsmc_parcel`         the box, advanced by this method
+`moist_dsmc_parcel`   the box of moist air, advanced by this method
 `stirring`            parcels that change places in a column, with the work of each
 `stirred_dsmc_parcel` the column that is stirred
 """

@@ -1,10 +1,10 @@
-"""Molecules in columns, and sorted into cells: what an engine holds that draws its partners of collisions at random.
+"""Molecules as a structure of arrays, sorted into cells, for an engine that draws collision partners at random.
 
-Each property of all molecules is one array, so that a loop over molecules reads memory straight on and the
-compiler does eight of them at once. A cell must know its molecules: every step they are *counted* by cell
-and an index of them is written in the order of cells (a counting sort; who stood first stays first). Now
-and then the columns themselves are put in that order, so that the molecules of a cell stand close
-together in memory, too.
+Each property of all molecules is one array (a column), so that a loop over molecules reads memory in order and the
+compiler can compute eight of them at once. The molecules of each cell must be known: in every step they are *counted*
+by cell and an index of them is written in the order of cells (a counting sort that keeps their order within a cell).
+Now and then the columns themselves are put in that order, so that the molecules of a cell are near each other in
+memory, too.
 
 Every thread takes a share of the molecules, one stretch of the columns. It counts its own, and its places in
 the index follow those of the threads before it: the index is the same for any number of threads.
@@ -44,18 +44,19 @@ __all__ = [
 ]
 
 BLOCK = 1024
-"""How many molecules are moved at a time: few enough to stay in the nearest cache."""
+"""Number of molecules that are moved together: few enough to stay in the nearest cache."""
 
-_EVEN_EMPTY = 8  # pairs' worth of work is a cell
-_LINE, _PAGE = 8, 512  # of the cache, of memory, in numbers
+_EVEN_EMPTY = 8  # the work of a cell, even an empty one, in pairs
+_LINE, _PAGE = 8, 512  # numbers in a line of the cache, and in a page of memory
 
 
 class Columns(NamedTuple):
-    """All molecules, as columns.
+    """All molecules as columns: a structure of arrays.
 
-    ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` their
-    rotational energy [energy] where they rotate, ``identity : (slot,)`` which molecule stands in a slot.
-    ``cell : (slot,)`` the cell it is in, ``order : (slot,)`` slots in the order of cells, ``kind : (slot,)`` which
+    ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz : (slot,)`` [length, length/time], ``spin : (slot,)`` rotational
+    energy [energy] where molecules rotate, ``identity : (slot,)`` index of the molecule in a slot.
+    ``cell : (slot,)`` its cell, ``order : (slot,)`` slots in the order of cells, ``kind : (slot,)`` the
+    kind of the molecule, if there are several.
     kind of molecule stands there, if there are several.
     """
 
@@ -75,8 +76,8 @@ class Columns(NamedTuple):
 class Grid(NamedTuple):
     """Cells of equal size, ``number_*`` along each axis; x changes fastest in their index.
 
-    ``first : (cell + 1,)`` where the molecules of each cell begin in the index; ``place : (thread, cell)``
-    where each thread's do; ``fastest : (cell,)`` the largest relative speed met there [length/time].
+    ``first : (cell + 1,)``: where the molecules of each cell begin in the index; ``place : (thread, cell)``:
+    where those of each thread begin; ``fastest : (cell,)``: the largest relative speed found in it [length/time].
     """
 
     number_x: int
@@ -88,9 +89,9 @@ class Grid(NamedTuple):
 
 
 class MoleculeKinds(NamedTuple):
-    """What all molecules are: mass [mass], radius [length], rotational degrees of freedom.
+    """The properties of the molecules: mass [mass], radius [length], rotational degrees of freedom.
 
-    Where there are several kinds, ``masses``, ``rotations : (kind,)`` say what each of them is, and ``mass`` is that of
+    If there are several kinds, ``masses``, ``rotations : (kind,)`` are those of each kind, and ``mass`` is that of
     the lightest.
     """
 
@@ -102,13 +103,13 @@ class MoleculeKinds(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Scratch memory of one step.
+    """Working memory of one step.
 
-    ``mark : (thread, BLOCK)`` for which of a block walls make a difference, ``queue : (thread, BLOCK)`` a list
-    of them, ``random : (thread, 8)`` states of random numbers; ``counters : (block, 3, wall)``
-    what walls did to a block's molecules, added up in the order of blocks; ``met : (thread, 8)`` contacts; ``cut :
-    (thread + 1,)`` the first cell of each thread's share of them; ``left : (slot,)`` for how long molecules that wait
-    on a pool have yet to fly [time], if there is one.
+    ``mark : (thread, BLOCK)``: which molecules of a block need work at walls, ``queue : (thread, BLOCK)``: a list
+    of them, ``random : (thread, 8)``: states of random numbers; ``counters : (block, 3, wall)``:
+    tallies of wall hits of a block, summed in the order of blocks; ``met : (thread, 8)``: contacts; ``cut :
+    (thread + 1,)``: the first cell of each thread's share of cells; ``left : (slot,)``: how long molecules that wait
+    on a pool still have to fly [time], if there is one.
     """
 
     mark: Any
@@ -121,7 +122,7 @@ class Workspace(NamedTuple):
 
 
 class Features(NamedTuple):
-    """What a box of many molecules requires: see `atmosbox.engine.dsmc.dsmc.specialise`."""
+    """The features that a box of many molecules requires: see `atmosbox.engine.dsmc.dsmc.specialise`."""
 
     rotates: bool
     wet: bool
@@ -129,7 +130,7 @@ class Features(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One step: when it begins and how long it is [time], how high the ceiling is before and after it [length].
+    """One step: its start and its length [time], the height of the ceiling before and after it [length].
 
     ``key`` is a random word of this step.
     """
@@ -142,9 +143,9 @@ class Step(NamedTuple):
 
 
 class Air(NamedTuple):
-    """The molecules in their box, as kernels receive them; the types say what is what.
+    """The molecules in their box, in the form that the kernels take; see the types of its parts.
 
-    ``water`` is the liquid (`moist_columns.Water`), None if there is none, or where none is asked for.
+    ``water`` is the liquid (`moist_columns.Water`), or None where there is none or it is not needed.
     """
 
     columns: Columns
@@ -158,10 +159,10 @@ class Air(NamedTuple):
 
 
 class March(NamedTuple):
-    """So many steps after the first ones, their length [time], and what is asked for between the parallel loops.
+    """A number of steps: the first, how many, their length [time], and the data used between the parallel loops.
 
-    ``ceilings : (step + 1,)`` is how high the ceiling is before and after each [length]; ``cross_section`` that of a
-    pair [length^2]; ``tallies`` what is counted, ``water`` the liquid, None if there is none.
+    ``ceilings : (step + 1,)``: height of the ceiling before and after each step [length]; ``cross_section`` of a
+    pair [length^2]; ``tallies``: the tallies, ``water``: the liquid, or None.
     """
 
     first: int
@@ -174,10 +175,11 @@ class March(NamedTuple):
 
 
 def new_columns(number: int, many: int) -> list[Any]:
-    """Return so many empty columns for a number of molecules.
+    """Return ``many`` empty columns for a number of molecules.
 
-    Each begins at a line of the cache, so that eight numbers that are read together are one line, and at another place
-    within a page than the last, for what stands at the same place of different pages competes for the same few lines.
+    Each begins at a line of the cache, so that eight numbers that are read together are one line. Each begins at
+    another place within a page than the one before it, as data at the same place of different pages compete for the
+    same few lines.
 
     Examples
     --------
@@ -191,7 +193,7 @@ def new_columns(number: int, many: int) -> list[Any]:
 
 
 def new_workspace(number: int, cells: int, threads: int, waiting: int = 1) -> Workspace:
-    """Return a workspace for numbers of molecules, cells and threads, and of molecules that may wait on a pool."""
+    """Return the working memory for numbers of molecules, cells and threads, and of molecules waiting on a pool."""
     return Workspace(
         mark=np.zeros((threads, BLOCK), np.int32),
         queue=np.zeros((threads, BLOCK), np.int32),
@@ -204,7 +206,7 @@ def new_workspace(number: int, cells: int, threads: int, waiting: int = 1) -> Wo
 
 
 def new_grid(numbers: tuple[int, int, int], threads: int) -> Grid:
-    """Return so many empty cells along each axis, for so many threads to count in."""
+    """Return a grid of these numbers of cells along each axis, all empty, for a number of counting threads."""
     cells = math.prod(numbers)
     return Grid(
         *numbers,
@@ -229,13 +231,13 @@ def share_of(thread, threads, number):
 
 @kernel
 def number_present(columns, water):
-    """Return how many molecules are in the box: they stand in the first slots, those of the liquid in none."""
+    """Return the number of molecules in the box: they are in the first slots; those of the liquid have no slot."""
     return columns.x.size - water.reservoir.top[0]
 
 
 @kernel
 def cells_per_length(top, grid, gas, box):
-    """Return how many cells there are to a length, along each axis [1/length], under a ceiling at ``top``."""
+    """Return the number of cells per length along each axis [1/length], under a ceiling at ``top`` [length]."""
     r = gas.radius
     return (
         grid.number_x / (box.length_x if box.inverse_x > 0.0 else box.length_x - r - r),
@@ -246,7 +248,7 @@ def cells_per_length(top, grid, gas, box):
 
 @kernel
 def find_cell(p, per_x, per_y, per_z, columns, grid, gas, box):
-    """Write down in which cell the molecule of a slot is."""
+    """Compute the cell of the molecule in slot p, and store it."""
     r = gas.radius
     low_x = 0.0 if box.inverse_x > 0.0 else r
     low_y = 0.0 if box.inverse_y > 0.0 else r
@@ -259,7 +261,7 @@ def find_cell(p, per_x, per_y, per_z, columns, grid, gas, box):
 
 @kernel
 def count_by_cell(cell, count, first, last):
-    """Count the molecules of the slots from ``first`` to before ``last`` by cell."""
+    """Count the molecules of the slots ``first`` to ``last - 1`` by cell."""
     count[:] = 0
     for p in range(first, last):
         count[np.uint32(cell[p])] += np.uint32(1)
@@ -267,7 +269,7 @@ def count_by_cell(cell, count, first, last):
 
 @kernel
 def reserve_places(grid, cells):
-    """Turn each thread's counts by cell into its first place in the index, and mark where each cell begins."""
+    """Turn each thread's counts by cell into its first place in the index, and store where each cell begins."""
     threads = grid.place.shape[0]
     place = 0
     for c in range(cells):
@@ -281,13 +283,13 @@ def reserve_places(grid, cells):
 
 @kernel
 def share_cells(first, cells, cut):
-    """Cut the cells into stretches, one for each thread, in which about as many pairs can meet.
+    """Divide the cells into stretches, one for each thread, with about the same number of possible pairs.
 
-    Molecules that stand together in memory are so in the same hands when they move and when they collide.
+    So molecules that are near each other in memory are computed by the same thread when they move and collide.
 
     Examples
     --------
-    Ten molecules in one cell are more work than ten in ten:
+    Ten molecules in one cell are more work than ten molecules in ten cells:
 
     >>> cut = np.zeros(3, np.int64)
     >>> share_cells(np.array([0, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]), 11, cut)
@@ -312,7 +314,7 @@ def share_cells(first, cells, cut):
 
 @kernel
 def index_by_cell(cell, order, place, first, last):
-    """Write the slots from ``first`` to before ``last`` into the index, each at the next place of its cell."""
+    """Write the slots ``first`` to ``last - 1`` into the index, each at the next place of its cell."""
     for p in range(first, last):
         c = np.uint32(cell[np.uint32(p)])
         q = np.uint32(place[c])

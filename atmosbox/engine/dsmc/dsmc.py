@@ -1,7 +1,7 @@
-r"""Direct simulation Monte Carlo: molecules fly freely for a step, then collide with whom chance chooses nearby.
+r"""Direct simulation Monte Carlo: molecules fly freely for a step, then collide with random partners nearby.
 
-In a dilute gas it matters only that molecules collide as often as they should, with partners from where they are.
-So the scheme does not ask which molecules hit each other: cells, smaller than a mean free path, hold some ten
+In a dilute gas it matters only that molecules collide at the right rate, with partners from the same place.
+So the method does not compute which molecules hit each other: cells, smaller than a mean free path, hold some ten
 molecules each, and after every step of free flight, shorter than a mean free time, pairs are drawn within each cell
 [1]_. A pair with relative speed c sweeps the volume :math:`\pi\sigma^2 c\,\Delta t` during the step, so it collides
 with probability
@@ -12,11 +12,11 @@ Testing all pairs would cost the square of their number. Bird's *no time counter
 
 .. math:: \frac{n (n - 1)}{2} \frac{\pi \sigma^2 c_{max}\, \Delta t}{V_{cell}}
 
-of them and accepts each with probability :math:`c / c_{max}`, which is the same. A collision keeps the
-momentum and energy of its pair to rounding and turns the relative velocity to any direction, as spheres do
+of them and accepts each with probability :math:`c / c_{max}`, which gives the same rates. A collision keeps the
+momentum and energy of its pair to rounding and turns the relative velocity to any direction, as for spheres
 whose impact parameter is random. Molecules have no excluded volume: the gas is ideal.
 
-Random numbers are keyed by seed, step and cell: no cell's depend on what happens elsewhere, and so the
+Random numbers are keyed by seed, step and cell: those of a cell do not depend on other cells, and so the
 run is the same for any number of threads.
 
 References
@@ -58,14 +58,14 @@ from atmosbox.engine.dsmc.streaming import WAITS, Axis, bounce, fall, fold, glid
 __all__ = ["Resolution", "densest_layer", "numbers_of_cells", "specialise"]
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_SHARED = 8  # steps later cells are shared anew among threads: how never matters for what happens
+_SHARED = 8  # number of steps after which cells are shared anew among threads; results do not depend on it
 
 
 class Resolution(NamedTuple):
-    """How fine cells and steps are: both should stay below 1.
+    """The resolution of cells and steps: both numbers should stay below 1.
 
-    ``cell`` longest side of a cell, in mean free paths; ``step`` length of a step, in mean free times: both
-    of the densest layer of cells, whichever way the gas is layered.
+    ``cell``: longest side of a cell, in mean free paths; ``step``: length of a step, in mean free times: both
+    of the densest layer of cells along any axis.
     """
 
     cell: float
@@ -73,12 +73,12 @@ class Resolution(NamedTuple):
 
 
 def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: str) -> tuple[int, int, int]:
-    """Return how many cells of about this edge [length] there are along each side [length] of a box.
+    """Return the number of cells with about this edge [length] along each side [length] of a box.
 
     Raises
     ------
     RefusedError
-        If hardly any of so many molecules would share a cell; it says what was ``asked`` for.
+        If there are so few molecules that hardly any share a cell; the message says what was ``asked`` for.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def numbers_of_cells(number: int, sides: Sequence[float], edge: float, asked: st
 
 
 def densest_layer(x: NDArray[np.float64], low: float, side: float, layers: int) -> float:
-    """Return how much more molecules than on average are in one of so many layers, of places from ``low`` on [length].
+    """Return the largest density of a layer over the mean; the layers divide ``side`` from ``low`` on [length].
 
     Examples
     --------
@@ -131,7 +131,7 @@ def _move(thread, first, last, count, step, air, features):
         mark = workspace.mark[thread, : e - b]
         mark[:] = 0
         cell[:] = 0
-        # who waits must be known before anybody moves: floor and ceiling come last of what makes wait
+        # which molecules wait must be known before any moves: floor and ceiling are the last walls to be tested
         if box.inverse_x == 0.0 and not smooth_x:
             wait_at_walls(x, vx, along_x.low, along_x.high, dt, mark)
         if box.inverse_y == 0.0 and not smooth_y:
@@ -153,7 +153,7 @@ def _move(thread, first, last, count, step, air, features):
         else:
             turn_round(y, vy, dt, mark, round_y, cell)
         marked = np.uint32(0)
-        for q in range(e - b):  # a list, without a branch
+        for q in range(e - b):  # writes a list without a branch
             queue[marked] = q
             marked += np.uint32(mark[q] != 0)
         counters = workspace.counters[b // BLOCK]
@@ -176,7 +176,7 @@ def _move(thread, first, last, count, step, air, features):
 
 @kernel
 def _settle(workspace, tallies, threads, piston):
-    """Add up what walls and contacts did, in an order that no number of threads can change."""
+    """Add the counts of walls and contacts to the tallies, in an order that is the same for any number of threads."""
     for wall in range(6):
         impulse = given = hits = 0.0
         for block in range(workspace.counters.shape[0]):
@@ -196,15 +196,15 @@ def _settle(workspace, tallies, threads, piston):
 
 @functools.cache
 def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = False) -> Any:
-    """Return the kernel that marches.
+    """Return the kernel that advances by time steps.
 
     Parameters
     ----------
     rotates, parallel
         Whether molecules rotate, and whether several threads share the work.
     wet, pool
-        Whether there is liquid, so that molecules are of several kinds and come and go, and whether the floor is its
-        surface.
+        Whether there is liquid, so that there are several kinds of molecules that enter and leave the gas; and whether
+        the floor is its surface.
     """
     features = Features(rotates, wet, pool)
 
@@ -212,7 +212,7 @@ def specialise(rotates: bool, parallel: bool, wet: bool = False, pool: bool = Fa
     def march(columns, grid, gas, box, walls, workspace, tries, run):
         """Advance by some steps: ``run`` is a `March`.
 
-        A parallel loop knows a tuple only if it is an argument, and not part of another: they are put together inside.
+        A parallel loop can use a tuple only if it is an argument, not part of another: so tuples are put together here.
         """
         tallies, water, dt, ceilings = run.tallies, run.water, run.length, run.ceilings
         threads = grid.place.shape[0] if parallel else 1

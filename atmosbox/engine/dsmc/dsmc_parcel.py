@@ -28,37 +28,37 @@ _COLUMNS = ("x", "y", "z", "vx", "vy", "vz", "spin")
 
 
 class DsmcParcel(MarchingParcel):
-    """A parcel of dilute gas, whose molecules collide with whom chance chooses nearby.
+    """A parcel of dilute gas whose molecules collide with random partners nearby.
 
-    What it is given, and what it tells, is described at `Parcel`; how it works, at `dsmc`. Molecules have
-    the cross section pi sigma^2 of spheres of their diameter sigma and take no room: they may overlap, the
-    pressure is n kT, and the virial of contacts stays 0. All of them are alike.
+    Its other parameters, and its properties, are described at `Parcel`; the method, at `dsmc`. Molecules have
+    the cross section pi sigma^2 of spheres of their diameter sigma but no excluded volume: they may overlap, the
+    pressure is n kT, and the virial of contacts stays 0. All molecules are of one kind.
 
     Parameters
     ----------
     position, velocity, **box
         See `Parcel`.
     dt
-        Length of a step, in mean free times of the start at its mean density, 0 to 10. Where a mean free path
-        is longer than the box, the time in which a molecule crosses the box takes its place.
+        Length of a step, above 0 up to 10, in units of the mean free time at the start and at the mean density. If the
+        mean free path is longer than the box, the time in which a molecule crosses the box is used instead.
     occupancy
         Mean number of molecules in a cell, at least 1.
     cell
-        Side of a cell in mean free paths of the start at its mean density, in place of an occupancy; as nearly as
+        Side of a cell in mean free paths at the start and at the mean density, instead of an occupancy; as nearly as
         the box allows.
     threads
-        How many threads share the work of 10 000 molecules or more; the result is the same for any number.
+        Number of threads that share the work of 10 000 molecules or more; the result is the same for any number.
 
     Raises
     ------
     RefusedError
-        If an option is impossible, the gas is plane, or its molecules are not alike.
+        If a parameter is impossible, the gas is plane, or its molecules are not of one kind.
 
     Notes
     -----
     The errors of transport grow with the squares of step and cell [1]_: of a viscosity by 11 % (Δx / λ)^2, of a
-    conductivity by 4.5 % (Δx / λ)^2; and with one over the occupancy, for the molecules of a cell keep their common
-    momentum. When a piston moves, cells stretch with the box, as the mean free path does.
+    conductivity by 4.5 % (Δx / λ)^2; and with one over the occupancy, because the molecules of a cell keep their common
+    momentum. When a piston moves, the cells stretch with the box, and the mean free path changes with them.
 
     References
     ----------
@@ -66,7 +66,7 @@ class DsmcParcel(MarchingParcel):
 
     Examples
     --------
-    Twenty thousand molecules that all have the same speed collide until it is no longer so; their energy stays:
+    Twenty thousand molecules that start with equal speeds collide until the speeds differ; their energy stays the same:
 
     >>> rng = np.random.default_rng(1)
     >>> angle = rng.normal(size=(20_000, 3))
@@ -104,15 +104,15 @@ class DsmcParcel(MarchingParcel):
             raise RefusedError("the cells of dsmc are three-dimensional: a plane gas needs the engine exact")
         super().__init__(position, velocity, **box)
 
-    # ------------------------------------------------------------------ what it tells
+    # ------------------------------------------------------------------ the state
 
     @property
     def ideal(self) -> bool:
-        """Whether the pressure is n kT: it is, for there is no excluded volume."""
+        """Whether the pressure is n kT: always true here, as there is no excluded volume."""
         return True
 
     def resolution(self) -> Resolution:
-        """Return how fine cells and steps are where the gas is densest now, at its present mean temperature."""
+        """Return the resolution where the gas is densest now, at its present mean temperature."""
         n, grid = self._number, self._grid
         if not n:
             return Resolution(0.0, 0.0)
@@ -125,7 +125,7 @@ class DsmcParcel(MarchingParcel):
         return Resolution(longest / path, self._time_step * speed / path)
 
     def snapshot(self) -> Snapshot:
-        """Return all molecules as they are after the last step, each at its own place in the list."""
+        """Return all molecules as they are after the last step, in the order of their indices."""
         s = self._columns
         position, velocity = np.empty((self._number, 3)), np.empty((self._number, 3))
         for axis in range(3):
@@ -143,11 +143,11 @@ class DsmcParcel(MarchingParcel):
         return kinetic, float(np.sum(self._columns.spin)) if self._rotates else 0.0, potential
 
     def memory(self) -> int:
-        """Return the bytes that molecules, cells and the sorting of the ones into the others take."""
+        """Return the memory of molecules and cells, and of sorting the molecules into cells [bytes]."""
         arrays = (*self._columns, self._spare, *self._grid[3:], *self._workspace, *self._tries)
         return sum(int(a.nbytes) for a in arrays)
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ how steps are made
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         n = self._number
@@ -174,7 +174,7 @@ class DsmcParcel(MarchingParcel):
         room = self._room
         x, y, z, vx, vy, vz, self._spare = new_columns(room, 7)
         x[:n], y[:n], z[:n] = position.T
-        del position  # of ten million, copies take a lot of room
+        del position  # a copy for ten million molecules takes much memory
         vx[:n], vy[:n], vz[:n] = velocity.T
         del velocity
         spin = np.zeros(room if self._rotates else 1)
@@ -189,11 +189,11 @@ class DsmcParcel(MarchingParcel):
         self._grid.fastest[:] = _FASTEST * fastest
         path = min(self._path(math.prod(sides)), *sides)
         step = self._share * (path / (math.sqrt(8.0 / math.pi) * fastest) if fastest > 0.0 else self._spread)
-        # however rarely molecules meet, a step is shorter than their hops on the floor
+        # however rarely molecules collide, a step is shorter than the time of their hops on the floor
         self._time_step = min(step, 0.5 * fastest / self._gravity) if self._gravity > 0.0 and fastest > 0.0 else step
 
     def _classify(self) -> tuple[MoleculeKinds, Any]:
-        """Return what the molecules are, and the column of their kinds, which means nothing: they are all alike."""
+        """Return the properties of the molecules, and the column of kinds, which is unused: there is one kind."""
         n = self._number
         if n and not self._alike:
             raise RefusedError(
@@ -205,11 +205,11 @@ class DsmcParcel(MarchingParcel):
 
     @property
     def _room(self) -> int:
-        """How many molecules there may ever be in the box."""
+        """Largest number of molecules that there may ever be in the box."""
         return len(self._mass)
 
     def _lay_out(self, sides: Sequence[float]) -> None:
-        """Choose cells that are as good as cubes."""
+        """Choose cells that are nearly cubes."""
         n = self._number or self._room
         volume = math.prod(sides)
         edge = math.inf
@@ -230,7 +230,7 @@ class DsmcParcel(MarchingParcel):
         if not steps and self._room:
             self._resolve(first, 0, np.full(1, self.ceiling))
         while first < last:
-            # the first step brings them into the order of cells, then every so many
+            # at the first step the molecules are sorted by cells, and then at regular intervals
             turn = first + 1 if first == 0 else first + self._round - (first - 1) % self._round
             many = min(last, turn) - first
             position, speed, since = (float(value) for value in self._walls.piston)
@@ -261,7 +261,7 @@ class DsmcParcel(MarchingParcel):
         )  # fmt: skip
 
     def _regroup(self) -> None:
-        """Put the columns in the order of cells, and let cells forget the fastest pair that they ever saw."""
+        """Put the columns in the order of cells, and reset the largest relative speed found in each cell."""
         changed: dict[str, Any] = {}
         order = self._columns.order[: self._number]
         for name in _COLUMNS[: 7 if self._rotates else 6]:
@@ -275,7 +275,7 @@ class DsmcParcel(MarchingParcel):
         np.maximum(self._grid.fastest * _FORGET, usual, out=self._grid.fastest)
 
     def _renew(self) -> None:
-        self._box = self._box._replace(gravity=self._gravity)  # every step reads its length anew
+        self._box = self._box._replace(gravity=self._gravity)  # the length of a step is passed with every march
 
     def _open_sides(self) -> list[float]:
         """Return the sides of the space that centres can reach now [length]."""
@@ -283,12 +283,12 @@ class DsmcParcel(MarchingParcel):
         return [float(side) - (0.0 if turn else 2.0 * self._gas.radius) for side, turn in sides]
 
     def _path(self, volume: float) -> float:
-        """Return the mean free path when molecules fill an open volume evenly [length]."""
+        """Return the mean free path of molecules that fill an open volume evenly [length]."""
         swept = math.sqrt(2.0) * (self._number or self._room) * self._cross_section
         return volume / swept if swept > 0.0 else math.inf
 
     def _fastest(self) -> float:
-        """Return sqrt(kT/m) of the start or of the hottest wall; of rest, what falling or the piston will give."""
+        """Return sqrt(kT/m) of the start or the hottest wall; if both are at rest, a speed from fall or piston."""
         if not self._room:
             return 0.0
         kT = self._warmest(self._gas.mass * self._mean_square_speed() / 3.0)
@@ -298,7 +298,7 @@ class DsmcParcel(MarchingParcel):
         return max(math.sqrt(fall), abs(self.piston_velocity))
 
     def _thermal_speed(self) -> float:
-        """Return sqrt(kT/m), of the lightest molecules if they differ [length/time]."""
+        """Return sqrt(kT/m) now, of the lightest molecules if they differ [length/time]."""
         return math.sqrt(self._mean_square_speed() / 3.0)
 
     def _mean_square_speed(self) -> float:

@@ -1,13 +1,14 @@
-r"""What liquid does in a step among many molecules, and what a mist does.
+r"""The events of liquid in a step among many molecules; and the events of a mist.
 
-All molecules have flown, and those that came to a pool wait on it. Now the events of the liquid take their turn, *one
-by one* in the order of their times within the step: a molecule meets it, one leaves it, one rains out. Were those that
-meet it dealt with in the order of the list instead, many would condense before one could leave, and it would be too
-warm. Each clock is a Poisson process, drawn anew whenever the liquid has changed, which its lack of memory allows.
+All molecules have flown, and those that came to a pool wait on it. Then the events of the liquid are computed *one by
+one* in the order of their times within the step: a molecule meets it, one leaves it, one rains out. If all molecules
+that meet it were treated first, in the order of the list, many would condense before one could leave, and the liquid
+would be too warm. Each clock is a Poisson process, so it has no memory and its time may be drawn anew whenever the
+liquid has changed.
 
-In an ideal gas a molecule of speed w relative to the air meets the **mist** at the rate :math:`A w / 4 V`. Drawn is the
-time for the fastest of all; what is drawn is accepted in proportion to the speed. One that has gone leaves a hole in
-the columns, which the last of them fills. The pool is in `moist_pool`.
+In an ideal gas a molecule of speed w relative to the air meets the **mist** at the rate :math:`A w / 4 V`. The time is
+drawn for the largest speed of all, and a meeting is accepted with a probability proportional to the speed. A molecule
+that leaves the gas leaves a hole in the columns, which the last molecule fills. The pool is in `moist_pool`.
 """
 
 import math
@@ -40,11 +41,11 @@ __all__ = ["Water", "copy_slot", "emit", "mist_step", "new_water", "next_rain", 
 
 
 class Water(NamedTuple):
-    """The liquid of many molecules.
+    """The liquid in a box of many molecules.
 
-    ``reservoir`` its molecules and energy; ``calendar`` when those that wait on a pool came to it; ``hole : (slot,)``
-    the slots of those that have gone in this step, as many as ``holes[0]`` says; ``random : (1,)`` a state of random
-    numbers.
+    ``reservoir``: its molecules and energy; ``calendar``: the times at which molecules waiting on a pool came to it;
+    ``hole : (slot,)``: the slots of molecules that left the gas in this step, ``holes[0]`` of them; ``random : (1,)``:
+    a state of random numbers.
     """
 
     reservoir: Reservoir
@@ -55,7 +56,7 @@ class Water(NamedTuple):
 
 
 def new_water(reservoir: Reservoir, waiting: int) -> Water:
-    """Return the liquid of many molecules, of which so many molecules may wait on a pool."""
+    """Return the data of a liquid in a box where at most ``waiting`` molecules can wait on a pool."""
     return Water(
         reservoir, new_calendar(waiting), np.zeros(waiting, np.int64), np.zeros(1, np.int64), np.zeros(1, np.uint64)
     )
@@ -63,7 +64,7 @@ def new_water(reservoir: Reservoir, waiting: int) -> Water:
 
 @kernel
 def copy_slot(source, p, columns, rotates):
-    """Write what stands in one slot into another."""
+    """Copy the molecule of one slot to another."""
     columns.x[p], columns.y[p], columns.z[p] = columns.x[source], columns.y[source], columns.z[source]
     columns.vx[p], columns.vy[p], columns.vz[p] = columns.vx[source], columns.vy[source], columns.vz[source]
     if rotates:
@@ -75,16 +76,16 @@ def copy_slot(source, p, columns, rotates):
 
 @kernel
 def strike(p, columns, reservoir):
-    """Note that the molecule of a slot is not in the box any more."""
+    """Mark the molecule of a slot as absent from the box."""
     reservoir.absent[reservoir.top[0]] = columns.identity[p]
     reservoir.top[0] += 1
 
 
 @kernel
 def touch(p, flow, air, features):
-    """Let a molecule meet the liquid, which flows upwards with the air; return whether it stays there.
+    """Resolve a meeting of a molecule with the liquid, which flows upwards with the air; return whether it stays there.
 
-    Otherwise it leaves with another energy.
+    If not, it leaves the liquid with another energy.
     """
     columns, gas, reservoir, state = air.columns, air.gas, air.water.reservoir, air.water.random
     kind = np.int64(columns.kind[p])
@@ -114,7 +115,7 @@ def touch(p, flow, air, features):
 
 @kernel
 def emit(p, where, flow, air, features):
-    """Let a molecule leave the liquid to a place (x, y, z) [length], into a slot that is free."""
+    """Move a molecule from the liquid to a place (x, y, z) [length] in the gas, into a free slot."""
     columns, gas, reservoir, state = air.columns, air.gas, air.water.reservoir, air.water.random
     mass = gas.masses[reservoir.kind]
     flight, spin = evaporate(reservoir, state)
@@ -123,7 +124,7 @@ def emit(p, where, flow, air, features):
     vx, vy, vz = speed * ex, speed * ey, speed * ez + flow
     energy = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
     if flow != 0.0 and energy + reservoir.binding_energy > reservoir.energy[THERMAL]:
-        # only the last molecule can lack what the flow of the air adds: it leaves as if the air were at rest
+        # only the last molecule can lack the energy of the flow: it leaves as if the air were at rest
         vz = speed * ez
         energy = flight + spin
     leave(reservoir, energy)
@@ -138,14 +139,14 @@ def emit(p, where, flow, air, features):
 
 @kernel
 def place(radius, length, inverse, state):
-    """Return a coordinate that a centre can have along an axis, at random."""
+    """Draw a coordinate that a centre can have along an axis."""
     margin = radius if inverse == 0.0 else 0.0
     return margin + (length - 2.0 * margin) * uniform(state)
 
 
 @kernel
 def _fastest(number, columns):
-    """Return the highest speed of all molecules [length/time]; four at a time, for maxima wait for each other."""
+    """Return the highest speed of all molecules [length/time]; with four maxima, as each must wait for its last one."""
     a = b = c = d = 0.0
     vx, vy, vz = columns.vx, columns.vy, columns.vz
     whole = number - number % 4
@@ -161,13 +162,13 @@ def _fastest(number, columns):
 
 @kernel
 def next_rain(t, reservoir, state):
-    """Return when the next molecule rains [time]."""
+    """Return the time at which the next molecule rains [time]."""
     return t + wait(reservoir.rain * (reservoir.count[LIQUID] - reservoir.keeps), state)
 
 
 @kernel(entry=True)
 def mist_step(step, air, features):
-    """Let a mist, carried along by the air, do what it does in a step."""
+    """Resolve the events of a mist, which moves with the air, in a step."""
     columns, gas, box, water = air.columns, air.gas, air.box, air.water
     reservoir, state = water.reservoir, water.random
     dt, ceiling, top = step.length, step.ceiling, step.top

@@ -22,11 +22,11 @@ _MOST_KINDS = 256
 
 
 class MoistDsmcParcel(MoistAccount, DsmcParcel):
-    """A parcel of dilute air and vapour with liquid in it, whose molecules collide with whom chance chooses nearby.
+    """A parcel of dilute air and vapour with liquid in it, whose molecules collide with random partners nearby.
 
-    What it is given besides, and what it tells, is described at `DsmcParcel`; what the liquid does, at `liquid`. The
-    molecules that are given are in the box; those in the liquid come to them. They may differ in mass and rotation, not
-    in size. Vapour are those that are as the substance of the liquid says.
+    Its other parameters, and its properties, are described at `DsmcParcel`; the laws of the liquid, at `liquid`. The
+    molecules that are given are in the box; those of the liquid are added to them. They may differ in mass and
+    rotation, but not in size. Molecules with mass, diameter and rotation of the substance are vapour.
 
     Parameters
     ----------
@@ -36,16 +36,16 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
     Raises
     ------
     RefusedError
-        If a liquid is asked for in gravity, or a pool on a floor that is no smooth wall; if molecules differ in size,
+        If there is a liquid in gravity, or a pool on a floor that is no smooth wall; if molecules differ in size,
         or the liquid is neither a mist nor a pool.
 
     Notes
     -----
-    Steps and cells are those of the gas at the start; of all molecules where they are all in the liquid.
+    Steps and cells are those of the gas at the start; if all molecules are in the liquid, those of all molecules.
 
     Examples
     --------
-    A molecule of the liquid that is hot enough leaves it; the energy is still there:
+    A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
     >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
     >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
@@ -74,7 +74,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         self._liquid = liquid
         super().__init__(position, velocity, dt=dt, occupancy=occupancy, cell=cell, threads=threads, **box)
 
-    # ------------------------------------------------------------------ what it tells
+    # ------------------------------------------------------------------ the state
 
     @property
     def diameter(self) -> Array:
@@ -82,7 +82,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         return np.broadcast_to(np.float64(2.0 * self._gas.radius), self.number)
 
     def snapshot(self) -> Snapshot:
-        """Return all molecules of the gas as they are after the last step, in the order of the list."""
+        """Return all molecules of the gas as they are after the last step, in the order of their indices."""
         s, n = self._columns, self._number
         order = np.argsort(s.identity[:n])
         position, velocity = (np.stack([column[order] for column in s[k : k + 3]], axis=1) for k in (0, 3))
@@ -95,12 +95,12 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         return self._kinetic(), rotational, 0.0
 
     def memory(self) -> int:
-        """Return the bytes that molecules, cells, the sorting of the ones into the others and the liquid take."""
+        """Return the memory of molecules, cells and liquid, and of sorting the molecules into cells [bytes]."""
         calendar = self._water.calendar
         arrays = (self._columns.kind, self._spare_kind, self._water.hole, calendar.time, calendar.winner)
         return super().memory() + self._reservoir_memory() + sum(int(array.nbytes) for array in arrays)
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ how steps are made
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         if not isinstance(self._liquid, Mist | Pool):
@@ -116,7 +116,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         self._spare_kind = np.empty_like(self._columns.kind)
 
     def _classify(self) -> tuple[MoleculeKinds, Any]:
-        """Return what the molecules of gas and liquid are, and of which kind each is."""
+        """Return the properties of the molecules of gas and liquid, and the kind of each."""
         self._append_liquid()
         kinds, kind, _ = classify(self._mass, self._diameter, self._rotation, None)
         radii = kinds.table["radius"]
@@ -152,7 +152,7 @@ class MoistDsmcParcel(MoistAccount, DsmcParcel):
         super()._regroup()
 
     def _fastest(self) -> float:
-        """Return sqrt(kT/m) of the lightest molecules, at the start or at the warmest of walls and liquid."""
+        """Return sqrt(kT/m) of the lightest molecules, at the highest temperature of start, walls and liquid."""
         if not self._room:
             return 0.0
         kT = self._warmest(max(self._kT(), self._liquid.kT if self._liquid.number else 0.0))

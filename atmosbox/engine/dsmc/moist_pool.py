@@ -1,8 +1,8 @@
-"""What a pool does in a step among many molecules.
+"""The events of a pool in a step among many molecules.
 
-They come to it when their flight takes them there, and wait for their turn. Whoever leaves it flies for *the rest of
-the step*, from wall to wall, and may be back within it. Were they put on the floor at the end of the step instead, slow
-molecules would be too few above it, and the gas too hot.
+Molecules whose flight takes them to the pool wait there for their turn. A molecule that leaves it flies for *the rest
+of the step*, from wall to wall, and may be back within it. If it were put on the floor at the end of the step instead,
+there would be too few slow molecules above the pool, and the gas would be too hot.
 """
 
 import math
@@ -22,11 +22,11 @@ _GONE = -1.0
 
 @kernel
 def fill_holes(last, columns, left, water, rotates):
-    """Put the last molecules into the holes before them; ``last`` is the slot after the last that is in use.
+    """Move the last molecules into the holes before them; ``last`` is the slot after the last one in use.
 
     Examples
     --------
-    The first and the third of four have gone: the fourth takes the place of the first.
+    The first and the third of four have left: the fourth takes the place of the first.
 
     >>> import numpy as np
     >>> from atmosbox.engine.dsmc.moist_columns import Water
@@ -51,7 +51,7 @@ def fill_holes(last, columns, left, water, rotates):
 
 @kernel(entry=True)
 def pool_step(step, air, features):
-    """Let a pool on the floor do what it does in a step, with those that wait on it."""
+    """Resolve the events of a pool on the floor in a step, with the molecules that wait on it."""
     columns, gas, box, water = air.columns, air.gas, air.box, air.water
     reservoir, state, calendar, left = water.reservoir, water.random, water.calendar, air.workspace.left
     dt, ceiling, top = step.length, step.ceiling, step.top

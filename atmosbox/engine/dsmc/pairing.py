@@ -1,12 +1,12 @@
-r"""Who collides with whom in a cell: pairs are drawn for many cells at a time, then met one after the other.
+r"""Which molecules of a cell collide: pairs are drawn for many cells at a time, then resolved one after the other.
 
-A processor guesses how a comparison will end and goes on; drawing is all chance, so it guesses wrong, and then all that
-it has begun is lost. So what depends on chance is kept apart from what takes long: how often each cell tries
-is written down, then whom each try draws, in a loop without a branch; only then do pairs meet, whose molecules the
-memory has been asked for in the meantime.
+A processor predicts the result of a comparison and goes on. Random draws cannot be predicted, and after a wrong
+prediction the work that it has begun is lost. So decisions by chance are separated from the long computations: first
+the number of tries of each cell is written down, then the pair that each try draws, in a loop without a branch; only
+then are the pairs resolved, after their molecules have been fetched from memory in the meantime.
 
-Random numbers are words scrambled by splitmix64 (`random`), keyed by seed, step and cell: no cell's depend on what
-happens elsewhere, nor on which thread it falls to.
+Random numbers are words scrambled by splitmix64 (`random`), keyed by seed, step and cell: those of a cell depend
+neither on other cells nor on the thread that computes it.
 """
 
 import math
@@ -29,18 +29,18 @@ _FRACTION = 1.0 / 4294967296.0
 _HIGH, _MIDDLE, _PART, _ONE = np.uint64(43), np.uint64(22), np.uint64(21), np.uint64(1)
 _MASK, _LAST = np.uint64(0x1FFFFF), np.uint64(0x3FFFFF)
 _DECIDE = 1.0 / 4194304.0
-_BATCH = 256  # tries are written down before their pairs meet: few enough to stay in the nearest cache
-_WIDE = 4  # of them at once, whether so many are needed or not: that takes no loop of unknown length
-_AHEAD = 16  # tries before its turn memory is asked for a pair
-_MANY = 200_000  # molecules do not stay in a cache
+_BATCH = 256  # number of tries written down before their pairs are resolved: few enough to stay in the nearest cache
+_WIDE = 4  # number of them written at once, even if fewer are needed: this avoids a loop of unknown length
+_AHEAD = 16  # a pair is fetched from memory this number of tries ahead
+_MANY = 200_000  # this many molecules do not stay in a cache
 
 
 class Tries(NamedTuple):
-    """A list of tries, for each thread: what a step writes on and forgets.
+    """A list of tries, for each thread; each step overwrites it.
 
-    ``word : (thread, try)`` a random word, ``bar`` the fastest pair of its cell [length/time], then the squared speed
-    above which this pair collides, ``cell`` where it is, ``begin``, ``number`` where the molecules of that cell
-    begin in the index, and how many they are, ``one``, ``other`` the two slots drawn.
+    ``word : (thread, try)``: a random word; ``bar``: the largest relative speed in its cell [length/time], later the
+    squared speed above which this pair collides; ``cell``: its cell; ``begin``, ``number``: where the molecules of
+    that cell begin in the index, and how many they are; ``one``, ``other``: the two slots drawn.
     """
 
     word: Any
@@ -53,14 +53,14 @@ class Tries(NamedTuple):
 
 
 def new_tries(threads: int) -> Tries:
-    """Return an empty list for each thread; behind its end is room for what is fetched ahead."""
+    """Return an empty list for each thread, with extra memory at its end for what is fetched ahead."""
     room = (threads, _BATCH + 64)
     return Tries(np.zeros(room, np.uint64), np.zeros(room), *(np.zeros(room, np.uint32) for _ in range(5)))
 
 
 @kernel
 def scramble(word):
-    """Return a random word that depends on another and on nothing else (see `random`).
+    """Return a random word that depends on another word alone (see `random`).
 
     Examples
     --------
@@ -75,7 +75,7 @@ def scramble(word):
 
 @kernel
 def _draw(number, thread, tries, first, order):
-    """Choose the two slots of each try, and the squared speed that they must exceed to collide."""
+    """Draw the two slots of each try, and the squared speed above which they collide."""
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
     begin, inside = tries.begin[thread], tries.number[thread]
     one, other = tries.one[thread], tries.other[thread]
@@ -86,7 +86,7 @@ def _draw(number, thread, tries, first, order):
     for k in range(number):
         draw = scramble(word[k])
         word[k] = draw
-        # one word makes three numbers: 21 bits choose a molecule, 21 another, 22 decide
+        # one word makes three numbers: 21 bits choose a molecule, 21 the other, 22 decide
         many = np.uint64(inside[k])
         i = ((draw >> _HIGH) * many) >> _PART
         j = (((draw >> _MIDDLE) & _MASK) * (many - _ONE)) >> _PART
@@ -102,7 +102,7 @@ def _draw(number, thread, tries, first, order):
 
 @kernel
 def _fetch(columns, i):
-    """Fetch what a try will need: at many molecules memory is what takes the time."""
+    """Fetch from memory what a try will need; with many molecules, memory takes most of the time."""
     prefetch(columns.vx, i)
     prefetch(columns.vy, i)
     prefetch(columns.vz, i)
@@ -110,7 +110,7 @@ def _fetch(columns, i):
 
 @kernel
 def _weigh(i, j, columns, gas, mixed):
-    """Return half the reduced mass of a pair [mass], and the shares of both in a change of their relative velocity."""
+    """Return half the reduced mass of a pair [mass], and the share of each in a change of their relative velocity."""
     if mixed:
         one, other = gas.masses[columns.kind[i]], gas.masses[columns.kind[j]]
         share = other / (one + other)
@@ -120,7 +120,7 @@ def _weigh(i, j, columns, gas, mixed):
 
 @kernel
 def _meet(number, thread, air, features):
-    """Let pairs collide that are fast enough; return how many did."""
+    """Resolve the collisions of pairs that are fast enough; return their number."""
     columns, gas, fastest, exchange = air.columns, air.gas, air.grid.fastest, air.box.exchange
     tries, state = air.tries, air.workspace.random[thread]
     word, bar, cell = tries.word[thread], tries.bar[thread], tries.cell[thread]
@@ -178,7 +178,7 @@ def _meet(number, thread, air, features):
 
 @kernel
 def collide(thread, sweep, key, air, features):
-    """Let a thread's share of the cells collide; count collisions on the workspace.
+    """Resolve the collisions in a thread's share of the cells; count them in the working memory.
 
     ``sweep`` is half the cross section times the step over the volume of a cell [time/length], ``key`` a random word
     of this step.
@@ -194,7 +194,7 @@ def collide(thread, sweep, key, air, features):
         left = np.int64(sweep * (inside * (inside - 1)) * most + np.int64(seed >> _HALF) * _FRACTION)
         while True:
             at = written & POSITIVE
-            # one short loop per column: each becomes one store
+            # one short loop per column: each becomes one store instruction
             for k in range(_WIDE):
                 word[at + k] = seed + np.uint64(k) * _STEP
             for k in range(_WIDE):

@@ -1,4 +1,4 @@
-"""A column of dilute gas that is stirred, advanced by direct simulation Monte Carlo."""
+"""A column of dilute gas with stirring, advanced by direct simulation Monte Carlo."""
 
 from typing import Any, ClassVar, Unpack
 
@@ -16,18 +16,18 @@ from atmosbox.engine.dsmc.stirring import Stirring, stir
 __all__ = ["StirredDsmcParcel"]
 
 _FEWEST = 10
-_USE = 2  # of the seed: beside what happens in the box, and its start
+_USE = 2  # use of the seed, besides those for the run and for its start
 
 
 class StirredDsmcParcel(DsmcParcel):
     """A column of gas in which parcels change places up and down, each with the work of its piston.
 
-    What it is given besides, and what it tells, is described at `DsmcParcel`; what stirring does, at `stirring`.
+    Its other parameters, and its properties, are described at `DsmcParcel`; the method of stirring, at `stirring`.
 
     Parameters
     ----------
     stirring
-        How large parcels are, how far they go, how often.
+        Size of the parcels, distance that they move, rate of their exchanges.
 
     Raises
     ------
@@ -37,12 +37,12 @@ class StirredDsmcParcel(DsmcParcel):
 
     Notes
     -----
-    Parcels change places between two steps, at times that stand on the grid of steps: a run is the same however it is
-    cut into pieces. Work is booked as the sum of what each molecule gained.
+    Parcels change places between two steps, at times on the fixed grid of steps: so the result does not depend on the
+    pieces into which a run is cut. The work is the sum of the energy that each molecule gained.
 
     Examples
     --------
-    Cold air above warm air of the same weight is mixed to one potential temperature, and the work is in the ledger:
+    Cold air above warm air of the same weight is mixed to one potential temperature, and the ledger holds the work:
 
     >>> rng = np.random.default_rng(1)
     >>> column = StirredDsmcParcel(
@@ -77,20 +77,20 @@ class StirredDsmcParcel(DsmcParcel):
         self._owed = np.zeros(1)
         super().__init__(position, velocity, dt=dt, occupancy=occupancy, cell=cell, threads=threads, **box)
 
-    # ------------------------------------------------------------------ what it tells
+    # ------------------------------------------------------------------ the state
 
     @property
     def stirring_work(self) -> float:
-        """Work that the stirrer has done on the molecules since the start [energy]."""
+        """Work that the stirring has done on the molecules since the start [energy]."""
         return float(self._counted[0])
 
     @property
     def exchanges(self) -> int:
-        """How many pairs of parcels have changed places since the start."""
+        """Number of pairs of parcels that have changed places since the start."""
         return int(self._counted[1])
 
     def set_stirring(self, rate: float) -> None:
-        """Let so many parcels change places in a unit of time [1/time] from now on.
+        """Set the rate at which pairs of parcels change places [1/time] from now on.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class StirredDsmcParcel(DsmcParcel):
     def _given(self) -> float:
         return super()._given() + self.stirring_work
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ how steps are made
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
         parcel = whole(self._stirring.parcel, "parcel of the stirring", least=_FEWEST)
@@ -128,7 +128,7 @@ class StirredDsmcParcel(DsmcParcel):
         period = max(1, round(self._stirring.interval / self._time_step))
         if not many:
             super()._resolve(first, many, ceilings)
-            self._stir(0)  # compiles
+            self._stir(0)  # compiles the kernel
         done = 0
         while done < many:
             part = min(many - done, period - (first + done) % period)

@@ -1,29 +1,29 @@
 r"""Stirring: two parcels of finite size change places, one up and one down, each with the work of its piston.
 
-The molecules stand in the order of their heights. Those of a parcel are next to each other in that order, over the
-whole width of the box; an exchange takes two parcels of as many molecules, one higher by a *lift* d, drawn at random::
+The molecules are sorted by height. Those of a parcel are next to each other in that order, over the
+whole width of the box; an exchange takes two parcels of equally many molecules, one higher by a random *lift* d::
 
     order of heights   0 . . . . a ooooooo a+n . . . . a+d xxxxxxx a+d+n . . . . N
     after it           0 . . . . a xxxxxxx a+n . . . . a+d ooooooo a+d+n . . . . N
 
 Each molecule takes the height of its counterpart in the other parcel. So every layer has as many molecules as before,
-each at a height where one was: neither the density nor the potential energy changes, and no sound is made by a gap.
+each at a height where one was: neither the density nor the potential energy changes, and no gap makes a sound wave.
 
-What changes is the energy of the parcels. The pressure at a place in the order is the weight of all that is above,
-:math:`p(r) = p_0 - r\,m g / A`. Air that goes slowly from p to p' expands and does work on what surrounds
-it, or is compressed, and by the law of Poisson its temperature is multiplied by
+The exchange changes the energy of the parcels. The pressure at a place in the order is the weight of all that is above,
+:math:`p(r) = p_0 - r\,m g / A`. Air that goes slowly from p to p' expands and does work on its environment,
+or is compressed, and by Poisson's equation its temperature is multiplied by
 
 .. math:: s = (p' / p)^{R / c_p}, \qquad R / c_p = 2 / (f + 2).
 
 So every energy of the disordered motion is multiplied by s, in all f degrees of freedom, rotation included: velocities
-relative to that of the parcel by :math:`\sqrt s`. The momentum of each parcel stays. The work that the air has
-not done itself is that of the stirrer, and is entered in the ledger.
+relative to that of the parcel by :math:`\sqrt s`. The momentum of each parcel stays the same. The energy that is
+gained in total is the work of the stirring, and is entered in the ledger.
 
-Where the air is on an adiabat, what comes is as warm as what was there, and stirring changes nothing; elsewhere it
-mixes the potential temperature. How large the pressure :math:`p_0` below all of them is follows from the virial
+Where the air is on an adiabat, the air that arrives is as warm as the air that was there, and stirring changes nothing;
+elsewhere it mixes the potential temperature. The pressure :math:`p_0` below all molecules follows from the virial
 theorem: it is measured, and no temperature profile is put in.
 
-Single molecules that change places show what makes the difference: nothing expands, so that they do no work, and
+For comparison, single molecules can change places: they do not expand, so they do no work, and
 keep their energies. Then stirring mixes the temperature, as conduction does.
 
 References
@@ -41,16 +41,16 @@ from atmosbox.engine.core.random import uniform
 
 __all__ = ["Stirring", "stir"]
 
-_LEAST = 1e-3  # of the pressure at the floor: there may be less before the air has fallen, and nothing expands further
+_LEAST = 1e-3  # least pressure over that at the floor: it may be lower before the air has fallen, but is taken as this
 
 
 class Stirring(NamedTuple):
-    """How the air of a column is stirred.
+    """The parameters of the stirring of a column.
 
-    ``parcel`` molecules in a parcel; ``least``, ``most`` places in the order of heights by which it rises or sinks, any
-    number between them, and no fewer than molecules; ``rate`` exchanges in a unit of time [1/time]; ``interval`` time
-    from one set of exchanges to the next, as nearly as whole steps allow [time]; ``works`` whether what changes places
-    is parcels, which do work, or as many molecules one by one, which do none.
+    ``parcel``: molecules in a parcel; ``least``, ``most``: limits of the number of places in the order of heights by
+    which it rises or sinks, not below the number of its molecules; ``rate``: exchanges per time [1/time];
+    ``interval``: time from one set of exchanges to the next, as nearly as whole steps allow [time]; ``works``: whether
+    parcels change places, which do work, or as many single molecules, which do none.
     """
 
     parcel: int
@@ -65,7 +65,7 @@ class Stirring(NamedTuple):
 def _pressure_at_floor(order, columns, gas, column):
     r"""Return the pressure below all molecules, from the virial theorem of a column at rest [energy/length^3].
 
-    The integral of the pressure over the volume is the sum of kT; below the weight of the molecules it is
+    The integral of the pressure over the volume is the sum of kT. The pressure below the weight of the molecules gives
     :math:`p_0 V = N k T + \sum m g (z_{top} - z)`.
     """
     gravity, area, low, high = column
@@ -89,9 +89,9 @@ def _mean_velocity(first, number, order, columns):
 
 @kernel
 def _scale(first, number, lift, order, columns, mean, mass, rotates, factor):
-    """Multiply the energies of a parcel as it comes to another pressure; return what they gain [energy].
+    """Multiply the energies of a parcel as it moves to another pressure; return the energy gained [energy].
 
-    It comes from a place ``first`` to one that is higher by a ``lift``; ``factor`` is what `stir` says.
+    It moves from a place ``first`` to one that is higher by ``lift``; ``factor`` is described at `stir`.
     """
     ux, uy, uz = mean
     sx = sy = sz = gain = 0.0
@@ -106,7 +106,7 @@ def _scale(first, number, lift, order, columns, mean, mass, rotates, factor):
         if rotates:
             gain += (root * root - 1.0) * columns.spin[p]
             columns.spin[p] *= root * root
-    # what was at rest relative to the parcel is so again, and the parcel moves on as it did
+    # molecules at rest relative to the parcel stay so, and the parcel keeps its mean velocity
     sx, sy, sz = ux - sx / number, uy - sy / number, uz - sz / number
     for i in range(first, first + number):
         p = order[i]
@@ -118,7 +118,7 @@ def _scale(first, number, lift, order, columns, mean, mass, rotates, factor):
 
 @kernel
 def _swap(i, j, order, z):
-    """Let the molecules at two places in the order of heights change places."""
+    """Exchange the molecules at two places in the order of heights."""
     p, q = order[i], order[j]
     z[p], z[q] = z[q], z[p]
     order[i], order[j] = q, p
@@ -126,32 +126,32 @@ def _swap(i, j, order, z):
 
 @kernel(entry=True)
 def stir(number, stirring, order, columns, gas, column, state, counted, factor):
-    """Make a number of exchanges at places that are drawn at random.
+    """Make a number of exchanges at random places.
 
     Parameters
     ----------
     number
-        How many.
+        Number of exchanges.
     stirring
         The `Stirring`.
     order : (molecule,)
-        Their slots in the order of heights, changed.
+        Slots of the molecules in the order of heights; it is changed.
     columns, gas
-        The molecules, and what all of them are.
+        The molecules, and their common properties.
     column
         Acceleration of gravity [length/time^2], area of the column [length^2], height of its lower and upper end.
     state : (1,)
-        State of the random numbers, moved on.
+        State of the random numbers; it is advanced.
     counted : (2,)
-        Work done on the molecules [energy] and exchanges: added to.
+        Work done on the molecules [energy] and number of exchanges; they are increased.
     factor : (molecule,)
-        Scratch memory: velocities at each place, over those at the floor, of air that has come from there.
+        Working memory: factor of the velocities of air that comes from the floor to each place.
     """
     n = stirring.parcel
     rotates = gas.rotation > 0.0
     z = columns.z
     if number and stirring.works:
-        # the pressure has fallen from the floor by the weight of what is below
+        # from the floor up the pressure falls by the weight of the air below
         pressure = _pressure_at_floor(order, columns, gas, column)
         fall = gas.mass * column[0] / column[1]
         power = 1.0 / (5.0 + gas.rotation)  # R / c_p for energies, half of it for velocities

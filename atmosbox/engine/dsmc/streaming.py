@@ -1,11 +1,12 @@
-r"""A step of free flight for many molecules at once, with all that walls do to them on the way.
+r"""A step of free flight for many molecules at once, with all wall hits on the way.
 
 Hardly any molecule reaches a wall within one step, so all fly without a branch, eight at a time, and mark
-those for which a wall makes a difference. There are two kinds. Smooth walls at rest that face each other only
-mirror: flight along their axis goes on beyond the wall and is *folded* back, and what is left to do is to write the
-impulse down. Before any other wall a molecule is told to *wait*: it flies last, alone, from wall to wall. Each
-hit happens at its exact time and place, and what a heat bath emits flies for *the rest of the step*. Were it
-emitted at the end of the step instead, slow molecules would be too few near the wall, and the gas too hot.
+those that need more work because of a wall. There are two cases. Smooth walls at rest that face each other only
+mirror: flight along their axis goes on beyond the wall and is *folded* back, and only the impulse remains to be
+tallied. Before any other wall a molecule *waits*: it flies last, alone, from wall to wall. Each
+hit happens at its exact time and place, and a molecule emitted by a heat bath flies for *the rest of the step*. If it
+were emitted at the end of the step instead, there would be too few slow molecules near the wall, and the gas would be
+too hot.
 """
 
 import math
@@ -20,16 +21,16 @@ from atmosbox.engine.core.walls import PISTON, bounce_off
 __all__ = ["WAITS", "Axis", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
 
 WAITS = 4
-"""The mark of a molecule that waits. Smaller marks, 1 and 2, tell along which axis one is folded, x, y or both."""
+"""The mark of a molecule that waits. Smaller marks, 1 and 2, tell the axes along which it is folded, x, y or both."""
 
 _MOST_HITS = 1000
 
 
 class Axis(NamedTuple):
-    """An axis along which molecules move: the lowest and highest place of a centre [length], and the cells.
+    """An axis along which molecules move: the lowest and highest coordinate of a centre [length], and the cells.
 
-    ``per_length`` is how many cells there are to a length [1/length], ``last`` the index of the last one, ``stride`` by
-    how much the number of a cell grows from one to the next.
+    ``per_length``: number of cells per length [1/length], ``last``: index of the last cell, ``stride``: the step of
+    a cell's number from one cell to the next along the axis.
     """
 
     low: float
@@ -41,7 +42,7 @@ class Axis(NamedTuple):
 
 @kernel
 def wait_at_walls(x, v, low, high, dt, mark):
-    """Let those wait that would leave the interval [length] within a step of dt [time].
+    """Mark as waiting the molecules that would leave an interval [length] within a step of dt [time].
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ def wait_at_walls(x, v, low, high, dt, mark):
     dt
         Length of the step [time].
     mark : (molecule,)
-        `WAITS` for those that wait, changed.
+        `WAITS` for those that wait; it is changed.
 
     Examples
     --------
@@ -68,11 +69,11 @@ def wait_at_walls(x, v, low, high, dt, mark):
 
 @kernel
 def fall(z, v, dt, mark, gravity, axis, cell):
-    """Move molecules up and down their exact parabola, but let those wait that would reach floor or ceiling.
+    """Move molecules up and down on their exact parabola; those that would reach floor or ceiling wait.
 
     A parabola is highest above its chord, so it meets the ceiling, if at all, where the straight line without
-    gravity does, too; and it is lowest at its ends. ``axis.high`` is where the ceiling is at the end of the step. To
-    each ``cell`` is added its index along this axis, times the stride; for one that waits it means nothing.
+    gravity does, too; and it is lowest at its ends. ``axis.high`` is the height of the ceiling at the end of the step.
+    The index along this axis, times the stride, is added to each ``cell``; for a molecule that waits it has no meaning.
     """
     gain = gravity * dt
     drop = 0.5 * gain * dt
@@ -91,13 +92,13 @@ def fall(z, v, dt, mark, gravity, axis, cell):
 
 @kernel
 def fold(x, v, dt, mark, sign, axis, cell):
-    """Move those that do not wait evenly between two smooth walls; one that hits a wall gets the mark ``sign``.
+    """Move those that do not wait uniformly between two smooth walls; one that hits a wall gets the mark ``sign``.
 
-    Whoever comes so fast that folding once leaves it beyond the other wall is left there, for `mirror`.
+    A molecule so fast that it is beyond the other wall after one folding is left there, for `mirror`.
 
     Examples
     --------
-    The second molecule flies 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
+    The second molecule flies to 0.5 beyond the upper wall, and ends as far below it, in the last of four cells:
 
     >>> x, v, mark, cell = np.array([0.5, 1.5]), np.ones(2), np.zeros(2, np.int32), np.zeros(2, np.uint32)
     >>> fold(x, v, 1.0, mark, 1, Axis(0.0, 2.0, 2.0, 3, 1), cell)
@@ -120,13 +121,13 @@ def fold(x, v, dt, mark, sign, axis, cell):
 
 @kernel
 def mirror(p, x, v, wall, low, high, mass, counters):
-    """Write down the hit of a molecule that has been folded, and fold it again until it is inside.
+    """Tally the hit of a molecule that has been folded, and fold it again until it is inside.
 
-    ``wall`` is the lower of the two walls; see `bounce` for the ``counters``.
+    ``wall`` is the lower of the two walls; the ``counters`` are described at `bounce`.
 
     Examples
     --------
-    One that flew four widths of its box ahead, and was folded once, hit walls four times:
+    A molecule that would fly four widths of its box, and was folded once, hit walls four times:
 
     >>> x, v, counters = np.array([-2.5]), np.array([-4.0]), np.zeros((3, 6))
     >>> mirror(0, x, v, 0, 0.0, 1.0, 1.0, counters)
@@ -147,7 +148,7 @@ def mirror(p, x, v, wall, low, high, mass, counters):
 
 @kernel
 def glide(x, v, dt, mark, axis, cell):
-    """Move those that do not wait evenly between walls: see `fold`."""
+    """Move those that do not wait uniformly between walls: see `fold`."""
     low, high, per_length = axis.low, axis.high, axis.per_length
     most = np.int32(axis.last)
     step = np.int32(axis.stride)
@@ -159,7 +160,7 @@ def glide(x, v, dt, mark, axis, cell):
 
 @kernel
 def turn_round(x, v, dt, mark, axis, cell):
-    """Move those that do not wait evenly along a periodic axis: see `fold`."""
+    """Move those that do not wait uniformly along a periodic axis: see `fold`."""
     most = np.int32(axis.last)
     step = np.int32(axis.stride)
     length, per_length = axis.high, axis.per_length
@@ -178,21 +179,21 @@ def bounce(p, step, air, state, counters, features):
     Parameters
     ----------
     p
-        Its slot.
+        Slot of the molecule.
     step, air
-        The step, or what is left of it, and all that it works on; ``air.workspace.left`` is told how much of the step
-        is left to one that has come to a pool [time].
+        The step, or the rest of it, and the data of the engine; if the molecule comes to a pool,
+        ``air.workspace.left`` gets the rest of the step [time].
     state
-        State of the random numbers, moved on.
+        State of the random numbers; it is advanced.
     counters : (3, wall)
-        Outward impulse, energy given, hits: added to.
+        Outward impulse, energy given, hits; they are increased.
     features
-        What the box requires.
+        The features that the box requires.
 
     Notes
     -----
     A molecule that hits walls a thousand times in one step, as on a floor near absolute zero, loses the rest of
-    that flight, and no energy.
+    that flight, but no energy.
     """
     columns, gas, box, walls = air.columns, air.gas, air.box, air.walls
     dt, ceiling = step.length, step.ceiling
@@ -209,7 +210,7 @@ def bounce(p, step, air, state, counters, features):
     for _ in range(_MOST_HITS):
         soonest = left
         wall = -1
-        # most walls are out of reach: that is seen without a division
+        # most walls are out of reach: this is found without a division
         ahead = x + vx * left
         if box.inverse_x == 0.0 and (ahead < radius or ahead > high_x):
             t, up = time_to_leave(x, vx, radius, high_x)
@@ -269,7 +270,7 @@ def bounce(p, step, air, state, counters, features):
 
 @kernel
 def _back_inside(x, low, high, length, inverse):
-    """Return a coordinate that rounding has put into a wall, or flight beyond a periodic end, moved back."""
+    """Return a coordinate moved back inside if rounding has put it into a wall, or flight beyond a periodic end."""
     if inverse == 0.0:
         return min(max(x, low), high)
     return min(max(x - length * math.floor(x * inverse), 0.0), length)
