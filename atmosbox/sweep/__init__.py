@@ -1,8 +1,8 @@
-"""A grid of settings, run through with several members at each point: how a number depends on a setting.
+"""Sweeps: runs at all points of a grid of settings, several members at each, to see how a number depends on a setting.
 
 Read in this order: `axis` (one setting that varies), `plan` (the grid, its members and their seeds), `member`
-(one run), `local` and `cluster` (where it is computed), `conduct` (the whole) and `result` (one dataset of it). What is
-saved, line by line, is `atmosbox.file.journal`.
+(one run), `local` and `cluster` (where runs are computed), `conduct` (the whole sweep) and `result` (its dataset).
+`atmosbox.file.journal` saves each run as one line of a file.
 """
 
 import sys

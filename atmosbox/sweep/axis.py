@@ -1,4 +1,4 @@
-"""One setting that varies in a sweep: what a user types after ``--vary``, and the values it stands for."""
+"""One setting that varies in a sweep: the text that a user types after ``--vary``, and its values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from atmosbox.scene.spelling import field_name
 __all__ = ["LONGEST", "Axis", "parse_vary"]
 
 LONGEST = 10_000
-"""The most values of one setting."""
+"""Greatest number of values of one setting."""
 
 _COUNT = re.compile(r"\s*([0-9]{1,9})\s*(log|lin)?\s*")
 
@@ -31,7 +31,7 @@ class Axis:
     parameter
         The setting as its scene declares it.
     values
-        Its values in the documented unit: numbers in ascending order, words and switches as they were given.
+        Its values in the documented unit: numbers in ascending order, words and switches in the given order.
 
     Examples
     --------
@@ -69,22 +69,22 @@ def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tup
     Parameters
     ----------
     items
-        ``name=a:b:n`` for n values from a to b at even distances, ``name=a:b:nlog`` for n values at even ratios, or
-        ``name=x,y,z`` for these values. Numbers carry units as after ``--set``.
+        ``name=a:b:n`` for n values from a to b with equal differences, ``name=a:b:nlog`` for n values with equal
+        ratios, or ``name=x,y,z`` for these values. Numbers may have units as after ``--set``.
     parameters
         The settings of the scene by name.
 
     Returns
     -------
     tuple of Axis
-        One for each text, in their order.
+        One axis for each text, in the same order.
 
     Raises
     ------
     UnitError
         If a number or its unit cannot be understood.
     SettingError
-        If a text says something else, a value is not allowed, or a setting varies twice.
+        If a text has none of these forms, a value is not allowed, or a setting varies twice.
 
     Examples
     --------
@@ -121,7 +121,7 @@ _USUAL = "give --vary name=a:b:n, such as --vary temperature=0degC:40degC:5"
 
 
 def _example(parameter: Parameter) -> str:
-    """Return values of a setting that are allowed, as they are typed."""
+    """Return an example of allowed values of a setting, as they are typed."""
     if parameter.kind == "bool":
         return "on,off"
     if parameter.kind == "str":
@@ -138,7 +138,7 @@ def _example(parameter: Parameter) -> str:
 
 
 def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
-    """Return the values that a text stands for; numbers in ascending order."""
+    """Return the values in a text after "="; numbers in ascending order."""
     numeric = parameter.kind in ("int", "float")
     if numeric and ":" in text:
         return _row(text, parameter)
@@ -151,7 +151,7 @@ def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:
 
 
 def _row(text: str, parameter: Parameter) -> tuple[Value, ...]:
-    """Return n values from a to b, as a:b:n asks for."""
+    """Return n values from a to b for the text a:b:n or a:b:nlog."""
     parts = text.split(":")
     count = _COUNT.fullmatch(parts[-1]) if len(parts) == 3 else None
     if count is None:

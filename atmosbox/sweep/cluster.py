@@ -20,38 +20,41 @@ if TYPE_CHECKING:
 __all__ = ["PATIENCE", "remote"]
 
 PATIENCE = 10.0
-"""For how long a scheduler, and then a first worker, may take to answer [s]."""
+"""Longest time to wait for an answer of the scheduler, and then for a first worker [s]."""
 
 _BREATH = 0.5
+"""Time between two reports of progress [s]."""
 
 Watch = Callable[[float, str], None]
 
 
 def remote(tasks: Sequence[Task], address: str, watch: Watch) -> Generator[Record]:
-    """Run the members on the workers of a Dask cluster, and give back each as soon as it is complete.
+    """Run the members on the workers of a Dask cluster, and yield the record of each as soon as it is complete.
 
-    A worker that dies loses its current run and results that were not fetched, and Dask gives that to another.
+    If a worker dies, its current run and its results that were not yet fetched are lost; Dask gives these runs to
+    another worker.
 
     Parameters
     ----------
     tasks
         The runs.
     address
-        Where the scheduler is: ``tcp://host:8786``.
+        Address of the scheduler: ``tcp://host:8786``.
     watch
-        Called while it goes on.
+        Called from time to time with the work under way, in units of one run, and a short text on the present step.
 
     Yields
     ------
     dict
-        What is kept of each run, in the order in which they end.
+        The record of each run, in the order in which they end.
 
     Raises
     ------
     SettingError
-        If dask.distributed is missing, the scheduler does not answer, or a worker has another atmosbox.
+        If dask.distributed is missing, the scheduler does not answer, there are no workers, or a worker has another
+        version of atmosbox.
     EngineError
-        If the scheduler is lost on the way.
+        If the scheduler is lost during the sweep, or the cluster cannot run a member.
     """
     client = _connected(address)
     try:
@@ -77,9 +80,9 @@ def _connected(address: str) -> Client:
 
 
 def _check_workers(client: Client, address: str) -> None:
-    """Refuse a cluster without workers, or one of whose workers has another atmosbox."""
+    """Refuse a cluster without workers, or with a worker that has another version of atmosbox."""
 
-    def version() -> str:  # goes to the workers as it stands, for one without atmosbox, too
+    def version() -> str:  # a nested function is sent as code, so it also runs on a worker without atmosbox
         try:
             from atmosbox.sweep.member import run as needed  # noqa: F401
             from atmosbox.version import __version__
@@ -98,24 +101,24 @@ def _check_workers(client: Client, address: str) -> None:
 
 
 def _other(address: str, worker: str, version: str) -> SettingError:
-    """Return the refusal of a worker that has not this atmosbox."""
+    """Return the error for a worker that does not have this version of atmosbox."""
     has = f"atmosbox {version}" if version else "no atmosbox of this kind"
     fix = f"type pip install atmosbox=={__version__} there, or take the worker away"
     return SettingError("scheduler", address, f"has the worker {worker} with {has}, and this is {__version__}", fix)
 
 
 def _lost(address: str) -> EngineError:
-    """Return the error that a scheduler which is gone amounts to; what was fetched from it is saved."""
+    """Return the error for a lost scheduler; records that were fetched from it are saved."""
     return EngineError(f"The scheduler {address} was lost: type the same again to go on where it stopped.")
 
 
 def _run(task: Task, version: str) -> tuple[str, Record | None]:
-    """Run a member on a worker; no record if the worker has another atmosbox."""
+    """Run a member on a worker; return the worker's version, and no record if that is another version of atmosbox."""
     return (__version__, member.run(task)) if version == __version__ else (__version__, None)
 
 
 def _collected(client: Client, tasks: Sequence[Task], address: str, watch: Watch) -> Generator[Record]:
-    """Send out all runs and fetch them as they end; what is fetched is given up, so that none is ever made again."""
+    """Submit all runs and fetch each record when its run ends; it is then released, so that no run is repeated."""
     from distributed import KilledWorker, wait
 
     own = uuid.uuid4().hex

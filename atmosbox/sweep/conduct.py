@@ -1,4 +1,4 @@
-"""A sweep from its first run to its file: what is saved is not computed again, what is computed is saved."""
+"""A sweep from its first run to its file: every run is saved when it ends, and saved runs are not computed again."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["SweepInterrupted", "Swept", "sweep"]
 
 _EVERY = 10.0
-"""The shortest time between two writings of what there is so far [s]."""
+"""Shortest time between two writings of the partial dataset [s]."""
 
 Progress = Callable[[float, str], None]
 
 
 class Swept(NamedTuple):
-    """What a sweep came to."""
+    """The result of a sweep."""
 
     dataset: xr.Dataset
     failures: tuple[tuple[int, int, str], ...]
@@ -39,13 +39,13 @@ class Swept(NamedTuple):
     ledger: float
     """The largest residual of the energy ledger of any run."""
     computed: int
-    """Number of runs that this command has computed."""
+    """Number of runs that this call has computed."""
     recalled: int
-    """Number of runs that were saved before."""
+    """Number of runs that an earlier call had saved."""
 
 
 class SweepInterrupted(KeyboardInterrupt):
-    """A sweep was stopped by Ctrl-C; ``swept`` holds the runs that are complete, None if there is none."""
+    """A sweep was stopped by Ctrl-C; ``swept`` holds the runs that have ended, None if there are none."""
 
     def __init__(self, swept: Swept | None, exit_code: int = 130) -> None:
         super().__init__("the sweep was interrupted")
@@ -66,39 +66,39 @@ def sweep(
 ) -> Swept:
     """Run all members of a sweep, on the cores of this machine or on a cluster.
 
-    Every run is saved as it ends, in ``NAME.part.jsonl`` beside the file, and those under way keep their states in the
-    folder ``NAME.part.states``. The same call goes on where an earlier one stopped, whatever stopped it, and what it
-    finds is the same, bit for bit.
+    Every run is saved when it ends, in ``NAME.part.jsonl`` beside the file; runs under way save their states in the
+    folder ``NAME.part.states``. The same call continues where an earlier one stopped, for whatever reason, and its
+    results are the same, bit for bit.
 
     Parameters
     ----------
     plan
         The sweep.
     out
-        Where to write the netCDF file; nothing is written without it.
+        The netCDF file to write; by default nothing is written.
     jobs
-        Number of processes on this machine: one for each core if None, and with 1 the runs are made in this very
-        process.
+        Number of processes on this machine; by default one for each core. With 1, the runs are made in this process
+        itself.
     scheduler
-        The address of a Dask scheduler, whose workers run the members instead.
+        Address of a Dask scheduler, whose workers run the members instead.
     force
-        Whether a file of that name may be replaced, and a journal of another sweep be thrown away.
+        Whether a file of that name may be replaced, and a journal of another sweep deleted.
     progress
-        Called with the share that is done and a word on what is being done.
+        Called with the share that is done and a short text on the present step.
     note
-        Called with remarks: what is taken from an earlier call, and what the runs warn of.
+        Called with remarks: how many runs are taken from an earlier call, and the warnings of runs.
     command
-        What the user typed, for the file's history.
+        The command that the user typed, for the history in the file.
 
     Returns
     -------
     Swept
-        The dataset, and what failed.
+        The dataset, and the runs that failed.
 
     Raises
     ------
     SweepInterrupted
-        After Ctrl-C, with what is complete.
+        After Ctrl-C, with the runs that have ended.
     AtmosboxError
         If a file cannot be written, its journal belongs to another sweep, or the workers cannot be reached.
 
@@ -151,7 +151,7 @@ class _Conductor:
         self.states = RunStates(None if checkpoint is None else checkpoint.path, self.records)
 
     def conduct(self, jobs: int | None, scheduler: str | None) -> Swept:
-        """Run what is missing, and write the file."""
+        """Run the members that have no record yet, and write the file."""
         tasks = [task for task in self.plan.tasks() if (task.point, task.member) not in self.records]
         tasks = [task._replace(state=self.states.place(task.point, task.member)) for task in tasks]
         if self.journal is not None and (self.recalled or self.states.begun):
@@ -179,7 +179,7 @@ class _Conductor:
         return swept
 
     def _stream(self, tasks: list[Task], jobs: int | None, scheduler: str | None) -> Generator[Record]:
-        """Return the records of some runs as they end, from wherever they are computed."""
+        """Yield the records of some runs when they end, from a cluster or from this machine."""
         if scheduler is not None:
             from atmosbox.sweep.cluster import remote
 
@@ -206,7 +206,7 @@ class _Conductor:
         self._watch(0.0, "running")
 
     def _stopped(self) -> Swept | None:
-        """Write what is complete, and return it."""
+        """Write the dataset of the runs that have ended, and return it; None if there are none."""
         self.states.close()
         if not self.records:
             return None

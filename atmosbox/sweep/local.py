@@ -1,7 +1,7 @@
-"""The runs of a sweep on the cores of this machine, each worker a process of its own.
+"""The runs of a sweep on the cores of this machine; each worker is a process of its own.
 
-Every worker has a pipe to this process. So it is known which run a worker was at when it died, and that one alone is
-tried again; a pool of the standard library would give up all of them.
+Every worker has its own pipe to this process. So it is known which run a worker was computing when it died, and only
+that run is tried again; a process pool of the standard library would give up all runs.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from atmosbox.sweep.plan import Task
 __all__ = ["ATTEMPTS", "cores", "here", "processes"]
 
 ATTEMPTS = 2
-"""How often a run may take its worker down before it counts as failed."""
+"""Number of attempts of a run whose worker dies, before the run counts as failed."""
 
 Watch = Callable[[float, str], None]
-"""Called with how many runs the work under way amounts to, in parts of one, and a word on what is being done."""
+"""Called with the work under way, in units of one run, and a short text on the present step."""
 
 
 def cores() -> int:
-    """Return how many cores this process may use.
+    """Return the number of cores that this process may use.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def here(tasks: Sequence[Task], watch: Watch) -> Generator[Record]:
 
 @dataclass
 class _Worker:
-    """A process, the pipe to it, and what it is at."""
+    """A process, the pipe to it, its present run, and the share of that run that is done."""
 
     process: BaseProcess
     pipe: Connection
@@ -70,9 +70,9 @@ class _Worker:
 
 
 def processes(tasks: Sequence[Task], jobs: int, watch: Watch) -> Generator[Record]:
-    """Run the members in processes of their own, and give back each as soon as it is complete.
+    """Run the members in processes of their own, and yield the record of each as soon as it is complete.
 
-    Only one worker begins; the others follow as soon as the engine is compiled, which then lies on the disk.
+    One worker begins alone. The others follow when it has compiled the engine, and load the machine code from the disk.
 
     Parameters
     ----------
@@ -81,12 +81,12 @@ def processes(tasks: Sequence[Task], jobs: int, watch: Watch) -> Generator[Recor
     jobs
         Number of processes.
     watch
-        Called while it goes on.
+        Called during the runs with the work under way and a short text, see `Watch`.
 
     Yields
     ------
     dict
-        What is kept of each run, in the order in which they end.
+        The record of each run, in the order in which they end.
 
     Raises
     ------
@@ -141,12 +141,12 @@ def _begin() -> _Worker:
 
 def _send(worker: _Worker, task: Task) -> None:
     worker.task = task
-    with contextlib.suppress(OSError):  # of a worker that has died the end of the pipe will tell
+    with contextlib.suppress(OSError):  # if the worker has died, reading from its pipe will tell
         worker.pipe.send(task)
 
 
 def _mourn(worker: _Worker, waiting: deque[Task], attempts: dict[tuple[int, int], int]) -> Generator[Record]:
-    """Put the run of a worker that died back to the front, or give it up if it has done so before."""
+    """Put the run of a worker that died back to the front of the queue, or record it as failed after two attempts."""
     worker.process.join()
     worker.pipe.close()
     if not worker.ready:
@@ -170,9 +170,9 @@ def _mourn(worker: _Worker, waiting: deque[Task], attempts: dict[tuple[int, int]
 
 
 def _serve(pipe: Connection) -> None:
-    """Run what is sent, until the sender has closed the pipe."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all processes; the first one decides
-    sys.stdout = sys.stderr  # what a user's scene prints is no result
+    """Run each task that comes through the pipe, until the sender has closed the pipe."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all processes; the first process handles it
+    sys.stdout = sys.stderr  # output of a user's scene must not mix with results
     threading.Thread(target=_end_with_parent, daemon=True).start()
     pipe.send(("ready", None))
 
@@ -185,7 +185,7 @@ def _serve(pipe: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when the one that began it has ended, however that was."""
+    """End this process when its parent process has ended, for whatever reason."""
     parent = parent_process()
     if parent is not None:
         connection.wait([parent.sentinel])

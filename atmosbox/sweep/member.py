@@ -1,4 +1,4 @@
-"""One run of a sweep, and what is kept of it."""
+"""One run of a sweep, and its record."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["COMPLETE", "FAILED", "Progress", "Record", "failure", "run"]
 COMPLETE, FAILED = "complete", "failed"
 
 Record = dict[str, Any]
-"""What is kept of a run, as JSON can hold it."""
+"""The record of a run, in types that JSON can hold."""
 
 Progress = Callable[[float, str], None]
 
@@ -24,20 +24,20 @@ _KEPT = ("name", "value", "standard_error", "theory", "tolerance", "reason", "un
 
 
 def run(task: Task, progress: Progress | None = None) -> Record:
-    """Run one member of a sweep, from where an earlier call has left it; a failure becomes part of what is returned.
+    """Run one member of a sweep, from the saved state of an earlier call if there is one; a failure raises no error.
 
     Parameters
     ----------
     task
         The run.
     progress
-        Called with the share that is done and a word on what is being done.
+        Called with the share that is done and a short text on the present step.
 
     Returns
     -------
     dict
-        ``point``, ``member``, ``seed`` and ``status``; of a complete run ``ledger``, ``headlines`` and the
-        ``warnings`` that it gave, of one that failed the ``reason``.
+        ``point``, ``member``, ``seed`` and ``status``; for a complete run also its ``ledger``, ``headlines`` and
+        ``warnings``, for a failed one the ``reason``.
 
     Raises
     ------

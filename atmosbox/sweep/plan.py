@@ -23,14 +23,14 @@ from atmosbox.version import __version__
 __all__ = ["MOST_RUNS", "Plan", "Task", "member_seed", "plan"]
 
 MOST_RUNS = 100_000
-"""The most runs of one sweep."""
+"""Greatest number of runs of one sweep."""
 
 
 class Task(NamedTuple):
     """One run of a sweep, as it is sent to the process that computes it.
 
-    ``point`` and ``member`` count from 1, the points with the last of the varied settings running fastest. ``state``
-    is where the run keeps its state on the way, None where it keeps none.
+    ``point`` and ``member`` count from 1; the last of the varied settings varies fastest from point to point. ``state``
+    is the file in which the run saves its state; None if it saves none.
     """
 
     point: int
@@ -45,15 +45,15 @@ class Task(NamedTuple):
 def member_seed(seed: int, point: int, member: int) -> int:
     """Return the seed of one member at one point of a sweep.
 
-    It depends on nothing but these three numbers: ``numpy.random.SeedSequence(seed, spawn_key=(point, member))``
-    gives 64 bits, the upper 53 of which are the seed, a number that every program can hold.
+    It depends only on these three numbers: ``numpy.random.SeedSequence(seed, spawn_key=(point, member))`` gives 64
+    bits, the upper 53 of which are the seed. Every program can represent an integer of 53 bits.
 
     Parameters
     ----------
     seed
         The seed of the sweep.
     point, member
-        Their numbers, counted from 1.
+        Numbers of the point and of the member, counted from 1.
 
     Examples
     --------
@@ -85,11 +85,12 @@ class Plan:
     seed
         The seed of the sweep.
     engine, accuracy
-        The engine with its options, None where the accuracy picks it, and the accuracy that was wished.
+        The engine with its options, None if the accuracy decides it or the points have different engines; and the
+        accuracy that was asked for.
     engines
-        The engine with its options at each point, empty where the settings do not fit together.
+        The engine with its options at each point; empty where the settings are refused.
     refused
-        Why there is no run at a point, by the number of the point.
+        The reason why there is no run at a point, by the number of the point.
 
     Examples
     --------
@@ -126,17 +127,17 @@ class Plan:
         return self.points * self.members
 
     def values(self, point: int) -> dict[str, Value]:
-        """Return the settings that vary as they are at a point, which counts from 1."""
+        """Return the values of the varied settings at a point; points count from 1."""
         place = np.unravel_index(point - 1, self.shape)
         return {axis.name: axis.values[int(k)] for axis, k in zip(self.axes, place, strict=True)}
 
     def typed(self, point: int) -> tuple[str, ...]:
-        """Return the settings that vary as they are typed at a point."""
+        """Return the values of the varied settings at a point, as they are typed."""
         place = np.unravel_index(point - 1, self.shape)
         return tuple(axis.typed(int(k)) for axis, k in zip(self.axes, place, strict=True))
 
     def named(self, point: int) -> str:
-        """Return a point in words.
+        """Return a point as text.
 
         Examples
         --------
@@ -164,11 +165,11 @@ class Plan:
 
     @functools.cached_property
     def source(self) -> Path | None:
-        """The file of a scene that is given by its path; None for one that comes with atmosbox."""
+        """The file of a scene that is given by its path; None for a scene that comes with atmosbox."""
         return None if self.scene in scenarios.names() else Path(self.scene)
 
     def request(self) -> dict[str, Any]:
-        """Return all that decides what the sweep computes, by what a sentence calls it; as JSON can hold it."""
+        """Return all that determines the results of the sweep, by names for messages, in types that JSON can hold."""
         words: dict[str, Any] = {"version of atmosbox": __version__, "scene": self.scene}
         words |= {f"--vary {axis.name}": [axis.typed(k) for k in range(len(axis.values))] for axis in self.axes}
         words["order of --vary"] = [axis.name for axis in self.axes]
@@ -184,7 +185,7 @@ class Plan:
 
 
 def _digest(path: str) -> str:
-    """Return what tells one content of a file from another."""
+    """Return a digest of the content of a file."""
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
@@ -198,32 +199,32 @@ def plan(
     engine: str | None = None,
     accuracy: str | None = None,
 ) -> Plan:
-    """Check a sweep; nothing is computed yet.
+    """Check a sweep and return its plan; nothing is computed yet.
 
     Parameters
     ----------
     scene
         A name that `atmosbox.scenarios.names` lists, or the path of a file of your own.
     vary
-        What stood behind each ``--vary``, as `parse_vary` reads it.
+        The texts after each ``--vary``, see `parse_vary`.
     settings
         Settings for all runs.
     members
         Number of runs at each point.
     seed
-        The seed of the sweep; that of the settings if None.
+        The seed of the sweep; by default that of the settings.
     engine, accuracy
         As for `atmosbox.simulation.preparation.prepare`.
 
     Returns
     -------
     Plan
-        What `sweep` takes. Points whose settings do not fit together are in it, with the reason.
+        The plan, which `sweep` runs. It includes points whose settings are refused, with the reason.
 
     Raises
     ------
     AtmosboxError
-        If the scene is unknown, a setting is refused, or no point at all can run.
+        If the scene is unknown, a setting is refused, or no point can run.
 
     Examples
     --------
@@ -271,7 +272,7 @@ def plan(
 
 
 def _check_known(scene: str, types: Mapping[str, Any], vary: Sequence[str], given: Mapping[str, Any]) -> None:
-    """Refuse a setting that the scene does not have, with the nearest that it has."""
+    """Refuse a setting that the scene does not have; the error names the most similar one that it has."""
     settings = scenarios.load(scene).Settings
     for name, value in given.items():
         if name not in types:
@@ -287,7 +288,7 @@ def _check_known(scene: str, types: Mapping[str, Any], vary: Sequence[str], give
 
 
 def _prepared(draft: Plan) -> tuple[dict[int, Prepared], dict[int, str]]:
-    """Return what is ready at each point, and why there is nothing at the others."""
+    """Return the prepared scene at each point, and the reason at each point whose settings are refused."""
     prepared: dict[int, Prepared] = {}
     refused: dict[int, str] = {}
     first: SettingError | None = None

@@ -1,4 +1,4 @@
-"""All runs of a sweep as one dataset: the settings that vary are its dimensions."""
+"""All runs of a sweep as one dataset, whose dimensions are the settings that vary."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from atmosbox.version import __version__
 __all__ = ["FEWEST", "assemble", "mean_and_error"]
 
 FEWEST = 4
-"""Number of members from which on their scatter tells their error."""
+"""Least number of members whose scatter gives the standard error of their mean."""
 
 Floats = NDArray[np.float64]
 
 _STATES = ("complete", "failed", "missing")
 _PLACES = {"height", "altitude", "depth", "level", "time", "latitude", "longitude", "lat", "lon", "x", "y", "z"}
-"""Names that stand for a place or a time in any file, and for a setting only with a word more."""
+"""Names that mean a place or a time in any file; a setting with such a name gets the suffix ``_setting``."""
 _OWN = ("member", "member_seed", "member_status", "member_ledger", "member_reason", "engine")
 
 
 class _Measured(NamedTuple):
-    """What all members found for one number, ``(point, member)``."""
+    """The values of one headline number in all members, ``(point, member)``."""
 
     said: Mapping[str, Any]
     value: Floats
@@ -50,13 +50,13 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
     Parameters
     ----------
     value, error
-        What the members measured, and their own standard errors: (point, member), NaN where there is nothing.
+        Values and standard errors of the members, (point, member); NaN where there is none.
 
     Returns
     -------
     mean, standard_error
-        By point. The standard error of the mean comes from the scatter of the members; where there are fewer than
-        `FEWEST`, whose scatter says little, from their own error bars.
+        Mean and its standard error, (point,). The standard error comes from the scatter of the members or, if there are
+        fewer than `FEWEST`, from their own standard errors, because the scatter of so few says little.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def assemble(
     plan
         The sweep.
     records
-        What is kept of its runs, in any order.
+        The records of its runs, in any order.
     history
         The lines of the file's history.
     status
@@ -97,15 +97,15 @@ def assemble(
     Returns
     -------
     xarray.Dataset
-        For each headline NAME of the scene, by the settings that vary: ``NAME``, the mean of the members;
-        ``NAME_se``, its standard error; ``NAME_theory`` and ``NAME_tolerance`` where the scene states them; and
-        ``NAME_by_member`` with ``NAME_by_member_se``, what each run measured. Beside them seed, status and energy
-        ledger of every run, and the reason where one failed.
+        For each headline NAME of the scene, as functions of the varied settings: ``NAME``, the mean of the members;
+        ``NAME_se``, its standard error; ``NAME_theory`` and ``NAME_tolerance`` if the scene gives them; and
+        ``NAME_by_member`` with ``NAME_by_member_se``, the values of each run. Also seed, status and residual of the
+        energy ledger of every run, and the reason if a run failed.
 
     Raises
     ------
     EngineError
-        If a headline has another unit at another point.
+        If a headline has different units at different points.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def assemble(
     coords = {}
     dims: tuple[str, ...] = ()
     for axis, own in zip(plan.axes, names, strict=True):
-        # CF takes whatever rises in pascal for the height of a place: here it is no axis, but only a label
+        # CF takes a coordinate in pascal for a vertical axis; so a pressure is a label, not a dimension, of the grid
         dims += (f"{axis.name}_setting" if _is_pressure(axis) else own,)
         coords[own] = _coordinate(axis, own, dims[-1])
     coords["member"] = _member(plan.members)
@@ -160,7 +160,7 @@ _SUFFIXES = ("_se", "_theory", "_tolerance", "_by_member", "_by_member_se")
 
 
 def _measured(plan: Plan, records: Sequence[Record]) -> dict[str, _Measured]:
-    """Sort what the members found by headline, point and member."""
+    """Return the values of all members by headline, point and member."""
     found: dict[str, _Measured] = {}
     # The order of the headlines is that of a run that has measured as many as any
     for record in sorted(records, key=lambda record: -len(record.get("headlines", ()))):
@@ -192,7 +192,7 @@ def _coordinate(axis: Axis, name: str, dim: str) -> xr.Variable:
         declared = Variable(name, (dim,), "", p.help, dtype="U")
         return xr.Variable((dim,), np.array(words, dtype=str), declared.attributes(), declared.encoding(()))
     unit = declared_unit(p.unit).si
-    known = "[" not in unit  # of a unit that is none of the usual, the values stay as they are documented
+    known = "[" not in unit  # values in an unusual unit stay in their documented unit
     values = np.array(axis.si if known else [float(value) for value in axis.values])
     standard = "air_pressure" if _is_pressure(axis) else None
     declared = Variable(name, (dim,), unit if known else p.unit, p.help, standard, ledger=True)
@@ -206,7 +206,7 @@ def _member(members: int) -> xr.Variable:
 
 
 def _about_members(plan: Plan, records: Sequence[Record], dims: tuple[str, ...]) -> dict[str, xr.Variable]:
-    """Return seed, status and ledger of every run, and why one failed."""
+    """Return seed, status and residual of the ledger of every run, and the reason if a run failed."""
     shape = (plan.points, plan.members)
     seed = np.array([[member_seed(plan.seed, j + 1, k + 1) for k in range(shape[1])] for j in range(shape[0])])
     status = np.full(shape, _STATES.index("missing"), dtype=np.int8)
