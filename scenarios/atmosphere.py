@@ -501,8 +501,7 @@ def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headl
     )
     memory = column.memory * FRAMES / settings.duration
     measured = average_beside(late.lapse_rate.values, _energy(late), memory)
-    # the lapse rate is nearly S/(1 + S) of the adiabat's, and S goes as one over the conductivity, which is not
-    # negative
+    # the lapse rate is nearly S/(1 + S) of the adiabat's, and S goes as one over the conductivity, which is at least 0
     reached = settings.stirring / (1.0 + settings.stirring)
     unknown = min(FOURIER * settings.knudsen * reached, 1.0) / (1.0 + settings.stirring)
     # and as a parcel keeps its centre-of-mass motion, three of its degrees of freedom do no work

@@ -1,8 +1,8 @@
-"""From one unit to another: what a unit means, however it is spelled.
+"""Conversion between units, in any of their spellings.
 
-The units that scenes declare stand in a table; any other that a user types, from feet to inches of mercury, is
-looked up in pint, which is imported only then: the first such unit takes 0.4 s, one of the table 0.0001 s. What a
-user types is read by :mod:`atmosbox.scene.quantity`.
+The units that scenes declare are in a table. Any other unit that a user types, from feet to inches of mercury, is
+looked up in pint, which is imported only then: the first such unit takes 0.4 s, one of the table 0.0001 s. The input of
+a user is read by :mod:`atmosbox.scene.quantity`.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ MEASURES = {
     "m s-1": "a speed", "m s-2": "an acceleration", "K m-1": "a lapse rate", "kg m-3": "a density",
     "kg kg-1": "a mixing ratio", "kg mol-1": "a molar mass",
 }  # fmt: skip
-"""What is measured in each unit of the SI that scenes use, in words."""
+"""The quantity that each SI unit of the scenes measures, in words."""
 
 _SPELLINGS = {
     "C": "degC", "c": "degC", "celsius": "degC", "Celsius": "degC", "centigrade": "degC",
@@ -65,11 +65,11 @@ _DEGREES = re.compile(r"(?:°|\b(?i:deg(?:rees?)?))[\s_]*((?i:[cfk]|celsius|fahr
 _POWER = re.compile(r"(?<=[^\W\d])([+-]?\d+)")  # "m s-2" is "m s**-2"
 _TOWER = re.compile(r"\d\s*(?:\^|\*\*)|\d{3}")  # a power of a power would take pint years
 SIGNS = str.maketrans({"−": "-", "º": "°", "˚": "°"})
-"""What keyboards and word processors write for - and °, for ``str.translate``."""
+"""Other characters that keyboards and word processors write for - and °, for ``str.translate``."""
 
 
 def slashed(unit: str) -> str:
-    """Return a unit as it is typed, without a blank.
+    """Return a unit in the form in which it is typed, without a blank.
 
     Parameters
     ----------
@@ -90,14 +90,14 @@ _UNITS |= {slashed(name): unit for name, unit in _UNITS.items()}
 
 @functools.cache
 def _registry() -> Any:
-    """Return pint's units, imported when the first unit is met that the table does not have."""
+    """Return pint's units, imported at the first unit that is not in the table."""
     import pint
 
     return pint.UnitRegistry()
 
 
 def _looked_up(name: str) -> Unit | None:
-    """Return a unit from pint; None where it has none, for a pure number and for a logarithmic scale."""
+    """Return a unit from pint; None for an unknown unit, for a pure number and for a logarithmic scale."""
     registry = _registry()
     if _TOWER.search(name) or name.startswith("delta"):  # a temperature is wanted, not a difference of two
         return None
@@ -116,7 +116,7 @@ def _looked_up(name: str) -> Unit | None:
 
 @functools.lru_cache(maxsize=256)
 def known_unit(text: str) -> Unit | None:
-    """Return the unit of any spelling, from the table or else from pint; None where there is none.
+    """Return the unit of any spelling, from the table or else from pint; None if there is none.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def to_si(value: float, unit: str, *, difference: bool = False) -> float:
 
 
 def from_si(value: float, unit: str, *, difference: bool = False) -> float:
-    """Return a value of the SI in another unit; the inverse of :func:`to_si`.
+    """Return a value in SI units in another unit; the inverse of :func:`to_si`.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class Headline:
     >>> warm.misfit, warm.chance, warm.verdict
     (3.0, 8.0, 'yes')
 
-    An engine that is known to be 5 K too warm explains 5 K too warm, but not 5 K too cold:
+    A known bias of the engine of 5 K explains a value 5 K too warm, but not one 5 K too cold:
 
     >>> from dataclasses import replace
     >>> sharp = replace(warm, standard_error=0.5, bias=5.0)

@@ -55,7 +55,7 @@ def water(scale: Scale, diameter: float = 1.0) -> Substance:
 
 
 def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) -> int:
-    """Return the number of molecules that are vapour at a partial pressure, out of a number of molecules.
+    """Return how many of ``molecules`` are vapour at a partial pressure.
 
     Examples
     --------

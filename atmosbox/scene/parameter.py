@@ -169,7 +169,7 @@ class Parameter:
 
     @property
     def _wanted(self) -> str:
-        """Return what is allowed, with its kind: "a temperature from -100 degC to 500 degC"."""
+        """What is allowed, with its kind: "a temperature from -100 degC to 500 degC"."""
         kind = "a percentage" if self.unit == "%" else MEASURES.get(declared_unit(self.unit).si, "a quantity")
         if self.kind == "int":
             kind = "a whole number" + ("" if self.unit == "1" else f" of {self.unit}")

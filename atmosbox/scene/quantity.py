@@ -1,6 +1,6 @@
-"""What a user types, such as "25 degC" or 4e3, taken apart; and numbers with units as a sentence says them.
+"""Numbers with units: read from what a user types, such as "25 degC" or 4e3, and written in sentences.
 
-What units mean stands in :mod:`atmosbox.scene.conversion`, what a setting allows in
+The units are defined in :mod:`atmosbox.scene.conversion`, the allowed values of a setting in
 :mod:`atmosbox.scene.parameter`.
 """
 
@@ -24,14 +24,14 @@ _LONGEST = 200  # characters of a text that can be a quantity
 
 
 def phrase(value: float, unit: str) -> str:
-    """Return a number and its unit as a sentence says them.
+    """Return a number and its unit for a sentence.
 
     Parameters
     ----------
     value
         A number in `unit`.
     unit
-        The unit; "1" and the empty one are not said.
+        The unit; "1" and the empty unit are left out.
 
     Examples
     --------
@@ -43,14 +43,14 @@ def phrase(value: float, unit: str) -> str:
 
 
 def typed(value: float, unit: str) -> str:
-    """Return a number and its unit as they are typed after ``--set``, without a blank.
+    """Return a number and its unit in the form in which they are typed after ``--set``, without a blank.
 
     Parameters
     ----------
     value
         A number in `unit`.
     unit
-        The unit; "1" and the empty one are not typed.
+        The unit; "1" and the empty unit are left out.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def number_and_unit(value: object) -> tuple[Decimal, str]:
     Raises
     ------
     ValueError
-        If it is none; the text says what is wrong, worded to follow the value.
+        If the value is not a number; the message says what is wrong, in words that follow the value.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def number_and_unit(value: object) -> tuple[Decimal, str]:
 def converted(number: float, unit: str, wanted: str) -> float:
     """Return a number of one unit in another, rounded to 12 digits.
 
-    Temperatures are absolute; a degree in a product, as in "6.5 degC/km", is one of difference.
+    Temperatures are absolute; a degree in a product, as in "6.5 degC/km", is a difference of temperature.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def converted(number: float, unit: str, wanted: str) -> float:
     Raises
     ------
     ValueError
-        If there is no such unit, it is of another dimension, or the result is too large; the text says which.
+        If there is no such unit, it has another dimension, or the result is too large; the message says which.
 
     Examples
     --------

@@ -11,7 +11,7 @@ __all__ = ["assignments", "field_name", "nearest", "plain"]
 
 
 def field_name(name: str) -> str:
-    """Return the name of a setting in Python, of one that a user may spell with "-" for "_".
+    """Return the Python name of a setting, which a user may spell with "-" for "_".
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def field_name(name: str) -> str:
 
 
 def plain(name: str) -> str:
-    """Return a name as it is compared: without capitals, and with "_" for "-".
+    """Return a name in the form for comparison: without capitals, and with "_" for "-".
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 
 
 def assignments(items: Iterable[str]) -> dict[str, str]:
-    """Return the values of ``name=value``, as they stand after each ``--set``, by name.
+    """Return the values of ``name=value``, as they are typed after each ``--set``, by name.
 
     Parameters
     ----------

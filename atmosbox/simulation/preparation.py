@@ -183,7 +183,7 @@ def build(prepared: Prepared) -> Setup:
     Raises
     ------
     AtmosboxError
-        If it cannot be built; the sentence names the setting at fault.
+        If it cannot be built; the message says why.
     """
     try:
         engine = [prepared.engine] if _takes_engine(prepared.module) else []

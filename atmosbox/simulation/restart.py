@@ -58,7 +58,7 @@ class Restart(NamedTuple):
     attributes
         The global attributes of the file.
     longer
-        Factor by which the run is longer than its scene says.
+        Length of the run, as a multiple of the length that its scene sets.
     """
 
     source: Path
@@ -115,7 +115,7 @@ def with_state(dataset: xr.Dataset, recording: Recording, seconds: float, longer
     seconds
         The time that the run has taken so far [s].
     longer
-        Factor by which the run is longer than its scene says.
+        Length of the run, as a multiple of the length that its scene sets.
 
     Raises
     ------

@@ -101,7 +101,7 @@ def execute(
     restart
         The state from which the run continues, from `atmosbox.simulation.restart.read_state`; None for a new run.
     longer
-        Factor by which the run is longer than the scene says, in frames of the same length.
+        Length of the run, as a multiple of the length that the scene sets; its frames have the same length.
     keep_state
         Whether the finished file holds the last state, so that the run can be continued later.
     strict
@@ -361,7 +361,7 @@ def resume(
     out
         Path of the finished run; by default the path that the run was to write.
     extend
-        Factor by which the run is to be longer than its scene says, in frames of the same length.
+        Length of the run, as a multiple of the length that its scene sets; its frames have the same length.
     force
         Whether a file may be replaced.
     progress

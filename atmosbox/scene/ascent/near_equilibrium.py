@@ -212,8 +212,8 @@ def _memories() -> tuple[Array, Array]:
     r"""Return values of a = m/s, and how much longer a fluctuation lasts about m if the number cannot be negative.
 
     Diffusion with the stationary density f has the correlation time :math:`\int g^2/f \, dx` over the variance, with
-    :math:`g(x) = \int_x^\infty (y - \bar x) f dy`. Compared with a normal distribution of the same variance this is the
-    same time for a normal distribution and twice as long for an exponential one.
+    :math:`g(x) = \int_x^\infty (y - \bar x) f dy`. In units of the correlation time of a normal distribution with the
+    same variance this is 1 for a normal distribution and 2 for an exponential one.
     """
     a = np.linspace(-30.0, 6.0, 145)
     widest = np.where(a < 0.0, 30.0 / (1.0 + np.abs(a)), 10.0 + a)

@@ -40,7 +40,7 @@ def energy_of_those_that_leave(dataset: xr.Dataset, start: AirOverPool, few: int
     start
         The air over its pool.
     few
-        Below this number, molecules or pool are too few.
+        Least number of molecules that must have left, and of molecules in the pool.
     """
     left = float(dataset.evaporation_rate.mean() * dataset.elapsed_time[-1]) * 1e-9
     if min(left, start.pool) < few or not np.isfinite(dataset.liquid_temperature.values).all():

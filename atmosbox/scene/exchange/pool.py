@@ -139,9 +139,9 @@ class AirOverPool:
         r"""Return how much heat the piston may have taken until a time [reduced], as cooling of the whole parcel [K].
 
         The piston moves a little after the pressure has changed: while it recedes, the inner pressure is above the
-        outer one, and the gas does more work than it needs; while the piston closes in, less. A sudden change S of ln p
-        costs :math:`S^2 / 2 \Gamma` of p V. The fluctuations of ln p that the heat exchange between pool and air causes
-        cost their variance over :math:`\Gamma`, once in each time that the piston needs.
+        outer one, and the gas does more work than is needed; while the piston closes in, less. A sudden change S of ln
+        p costs :math:`S^2 / 2 \Gamma` of p V. The fluctuations of ln p that the heat exchange between pool and air
+        causes cost their variance over :math:`\Gamma`, once in each time that the piston needs.
         """
         rest = self.rest
         later = self.air + rest.vapor

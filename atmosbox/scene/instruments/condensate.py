@@ -15,7 +15,7 @@ from atmosbox.scene.units import Scale
 __all__ = ["CROWDED", "Clusters", "drops_of"]
 
 CROWDED = 5
-"""Number of wells in which a molecule counts as liquid: in vapour a molecule is in one or two, in a drop in ten."""
+"""Least number of wells of a molecule that counts as liquid: in vapour it is in one or two wells, in a drop in ten."""
 
 
 def drops_of(pairs: NDArray[np.int64], number: int) -> NDArray[np.int64]:

@@ -63,7 +63,7 @@ def inner_and_outer(height: Array, density: Array, periodic: bool) -> tuple[NDAr
 class Slab:
     r"""Densities and energies of the liquid and of the vapour beside it, the normal pressure, the surface tension.
 
-    A slab in a periodic box drifts, because a heat bath with random kicks does not conserve momentum: heights are
+    A slab in a periodic box drifts, because the random bath does not conserve momentum: heights are
     measured so that the middle of the liquid is in the middle of the box. The pressure normal to the surface,
     :math:`p = n k T + W_{zz} / V`, is the same in liquid and vapour. The surface tension measures by how much the
     pressure along the surface is lower, :math:`\gamma = (W_{zz} - \tfrac12 (W_{xx} + W_{yy})) / 2 A t` for two

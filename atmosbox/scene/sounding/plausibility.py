@@ -32,7 +32,7 @@ FEWEST_LEVELS = 5
 LARGEST_GAP = 250e2
 """Largest difference in pressure between two levels: the mandatory levels are up to 200 hPa apart [Pa]."""
 GAP_CEILING = 300e2
-"""Pressure below which gaps do not matter, in the upper part of the sounding [Pa]."""
+"""Gaps between levels above this pressure surface do not matter [Pa]."""
 ROUNDING = 0.05
 """How far rounding may put the dewpoint above the temperature [K]."""
 STEEPEST = 2.0

@@ -83,7 +83,7 @@ class Measured:
 
     @property
     def label(self) -> str:
-        """The engine and the settings of this run, as they are typed."""
+        """The engine and the settings of this run, in words."""
         return ", ".join([self.engine, *(said(name, value) for name, value in self.settings.items())])
 
     def excess(self, wish: Wish) -> float:
