@@ -1,5 +1,5 @@
-"""Speed against accuracy, measured, and the cases in which simulations break.
+"""Measured speed against measured accuracy, and the extreme cases in which simulations fail.
 
-`tradeoff`  the same scene through engines and settings, errors beside seconds
-`extremes`  boxes that break simulations, and what each engine makes of them
+`tradeoff`  the same scene with several engines and settings: errors and processor times
+`extremes`  boxes that are difficult to simulate, and the outcome of each on each engine
 """

@@ -1,10 +1,10 @@
-"""Boxes that break simulations, and what each engine makes of them.
+"""Boxes that are difficult to simulate ("extremes"), and the outcome of each on each engine.
 
-`extreme`          the table of boxes: what is built, what is measured, what a right engine gives
-`extreme_box`      how the boxes are built
-`probe`            the rules by which they are measured
-`guarded_run`      what is demanded of every engine at every moment
-`verdict`          right, refused, degraded by how much, or wrong; the stored outcomes
+`extreme`          the table of extremes: the boxes, the measurements, the expected results
+`extreme_box`      functions that build the boxes
+`probe`            functions that measure a box
+`guarded_run`      checks of every engine after every run
+`verdict`          the outcome: right, refused, degrades (and by how much), or wrong; the stored outcomes
 `assessment`       all extremes on all engines
 """
 

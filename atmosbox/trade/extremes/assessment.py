@@ -1,4 +1,4 @@
-"""All extremes on all engines: what came out of each."""
+"""All extremes on all engines, and the outcomes."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ from atmosbox.trade.extremes.verdict import Verdict, compared, judged, stored, w
 __all__ = ["Finding", "assess", "examine"]
 
 LIMIT, LONG_LIMIT = 30.0, 600.0
+"""Processor time after which an extreme, and a long one, counts as a hang [s]."""
 PATIENCE = 900.0
+"""Additional time to wait for an engine that does not respond at all [s]."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What one engine made of one extreme, and how long it took [s]."""
+    """The outcome of one extreme on one engine, and the time that it took [s]."""
 
     engine: str
     extreme: Extreme
@@ -37,28 +39,28 @@ def assess(
     *,
     long: bool = False,
 ) -> Iterator[Finding]:
-    """Put engines through extremes, one after the other, and compare with the stored outcomes.
+    """Run extremes on engines, one after the other, and compare the outcomes with the stored ones.
 
     Parameters
     ----------
     engines
-        What `atmosbox.scene.engines.choose` returns.
+        The engines, as `atmosbox.scene.engines.choose` returns them.
     names
         The names of the extremes; all by default.
     progress
-        Called with the fraction done, 0 to 1, and what is under way.
+        Called with the share that is done, 0 to 1, and the name of the present extreme and engine.
     long
-        Whether the long ones are among all.
+        Whether "all" includes the long extremes.
 
     Yields
     ------
     Finding
-        One for each extreme and engine, extreme by extreme.
+        One for each extreme and engine; all engines of one extreme come before the next extreme.
 
     Raises
     ------
     KeyError
-        If there is no extreme of a name.
+        If a name is not that of an extreme.
 
     Examples
     --------
@@ -85,7 +87,7 @@ def examine(
     limit: float | None = None,
     patience: float = PATIENCE,
 ) -> Finding:
-    """Put one engine through one extreme.
+    """Run one extreme on one engine.
 
     Parameters
     ----------
@@ -94,17 +96,17 @@ def examine(
     engine
         The engine.
     before
-        The stored outcome, with which to compare.
+        The stored outcome for comparison, if there is one.
     limit
-        For how long it may run before it counts as a hang, of the processor's time [s].
+        Processor time after which the run counts as a hang [s].
     patience
-        How much longer to wait for an engine that does not even call its watch; it may be compiling, or the
-        processor may have other work [s].
+        Additional time to wait for an engine that does not even call its watch function [s]: it may be compiling, or
+        the processor may have other work.
 
     Returns
     -------
     Finding
-        What came out. An engine that does not come back is left behind in its thread.
+        The outcome. An engine that does not return continues in its thread and is ignored.
     """
     limit = (LONG_LIMIT if each.long else LIMIT) if limit is None else limit
     run = GuardedRun(engine, limit)
@@ -123,10 +125,10 @@ def examine(
 
 
 def _verdict(each: Extreme, run: GuardedRun) -> Verdict:
-    """Return what came out, whatever is raised."""
+    """Return the outcome; every exception becomes one."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # an engine may well warn of what it is asked to do here
+            warnings.simplefilter("ignore")  # warnings of an engine are expected in extreme cases
             return judged(each.probe(run))
     except (RefusedError, StalledError, SettingError) as refusal:
         return Verdict("refused", " ".join(str(refusal).split()))

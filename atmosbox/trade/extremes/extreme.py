@@ -1,4 +1,4 @@
-"""The boxes that break simulations, as a table: what is built, what is measured, and what a right engine gives."""
+"""The table of extremes, boxes that are difficult to simulate: what is built, what is measured, what is expected."""
 
 from __future__ import annotations
 
@@ -51,15 +51,15 @@ class Extreme:
     Parameters
     ----------
     name
-        Its name, in words joined by hyphens.
+        Its name: words joined by hyphens.
     title
-        What stands in a table.
+        Its title in a table.
     asked
-        What the engine is asked to do, and what a right engine does.
+        The task of the engine, and the correct result, in a sentence.
     probe
-        Builds the boxes, lets time pass and returns the number.
+        Function that builds the boxes, lets time pass and returns the measured number.
     long
-        Whether it takes more than some seconds.
+        Whether it takes longer than some seconds.
     """
 
     name: str
@@ -70,18 +70,21 @@ class Extreme:
 
 
 def side_of(packing: float, number: int = 256) -> float:
-    """Return the side of the cube in which molecules of diameter 1 fill so much of the space."""
+    """Return the side of the cube in which molecules of diameter 1 have a packing fraction."""
     return float((number * math.pi / 6.0 / packing) ** (1.0 / 3.0))
 
 
 def crystal_factor(packing: float) -> float:
-    """Return Z of the face-centred crystal of hard spheres (Speedy 1998, J. Phys.: Condens. Matter 10, 4387)."""
+    """Return Z of the face-centred cubic crystal of hard spheres (Speedy 1998, J. Phys.: Condens. Matter 10, 4387)."""
     share = packing / (math.pi / math.sqrt(18.0))
     return 3.0 / (1.0 - share) - 0.5921 * (share - 0.7072) / (share - 0.601)
 
 
 def dense(packing: float, finer: float = 0.0) -> Probe:
-    """Return the pressure of a fluid, or of a crystal above freezing; the steps may be finer than usual."""
+    """Return a probe of the pressure of a fluid or, above the freezing density, of a crystal.
+
+    ``finer`` is the step of stepped and classic in place of the usual one [diameters].
+    """
     if packing > 0.494:
         return pressure(crystal(256, side_of(packing)), crystal_factor(packing), 2.0, 1.0)
     options = {name: {"delta": finer} for name in ("stepped", "classic") if finer}
@@ -90,29 +93,29 @@ def dense(packing: float, finer: float = 0.0) -> Probe:
 
 
 def coarse(step: float) -> Probe:
-    """Return the contacts of a thin gas in steps of so many diameters; of dsmc, of so many mean free times."""
+    """Return a probe of the contacts in a thin gas, with a step in diameters or, for dsmc, in mean free times."""
     options = {"stepped": {"delta": step}, "classic": {"delta": step}, "dsmc": {"dt": step}}
     return contacts(gas(256, side_of(0.01), walls=OPEN, options=options), 100.0, 4000.0, slack=0.005)
 
 
 def many(run: GuardedRun) -> Reading:
-    """Count the contacts of a million molecules; an engine that tests all pairs would have 5e11 of them in a step."""
+    """Count the contacts of a million molecules, or of 2000 for classic, which would test 5e11 pairs in a step."""
     number = 2_000 if run.engine == "classic" else 1_000_000
     return contacts(gas(number, side_of(0.01, number)), 2.0, 2.0, slack=0.005)(run)
 
 
 def pushed(*speed: float) -> Any:
-    """Return velocities along x."""
+    """Return velocities along x, one molecule for each speed."""
     return [[u, 0.0, 0.0] for u in speed]
 
 
 def pair(x: float, speeds: tuple[float, float] = (0.0, 0.0), **box: Any) -> Box:
-    """Return two molecules, one at x = 1, in a box of 4."""
+    """Return a box of side 4 with two molecules, one at x = 1."""
     return at([[1, 2, 2], [x, 2, 2]], pushed(*speeds), (4, 4, 4), **box)
 
 
 def impossible() -> list[tuple[Box, str]]:
-    """Return boxes with numbers that no box can have, and the first letters of what each refusal must name."""
+    """Return boxes with impossible numbers, each with the word, or its first letters, that the refusal must contain."""
     bad: dict[str, tuple[Any, ...]] = {
         "mass": (0, -1, NAN, INF, "x", None),
         "diameter": (-1, NAN, INF, "x", None),
@@ -132,7 +135,7 @@ def impossible() -> list[tuple[Box, str]]:
 
 
 def mixed(number: int, few: int, rare: float, usual: float) -> Any:
-    """Return a property of molecules of which a few are different."""
+    """Return a property of molecules that is ``rare`` for the first few and ``usual`` for the others."""
     return np.where(np.arange(number) < few, rare, usual)
 
 
@@ -150,7 +153,7 @@ MIXED: dict[str, Any] = {"seed": 8, "diameter": 0.7, "walls": (HeatBath(1.2), He
 
 
 def drawn(range: float, warmth: float) -> Probe:
-    """Return the pressure of a thin gas of molecules that attract each other, by its virial coefficients."""
+    """Return a probe of the pressure of a thin gas with attraction; its virial coefficients give the expected value."""
     density = 6.0 / math.pi * 0.01
     well: dict[str, Any] = {"well": SquareWell(range, 1.0 / warmth), "bath": RandomBath(1.0, 1.0)}
     factor = float(theory.square_well_compressibility(density, warmth, range))
@@ -158,12 +161,12 @@ def drawn(range: float, warmth: float) -> Probe:
 
 
 def one_drop(waters: int, vapour: int = 0, **liquid: Any) -> Box:
-    """Return a drop that feels its curvature, in a box that holds 40 molecules of saturated vapour at 95 degC."""
+    """Return a box with one drop with a curvature effect; saturated vapour at 95 degC is 40 molecules in it."""
     return moist(Drops, 95.0, 40.0, waters, vapour=vapour, drops=1, **CURVED | liquid)
 
 
 def few(number: int) -> Box:
-    """Return two or three molecules between heat baths."""
+    """Return a box of two or three molecules between heat baths."""
     return at(FEW[:number], np.random.default_rng(7).standard_normal((number, 3)), (6, 6, 6), walls=BATHS, seed=number)
 
 
@@ -416,7 +419,7 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
             refused([(one_drop(220, surface_tension=100.0), "surface_tension")])),
     ),
 }  # fmt: skip
-"""The extremes by what they are about."""
+"""The extremes by subject."""
 
 EXTREMES: Mapping[str, Extreme] = {each.name: each for family in FAMILIES.values() for each in family}
 """The extremes by name."""

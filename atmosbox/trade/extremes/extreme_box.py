@@ -1,4 +1,4 @@
-"""What is built for an extreme: each function returns how to make a box once an engine is known."""
+"""The boxes of extremes: each function here returns a function that builds a box with the engine of a run."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ __all__ = ["BATHS", "CURVED", "OPEN", "SMOOTH", "Box", "at", "crystal", "gas", "
 
 Box = Callable[[GuardedRun], Parcel]
 STEADY = 1e7
-"""Heat capacity of nuclei [k] that keeps the liquid at its temperature, as a small one would not."""
+"""Heat capacity of nuclei [k], so large that the liquid keeps its temperature."""
 CURVED = {"nucleus": 2.0, "molecule_radius": 0.5, "surface_tension": 1.5}
-"""What a drop is given that feels its curvature: at kT = 1, 150 molecules need 1.7 times as much vapour as a pool."""
+"""Properties of a drop with a curvature effect: at kT = 1, 150 molecules need 1.7 times as much vapour as a pool."""
 AT_REST = "at rest"
 OPEN, SMOOTH, BATHS = (Periodic(),) * 6, (Specular(),) * 6, (HeatBath(1.0),) * 6
 
 
 def at(position: Any, velocity: Any = AT_REST, length: Any = (10, 10, 10), **box: Any) -> Box:
-    """Return a box of molecules at given places, at rest unless velocities are given."""
+    """Return a box of molecules at given positions, at rest unless velocities are given."""
     speeds = np.zeros(np.shape(position)) if velocity is AT_REST else velocity
     return lambda run: run.box(position, speeds, length=length, **box)
 
@@ -53,9 +53,10 @@ def gas(
     seed: int = 1,
     **box: Any,
 ) -> Box:
-    """Return a box of molecules at random places with Maxwell's velocities; one side makes a cube.
+    """Return a box of molecules at random positions with Maxwell's velocities; one side length makes a cube.
 
-    ``few`` is their number for engines that go in steps, where these are short; ``top`` is up to where they stand.
+    ``few`` is the number of molecules for engines that are not exact, if their steps must be short; ``top`` is the
+    greatest height of a molecule at the start.
     """
     x, y, z = sides * 3 if len(sides) == 1 else sides
     facts: dict[str, Any] = {"mass": 1.0, "diameter": 1.0, **box, "length": (x, y, z), "walls": walls, "seed": seed}
@@ -78,10 +79,10 @@ def crystal(number: int, side: float, **box: Any) -> Box:
 
 
 def orbit(range: float, rate: float) -> tuple[Any, Any]:
-    """Return places and velocities of two molecules that circle in a well, so many times in a unit of time.
+    """Return positions and velocities of two molecules that circle in a well; ``rate`` is rounds in a unit of time.
 
-    Seen from one, the other goes along a square whose corners are on the edge of the well. It starts in the middle of
-    a side.
+    Relative to one molecule, the other moves along a square whose corners are on the edge of the well. It starts in the
+    middle of a side.
     """
     half = range * np.sqrt(0.5)
     speed = 8.0 * half * rate
@@ -105,17 +106,17 @@ def moist(
     Parameters
     ----------
     kind
-        Mist, pool or drops; the drops are two that touch.
+        Mist, pool or drops.
     celsius
         The temperature [degC].
     saturated
-        How many molecules of vapour are in balance with the liquid: the box is as large as they need.
+        Number of molecules of saturated vapour in the box, which determines the size of the box.
     waters, vapour, air
-        How many molecules of water there are, how many of them are vapour at the start, and how many of air.
+        Number of molecules of water, of those that are vapour at the start, and of air.
     drops
-        Two drops that touch, or 1 in the middle.
+        2 for two drops that touch, 1 for one drop in the middle.
     liquid
-        What else the liquid is given.
+        Further properties of the liquid.
     """
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * (celsius + 273.15))
     substance, held = water(scale), waters - vapour

@@ -1,4 +1,4 @@
-"""One engine in one extreme: under guard, so that it can neither hang nor break a law unseen."""
+"""One engine in one extreme, with checks that detect a hang and every violation of a law."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ __all__ = ["Candidate", "GuardedRun", "UnlawfulError", "deepest_overlap", "step_
 
 APPROXIMATE = ("stepped", "dsmc", "classic")
 CLOSES, OUTSIDE, OVERLAP = 1e-10, 1e-9, 1e-9
-"""What rounding may do: to the energy ledger, to a place in the box [sides], to a pair in contact [diameters]."""
+"""Limits for rounding: residual of the energy ledger, distance outside the box [sides], overlap of a pair [diameters].
+"""
 MEMORY, MEMORY_OF_ONE = 10_000_000, 400
-"""Bytes that a box may take, and for each molecule besides."""
+"""Greatest memory of a box [bytes]: a constant part, and a part for each molecule."""
 
 
 class Candidate(Protocol):
-    """What is assessed: an engine with its options, as `atmosbox.scene.engines.choose` returns it."""
+    """An engine to be assessed, with its options, as `atmosbox.scene.engines.choose` returns it."""
 
     @property
     def name(self) -> str:
@@ -42,17 +43,17 @@ class UnlawfulError(Exception):
 
 
 class GuardedRun:
-    """An engine under guard.
+    """An engine whose runs are checked.
 
-    Boxes are made by `box` and advanced by `advance`, which stops what hangs and checks, after every run, whether
-    the state is still lawful: all molecules there and inside, every number finite, energy and water conserved.
+    `box` makes boxes and `advance` lets time pass in them. `advance` stops a run that hangs, and checks after every run
+    whether the state is still lawful: all molecules present and inside, all numbers finite, energy and water conserved.
 
     Parameters
     ----------
     candidate
         The engine.
     limit
-        For how long all runs together may take, of the processor's time [s]; compiling is not counted.
+        Processor time that all runs together may take [s]; compiling is not counted.
     """
 
     def __init__(self, candidate: Candidate, limit: float = 60.0) -> None:
@@ -65,7 +66,7 @@ class GuardedRun:
         self._waters: weakref.WeakKeyDictionary[Parcel, int] = weakref.WeakKeyDictionary()
 
     def box(self, position: Any, velocity: Any, *, options: Mapping[str, Any] | None = None, **box: Any) -> Parcel:
-        """Return a parcel of the engine; the arguments are those of `Parcel`, and options by engine."""
+        """Return a parcel of the engine; the arguments are those of `Parcel`, and options by the name of the engine."""
         candidate, own = self._candidate, (options or {}).get(self.engine, {})
         if own and isinstance(candidate, EngineChoice):
             candidate = replace(candidate, options={**candidate.options, **own})
@@ -74,8 +75,8 @@ class GuardedRun:
         return parcel
 
     def advance(self, parcel: Parcel, until: float) -> Parcel:
-        """Let time pass, under guard; return the parcel."""
-        began: list[float] = []  # the time of the processor counts, which others may have slowed down
+        """Let time pass, check the run and the state, and return the parcel."""
+        began: list[float] = []  # processor time, because other programs may slow down the run
 
         def watch(_: float) -> None:
             now = time.thread_time()
@@ -95,7 +96,7 @@ class GuardedRun:
         return parcel
 
     def _check(self, parcel: Parcel) -> None:
-        """Raise `UnlawfulError` at a state that no engine may have."""
+        """Raise `UnlawfulError` for a state that no engine may have."""
         here, number = parcel.snapshot(), parcel.number
         if here.position.shape != (number, 3) or here.velocity.shape != (number, 3):
             raise UnlawfulError(f"of {number} molecules {len(here.position)} are left")
@@ -131,19 +132,19 @@ class GuardedRun:
 
 
 def step_of(parcel: Parcel) -> float:
-    """Return the length of a step [time], 0 for an engine without."""
+    """Return the length of a step [time]; 0 for an engine without steps."""
     return parcel.time_step if isinstance(parcel, MarchingParcel) else 0.0
 
 
 def outermost(parcel: Parcel) -> float:
-    """Return how far a molecule reaches through a wall, in sides of the box; below 0 if none does."""
+    """Return how far a molecule extends through a wall, in sides of the box; negative if none does."""
     x, length = parcel.snapshot().position, parcel.length
     radius = np.where(parcel.periodic, 0.0, 0.5 * parcel.diameter[:, None])
     return float(np.max(np.maximum(radius - x, x - (length - radius)) / length, initial=-math.inf))
 
 
 def deepest_overlap(parcel: Parcel) -> float:
-    """Return by how much the closest pair overlaps, in mean diameters of the pair; below 0 if none does."""
+    """Return the largest overlap of a pair, in mean diameters of the pair; negative if no pair overlaps."""
     x, diameter = parcel.snapshot().position, parcel.diameter
     i, j = np.triu_indices(parcel.number, 1)
     touching = 0.5 * (diameter[i] + diameter[j])

@@ -1,7 +1,7 @@
-r"""What is measured in an extreme: a few rules, each of which builds boxes, lets time pass and reads off one number.
+r"""The measurements of extremes: each probe builds boxes, lets time pass and measures one number.
 
-Each returns a function of a `GuardedRun`; boxes and numbers come from the table of extremes. What is expected is
-what mechanics or kinetic theory says of real molecules, whatever the engine: by how much it is off is the result.
+Each function here returns a function of a `GuardedRun`; boxes and numbers come from the table of extremes. The expected
+value is that of mechanics or kinetic theory, for every engine alike: the error of an engine is the result.
 """
 
 from __future__ import annotations
@@ -38,7 +38,10 @@ def comes_to(
     per: Sequence[float] | None = None,
     tolerance: float = 1e-12,
 ) -> Probe:
-    """Compare where molecules are and how fast they are with what mechanics gives, box by box; ``per`` are units."""
+    """Compare positions and velocities at a time with those of mechanics, box by box.
+
+    ``per`` are the units of the errors, one for each box.
+    """
 
     def read(run: GuardedRun) -> Reading:
         worst = 0.0
@@ -47,7 +50,7 @@ def comes_to(
             here, off = box.snapshot(), 0.0
             if velocity is not None:
                 off = float(np.abs(here.velocity - velocity[k]).max())
-            if position is not None:  # after the last whole step it is not yet there
+            if position is not None:  # an engine that goes in steps stops at the last whole step before the time
                 moved = 0.0 if velocity is None else (box.time - until) * np.asarray(velocity[k], float)
                 off = max(off, float(np.abs(here.position - np.asarray(position[k]) - moved).max()))
             worst = max(worst, off / per[k] if per else off)
@@ -57,7 +60,7 @@ def comes_to(
 
 
 def hits(boxes: Sequence[Box], until: float, expected: Sequence[int]) -> Probe:
-    """Count hits of walls and contacts; of several boxes the last one counts if all others are as expected."""
+    """Count hits of walls and contacts; the first box with a wrong count is the result, or else the last box."""
 
     def read(run: GuardedRun) -> Reading:
         ran = [run.advance(new(run), until) for new in boxes]
@@ -69,7 +72,7 @@ def hits(boxes: Sequence[Box], until: float, expected: Sequence[int]) -> Probe:
 
 
 def energy(new: Box, until: float, *, pieces: int = 1, events: int = 0, tolerance: float = 1e-12) -> Probe:
-    """Compare the energy with that at the start."""
+    """Compare the energy with that at the start, after at least a number of contacts and hits of walls."""
 
     def read(run: GuardedRun) -> Reading:
         box = new(run)
@@ -84,13 +87,13 @@ def energy(new: Box, until: float, *, pieces: int = 1, events: int = 0, toleranc
 
 
 def made(box: Parcel) -> str:
-    """Return how much energy Euler's fall and a mirroring floor have made, over what they are known to make."""
+    """Return text with the energy that Euler's fall and a mirroring floor made, over N m g² Δt t; empty if none."""
     law = float(box.mass.sum()) * box.gravity**2 * step_of(box) * box.time
     return f"; the fall and the floor made {box.numerical_heat / law:.2g} N m g² Δt t" if box.numerical_heat else ""
 
 
 def cooled(new: Box, times: Sequence[float], word: str) -> Probe:
-    """Compare the kinetic energy that walls without heat leave with nothing; a refusal must say what to change."""
+    """Compare with zero the kinetic energy that very cold walls leave; a refusal must contain a word."""
 
     def read(run: GuardedRun) -> Reading:
         box = new(run)
@@ -108,7 +111,11 @@ def cooled(new: Box, times: Sequence[float], word: str) -> Probe:
 
 
 def alike(new: Box, other: Box, until: float, *, cuts: int = 0, later: float = 0.0) -> Probe:
-    """Compare two runs that must be the same: of two boxes, in one piece or cut, by a clock that is later."""
+    """Compare two runs that must be the same.
+
+    They differ in the form of their arguments, in that the second is cut into pieces, or in that its clock starts at a
+    later time.
+    """
 
     def read(run: GuardedRun) -> Reading:
         one, two = new(run), other(run)
@@ -125,7 +132,7 @@ def alike(new: Box, other: Box, until: float, *, cuts: int = 0, later: float = 0
         run.advance(one, end), run.advance(two, began + end)
         if one.contacts < 20:
             raise UnlawfulError(f"only {one.contacts} contacts")
-        if later and one.ideal:  # whom chance brings together depends on the number of the step
+        if later and one.ideal:  # which molecules collide by chance depends on the number of the step
             ratio = two.contacts / one.contacts
             return Reading("contacts over those by the other clock", ratio, 1.0, 4.0 * math.sqrt(2.0 / one.contacts))
         off = float(np.abs(one.snapshot().position - two.snapshot().position).max())
@@ -136,7 +143,7 @@ def alike(new: Box, other: Box, until: float, *, cuts: int = 0, later: float = 0
 
 
 def weight(new: Box, until: float) -> Probe:
-    """Compare what the floor carries with the weight, after the energy with that at the start."""
+    """Check the conservation of energy, then compare the force on the floor with the weight of the molecules."""
 
     def read(run: GuardedRun) -> Reading:
         box = new(run)
@@ -156,12 +163,12 @@ def weight(new: Box, until: float) -> Probe:
 
 
 def swept(new: Box, speed: float) -> Probe:
-    """Compare the work of a piston on molecules at rest with their energy at twice its velocity."""
+    """Compare the work of a piston on molecules at rest with their energy at twice the velocity of the piston."""
 
     def read(run: GuardedRun) -> Reading:
         box = new(run)
         where = box.snapshot().position[:, 2]
-        run.advance(box, 3.0 / speed)  # no molecule that was hit can have come back from the floor
+        run.advance(box, 3.0 / speed)  # so short that no molecule that was hit has come back from the floor
         carried = 2.0 * speed**2 * int(np.sum(where > box.ceiling))
         return Reading("work over the energy of the molecules swept up", box.work / carried, 1.0, 1e-9)
 
@@ -169,7 +176,7 @@ def swept(new: Box, speed: float) -> Probe:
 
 
 def emptiness(new: Box, until: float) -> Probe:
-    """Ask an empty box for its energy, temperature and layers."""
+    """Measure energy, temperature and layers of an empty box."""
 
     def read(run: GuardedRun) -> Reading:
         box = run.advance(new(run), until)
@@ -184,7 +191,7 @@ def emptiness(new: Box, until: float) -> Probe:
 
 
 def refused(boxes: Sequence[tuple[Box, str]]) -> Probe:
-    """Try boxes that must be refused, each in a sentence with a word in it."""
+    """Try boxes that must be refused, each with a message that contains a word."""
 
     def read(run: GuardedRun) -> Reading:
         last = None
@@ -203,7 +210,7 @@ def refused(boxes: Sequence[tuple[Box, str]]) -> Probe:
 
 
 def parted(boxes: Sequence[Box], word: str) -> Probe:
-    """Start with pairs that overlap: they are refused in a sentence with a word in it, or come apart."""
+    """Start with pairs that overlap: they must be refused with a message that contains a word, or come apart."""
 
     def read(run: GuardedRun) -> Reading:
         deep = 0.0
@@ -221,7 +228,7 @@ def parted(boxes: Sequence[Box], word: str) -> Probe:
 
 
 def stopped(new: Box, until: float, word: str) -> Probe:
-    """Advance a box that must be stopped, in a sentence with a word in it."""
+    """Advance a box that must be stopped, with a message that contains a word."""
 
     def read(run: GuardedRun) -> Reading:
         box = new(run)
@@ -244,8 +251,8 @@ def contacts(
 ) -> Probe:
     """Compare the number of contacts with kinetic theory, for one or two kinds of molecules.
 
-    ``slack`` is what theory may be off, ``distance`` that of the centres in most contacts [length]; ``coarsely`` is
-    for how long instead to advance engines that go in steps, where these are short [time].
+    ``slack`` is the relative error that theory may have, ``distance`` the distance of the centres in most contacts
+    [length]; ``coarsely`` replaces ``until`` for engines that go in short steps [time].
     """
 
     def read(run: GuardedRun) -> Reading:
@@ -276,13 +283,13 @@ def contacts(
 
 
 def seen_share(delta: float) -> float:
-    r"""Return which share of the contacts of a thin gas is seen by steps of a length.
+    r"""Return the share of the contacts of a thin gas that an engine with steps detects.
 
-    A step sees a contact only if it ends where the two overlap and still approach. Of all pairs that would touch
-    within a step in which they come closer by :math:`x` diameters, at all impact parameters, that is the share
-    :math:`1 - x^2 / 3` for :math:`x \le 1` and :math:`2 / 3 x` beyond. This is its mean over the relative speeds u of
-    pairs that meet, :math:`u^3 \exp(-m u^2 / 4 k T)`: :math:`1 - \frac{8}{3}\delta^2` for short steps and
-    :math:`\sqrt{\pi}/6\delta` for long ones.
+    A step detects a contact only if the two molecules overlap and still approach at its end. Of all pairs that would
+    touch within a step in which they come closer by :math:`x` diameters, at all impact parameters, that is the share
+    :math:`1 - x^2 / 3` for :math:`x \le 1` and :math:`2 / 3 x` beyond. This function is the mean of that share over the
+    relative speeds u of pairs that meet, :math:`u^3 \exp(-m u^2 / 4 k T)`: :math:`1 - \frac{8}{3}\delta^2` for short
+    steps and :math:`\sqrt{\pi}/6\delta` for long ones.
 
     Parameters
     ----------
@@ -303,7 +310,7 @@ def seen_share(delta: float) -> float:
 
 
 def pressure(new: Box, expected: float, settle: float, block: float) -> Probe:
-    """Compare the compressibility factor of a gas without momentum, from the virial of its contacts."""
+    """Compare the compressibility factor, from the virial of contacts in a gas without total momentum, with theory."""
 
     def read(run: GuardedRun) -> Reading:
         box = run.advance(new(run), settle)
@@ -320,7 +327,7 @@ def pressure(new: Box, expected: float, settle: float, block: float) -> Probe:
 
 
 def force(new: Box, until: float, speed: float) -> Probe:
-    """Compare the force of one molecule on a wall with its speed and the length of its way, to one hit."""
+    """Compare the force of one molecule on a wall with that from its speed and the width of the box, within one hit."""
 
     def read(run: GuardedRun) -> Reading:
         box = run.advance(new(run), until)
@@ -331,7 +338,7 @@ def force(new: Box, until: float, speed: float) -> Probe:
 
 
 def heat(new: Box, hot: float, settle: float, until: float) -> Probe:
-    """Compare the heat that points carry from a hot wall to one of kT = 1 with a formula that is exact."""
+    """Compare the heat that points carry from a hot wall to one of kT = 1 with an exact formula."""
 
     def read(run: GuardedRun) -> Reading:
         box = run.advance(new(run), settle)
@@ -339,9 +346,9 @@ def heat(new: Box, hot: float, settle: float, until: float) -> Probe:
         run.advance(box, time + until)
         given, met, time = box.wall_heat - given, box.wall_hits - met, box.time - time
         expected = float(theory.free_molecular_slab(hot, 1.0, float(box.number), 1.0).heat_flux)
-        # Of the slow molecules that the cold wall emits some take all day: the mean square of the time that one takes
-        # for its way, 1 / v, grows with the logarithm of the run. The mean is sqrt(pi / 2), and the energy that it
-        # takes back has a relative variance of 1 / 2.
+        # Some molecules that the cold wall emits are very slow: the mean square of the time to cross the box, 1 / v,
+        # grows with the logarithm of the duration of the run. The mean of that time is sqrt(pi / 2), and the energy
+        # that a molecule takes back has a relative variance of 1 / 2.
         square = math.log(time) + 0.5 * (math.log(2.0) - 0.5772)
         error = math.sqrt((square / (0.5 * math.pi) - 0.5) / met[1])
         return Reading("heat flux over theory", 0.5 * (given[0] - given[1]) / time / expected, 1.0, 4.0 * error)
@@ -350,9 +357,9 @@ def heat(new: Box, hot: float, settle: float, until: float) -> Probe:
 
 
 def vapour(new: Box, celsius: float, waters: int, crossings: float) -> Probe:
-    """Compare the mean number of molecules of vapour with the exact law for so much water.
+    """Compare the mean number of molecules of vapour with the exact law for a number of molecules of water.
 
-    ``crossings`` is how often a molecule of unit speed crosses the box meanwhile.
+    ``crossings`` is the duration of the measurement, in crossings of the box by a molecule of unit speed.
     """
 
     def read(run: GuardedRun) -> Reading:
@@ -375,9 +382,10 @@ def vapour(new: Box, celsius: float, waters: int, crossings: float) -> Probe:
 
 
 def curved(new: Box, saturated: float, salt: float, crossings: float) -> Probe:
-    """Compare the mean number of molecules of vapour beside one drop that feels its curvature with that of all states.
+    """Compare the mean number of molecules of vapour beside one drop with a curvature effect with that over all states.
 
-    A drop of n molecules gains one as often, with the vapour that it has then, as one of n + 1 loses one.
+    In equilibrium, a drop of n molecules, with the vapour beside it, gains one as often as a drop of n + 1 molecules
+    loses one. This gives the probability of each n.
     """
 
     def read(run: GuardedRun) -> Reading:
@@ -401,7 +409,7 @@ def curved(new: Box, saturated: float, salt: float, crossings: float) -> Probe:
 
 
 def wells(new: Box, until: float, expected: float) -> Probe:
-    """Compare in how many wells each molecule is at the end, half of which are its own, with a number of neighbours."""
+    """Compare the mean number of neighbours within the well of a molecule at the end with the expected number."""
 
     def read(run: GuardedRun) -> Reading:
         box: Any = new(run)

@@ -1,4 +1,4 @@
-"""What came out of an extreme: right, refused, degraded by how much, or wrong."""
+"""The outcome of an extreme: right, refused, degrades (and by how much), or wrong."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ Outcome = Literal["right", "refused", "degrades", "wrong"]
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 
 STORED = Path(__file__).with_name("stored_outcomes.json")
-"""The outcomes that ``benchmarks/extremes.py`` has stored: by extreme and engine."""
+"""The file of outcomes that ``benchmarks/extremes.py`` has stored, by extreme and engine."""
 LOOSE = 0.05
-"""A number whose tolerance is a larger share of what is expected is not called right."""
+"""A number whose tolerance is a larger share of the expected value than this is never "right"."""
 WORSE = 1.25
-"""By what factor an error may grow before the engine counts as worse than it was."""
+"""Factor by which an error may exceed the stored error before the engine counts as worse."""
 
 
 class Reading(NamedTuple):
-    """A number that was measured, what a right engine gives, and how far off chance and rounding may take it."""
+    """A measured number, the expected value, and the tolerance for chance and rounding."""
 
     what: str
     value: float
@@ -39,13 +39,14 @@ class Verdict:
     Parameters
     ----------
     outcome
-        "right": the number is that of mechanics or of kinetic theory, within a tolerance of 5 % at most. "degrades":
-        it is off, or known less well than that. "refused": the engine said no, in a sentence. "wrong": a law was
-        broken, the engine hung or crashed, or did worse than the stored outcome.
+        "right": the number agrees with mechanics or kinetic theory within a tolerance of at most 5 %. "degrades": the
+        number is off by more than its tolerance, or its tolerance is larger than 5 %. "refused": the engine refused the
+        box, with a message. "wrong": a law was violated, the engine hung or crashed, or was worse than the stored
+        outcome.
     sentence
-        What was measured, or what the refusal says.
+        The name of the measured quantity, or the text of the refusal or fault.
     value, expected, tolerance
-        The number, what a right engine gives, and four standard errors; None where the outcome is no number.
+        The number, the expected value, and the tolerance; None if the outcome is no number.
     """
 
     outcome: Outcome
@@ -56,19 +57,19 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """Whether the engine did what it should."""
+        """Whether the outcome is acceptable: anything but "wrong"."""
         return self.outcome != "wrong"
 
     @property
     def off(self) -> float:
-        """By how much the number is off, as a share of what is expected unless that is 0; 0 without a number."""
+        """Error of the number, relative to the expected value unless that is 0; 0 without a number."""
         if self.value is None or self.expected is None:
             return 0.0
         return (self.value - self.expected) / (abs(self.expected) or 1.0)
 
     @property
     def error(self) -> str:
-        """By how much the number is off, in words; empty where the outcome is no number."""
+        """Error of the number, as text; empty if the outcome is no number."""
         if self.value is None:
             return ""
         if not self.expected:
@@ -80,7 +81,7 @@ class Verdict:
 
     @property
     def figures(self) -> str:
-        """The number with what it should be; empty where the outcome is no number."""
+        """The number with its expected value and tolerance, as text; empty if the outcome is no number."""
         if self.value is None or self.tolerance is None:
             return ""
         if self.expected and 0.0 < self.tolerance < 1e-6 and self.outcome == "right":
@@ -89,7 +90,7 @@ class Verdict:
 
     @property
     def told(self) -> str:
-        """The sentence, with its number."""
+        """The sentence, followed by the number if there is one."""
         return f"{self.sentence}: {self.figures}" if self.figures else self.sentence
 
     def __str__(self) -> str:
@@ -98,7 +99,7 @@ class Verdict:
 
 
 def judged(reading: Reading) -> Verdict:
-    """Return "right" if a number is what it should be, "wrong" if it is none, else "degrades".
+    """Return "right" for a number within a tight tolerance, "wrong" for one that is not finite, else "degrades".
 
     Examples
     --------
@@ -114,14 +115,14 @@ def judged(reading: Reading) -> Verdict:
 
 
 def compared(now: Verdict, before: Verdict | None) -> Verdict:
-    """Return a verdict, or "wrong" if the engine did better before.
+    """Return a verdict, or "wrong" if the stored outcome is better.
 
     Parameters
     ----------
     now
-        What came out.
+        The present outcome.
     before
-        The stored outcome; None if there is none, as of an engine with options.
+        The stored outcome; None if there is none, as for an engine with options.
 
     Examples
     --------
@@ -147,7 +148,7 @@ def compared(now: Verdict, before: Verdict | None) -> Verdict:
 
 
 def wrong(sentence: str) -> Verdict:
-    """Return the verdict on what should not have happened."""
+    """Return the verdict "wrong" with a sentence."""
     return Verdict("wrong", sentence)
 
 

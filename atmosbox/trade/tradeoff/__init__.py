@@ -1,11 +1,11 @@
-"""Speed against accuracy, measured: the same scene through engines and settings, errors beside seconds.
+"""Measured speed against measured accuracy: the same scene with several engines and settings, errors and seconds.
 
 `rung`             one way of running a scene
-`budgeted_runs`    which run comes next, so that all fit into a budget of time
-`timed_run`        what one run came to
-`warm_engine`      an engine compiled, but for no longer than the budget
-`kept_runs`        what is saved while it is measured, and from where it goes on
-`measured_trade`   all the ways of a scene, within a budget of time
+`budgeted_runs`    the order of the runs, so that all fit into a budget of time
+`timed_run`        the errors and the cost of one run
+`warm_engine`      compilation of an engine within the budget
+`kept_runs`        runs that are saved during the measurement, so that it can be continued
+`measured_trade`   all ways of running a scene, within a budget of time
 """
 
 from atmosbox.trade.tradeoff.kept_runs import KeptRuns

@@ -1,4 +1,4 @@
-"""Which run comes next, so that all together take no longer than a budget of time."""
+"""The order of runs, so that all together take no longer than a budget of time."""
 
 from __future__ import annotations
 
@@ -14,47 +14,49 @@ __all__ = ["BudgetedRuns", "Progress"]
 
 MOST_RUNS = 64
 FIRST_SHARE = 0.25
-"""A first run that would take more than this share of the budget waits until all others have had theirs."""
+"""A first run that would take more than this share of the budget waits until all other ways have run once."""
 TELLING = 0.02
-"""Share of a run after which the rest can be estimated."""
+"""Share of a run after which the time of the rest can be estimated."""
 
 Progress = Callable[[float, str], None]
 Result = TypeVar("Result")
 
 
 class _TooLong(Exception):
-    """A run takes more time than it may."""
+    """A run takes more time than is allowed."""
 
 
 @dataclass
 class BudgetedRuns(Generic[Result]):
-    """Runs of several ways of doing something, each as often as a budget allows.
+    """Runs of several ways of doing something, each repeated as often as a budget of time allows.
 
-    Every way is compiled and run once, then those that were too long for their share if they still fit, the shortest
-    first; then all again and again, those with the fewest runs first. All of it counts, compiling too: what has begun
-    when the budget ends is stopped.
+    First, every way is compiled and run once. Then come the ways whose first run was too long for its share of the
+    budget, the shortest first, if they still fit. Then all ways are repeated, those with the fewest runs first. The
+    time of compiling counts, too, and a run that is under way when the budget ends is stopped.
 
     Parameters
     ----------
     budget
-        For how long in all [s].
+        Time for everything [s].
     labels
-        What each way is called.
+        Name of each way.
     compile_way
-        Called with the number of a way before its first run, and how long that may take [s]; tells whether it is done.
+        Called before the first run of a way with its number and the time that is left [s]; returns whether the way is
+        compiled.
     run_way
-        Called with the number of a way, how often it has run, and a function to be called with the share that is
-        done and "running" once it runs; returns the result.
+        Called with the number of a way, the number of its earlier runs, and a function that takes the share that is
+        done and the word "running"; returns the result.
     tell
-        Called with the share of the budget that is spent and what is under way.
+        Called with the share of the budget that is spent and the name of the present way.
     clock
         Returns the time [s].
     keep
-        Called with the number of a way, how often it had run, the result, and how much of the budget is spent [s].
+        Called with the number of a way, the number of its earlier runs, the result, and the spent part of the budget
+        [s].
     results
-        What each way has come to; what an earlier call has kept, to begin with.
+        The results of each way; at the beginning those that an earlier call has saved.
     spent
-        How much of the budget an earlier call has spent [s].
+        Part of the budget that an earlier call has spent [s].
     """
 
     budget: float
@@ -75,11 +77,11 @@ class BudgetedRuns(Generic[Result]):
         self._began = self.clock() - self.spent
 
     def left(self) -> float:
-        """Return what is left of the budget [s]."""
+        """Return the rest of the budget [s]."""
         return self.budget - (self.clock() - self._began)
 
     def run(self) -> None:
-        """Run all ways; ``results`` and ``left_out`` tell what came of it, also after an interruption."""
+        """Run all ways; ``results`` and ``left_out`` hold the outcome, also after an interruption."""
         ways, compiling = range(len(self.labels)), 0.0
         for k in ways:
             again = f"; compiling took {compiling:.0f} s of it, and takes none next time" if compiling > 1.0 else ""
@@ -98,7 +100,7 @@ class BudgetedRuns(Generic[Result]):
                 continue
             compiling += self.clock() - before
             if self.results[k]:
-                self._seconds[k] = 0.0  # kept from an earlier call: the next run of it will tell
+                self._seconds[k] = 0.0  # saved by an earlier call: the next run will measure the time
                 continue
             self._attempt(k, min(FIRST_SHARE * self.budget, self.left()))
         waiting = [k for k in ways if not self.results[k] and not self.left_out[k]]
@@ -120,9 +122,9 @@ class BudgetedRuns(Generic[Result]):
             self._attempt(min(fit, key=lambda k: (len(self.results[k]), self._seconds[k])), self.left())
 
     def _attempt(self, k: int, allowed: float) -> None:
-        """Run a way once, if it takes no longer than it may [s]."""
+        """Run a way once, if it takes no longer than allowed [s]."""
         start = self.clock()
-        begun: list[float] = []  # when it began to run, and at which share: before that it was built
+        begun: list[float] = []  # the time and the share at the end of preparation, when the run itself began
 
         def watch(share: float, word: str) -> None:
             now = self.clock()
@@ -132,7 +134,7 @@ class BudgetedRuns(Generic[Result]):
             if begun and share > begun[1] and (share - begun[1] > TELLING or needed > allowed):
                 needed += (now - begun[0]) * (1.0 - share) / (share - begun[1])
                 self._seconds[k] = needed
-            # an estimate may be wrong by a half, the time that has passed is not
+            # an estimate may be wrong by a half; the time that has passed is certain
             if now - start > allowed or needed > 1.5 * allowed:
                 raise _TooLong
             self.tell(min(1.0 - self.left() / self.budget, 1.0), self.labels[k])
@@ -145,7 +147,7 @@ class BudgetedRuns(Generic[Result]):
             self.keep(k, done, result, self.budget - self.left())
         except _TooLong:
             if self.results[k]:
-                self._seconds[k] = math.inf  # it fitted before: others have slowed it down
+                self._seconds[k] = math.inf  # it was short enough before: other programs have slowed it down
         except AtmosboxError as error:
             self.left_out[k] = str(error)
             self._seconds[k] = math.inf

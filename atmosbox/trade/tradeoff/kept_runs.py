@@ -1,4 +1,4 @@
-"""The runs of a tradeoff that are complete, and the states of those under way: what is killed goes on."""
+"""The saved runs of a tradeoff, and the saved states of runs under way, from which a killed measurement continues."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ _CURVES = ("error", "noise")
 
 
 class KeptRuns:
-    """What is kept beside the file of a tradeoff while it is measured: ``NAME.part.jsonl`` and ``NAME.part.states``.
+    """The files beside the file of a tradeoff during its measurement: ``NAME.part.jsonl`` and ``NAME.part.states``.
 
     Parameters
     ----------
     path
-        The file; None keeps nothing.
+        The file of the tradeoff; if None, nothing is saved.
     request
-        All that was asked for, by what a sentence calls it.
+        All that determines the measurement, by names for messages.
     command
-        What the user typed.
+        The command that the user typed.
     force
-        Whether what is kept of another tradeoff is thrown away.
+        Whether the saved runs of another tradeoff are deleted.
 
     Attributes
     ----------
     spent
-        How much of the budget earlier calls have spent [s].
+        Part of the budget that earlier calls have spent [s].
     history
-        The lines of all commands that took part; none if nothing is kept.
+        A line for each command that took part; empty if nothing is saved.
 
     Raises
     ------
     FileError
-        If there is a journal of another request, or another program writes it right now.
+        If there is a journal of another request, or if another program is writing it.
     """
 
     def __init__(self, path: Path | None, request: Mapping[str, Any], command: str, *, force: bool = False) -> None:
@@ -52,7 +52,7 @@ class KeptRuns:
         self.spent = 0.0
         self.history: list[str] = []
         if path is not None:
-            # costs that were measured on another computer, or of other sources, are other costs
+            # costs measured on another computer or with other sources of the engine cannot be compared
             asked = {**request, "sources of the engine": source_digest(), "computer": platform.node()}
             self._journal = Journal(path, asked, history_line(command), force=force, kind="tradeoff")
             self.history = self._journal.history
@@ -60,7 +60,7 @@ class KeptRuns:
         self._states = RunStates(path, () if self._journal is None else self._journal.records)
 
     def trials(self, ways: int) -> list[list[Trial]]:
-        """Return what earlier calls have measured, by way."""
+        """Return the runs of earlier calls, by way of running."""
         made: list[list[Trial]] = [[] for _ in range(ways)]
         records = {} if self._journal is None else self._journal.records
         for (k, _), record in sorted(records.items()):
@@ -68,7 +68,7 @@ class KeptRuns:
         return made
 
     def place(self, k: int, done: int) -> str | None:
-        """Return where a run keeps its state."""
+        """Return the path of the saved state of a run; None if nothing is saved."""
         return self._states.place(k + 1, done + 1)
 
     def drop(self, k: int, done: int) -> None:
@@ -82,20 +82,20 @@ class KeptRuns:
         self.drop(k, done)
 
     def close(self) -> None:
-        """Let other programs have the files, and leave nothing but what a next call needs."""
+        """Release the files for other programs; only those that a next call needs remain."""
         self._states.close()
         if self._journal is not None:
             self._journal.__exit__()
 
     @staticmethod
     def remove(path: Path) -> None:
-        """Remove what is kept: the file of the tradeoff is written."""
+        """Remove the saved runs and states after the file of the tradeoff has been written."""
         RunStates(path).close(everything=True)
         Journal.place(path).unlink(missing_ok=True)
 
 
 def _plain(trial: Trial) -> dict[str, Any]:
-    """Return a trial as JSON can hold it."""
+    """Return a trial in types that JSON can hold."""
     held = trial._asdict()
     held["quantities"] = [list(each) for each in trial.quantities.values()]
     return held | {part: {name: values.tolist() for name, values in held[part].items()} for part in _CURVES}

@@ -1,4 +1,4 @@
-"""All the ways of running a scene, each as often as a budget of time allows."""
+"""The measurement of a trade: all ways of running a scene, each as often as a budget of time allows."""
 
 from __future__ import annotations
 
@@ -42,49 +42,51 @@ def measure(
     force: bool = False,
     note: Callable[[str], None] | None = None,
 ) -> xr.Dataset:
-    """Run a scene through engines and settings, and return errors beside costs.
+    """Run a scene with several engines and settings, and return errors and costs.
 
-    Every rung runs once, then again and again with other seeds while the budget lasts, those with the fewest
-    runs first; compiling the engines counts, too. The bias is the mean misfit to theory; its standard error, and
-    the noise of a single run, come from the scatter of the seeds, or from the runs' own error bars where there are
-    fewer than four.
+    Every rung runs once and is then repeated with other seeds while the budget lasts, those with the fewest runs first;
+    the time of compiling the engines counts, too. The bias is the mean misfit to theory. Its standard error and the
+    noise of a single run come from the scatter of the seeds or, for fewer than four runs, from the runs' own standard
+    errors.
 
-    With a file, every run is saved as it ends, and its state before: the same call goes on where one that was killed
-    has stopped, with what it had left of its budget.
+    If a file is named, every run is saved when it ends, and its state is saved while it runs. The same call then
+    continues where a killed one has stopped, with the rest of its budget.
 
     Parameters
     ----------
     scene
-        The name of a scene that declares what is worth comparing.
+        Name of a scene that declares which ways of running it are compared.
     settings
         Settings for all runs.
     budget
-        For how long to measure, with all that is compiled on the way [s].
+        Duration of the measurement, including compilation [s].
     seed
         The first seed.
     ladder
-        The runs to compare; those that the scene declares if None.
+        The ways of running to compare; by default those that the scene declares.
     progress
-        Called with the share that is done and a word on what goes on.
+        Called with the share that is done and a short text on the present step.
     command
-        What the user typed, for the file's history.
+        The command that the user typed, for the history in the file.
     out
-        The file that will be written of it, beside which the runs are kept; once it is written, `KeptRuns.remove`
-        removes them.
+        The file that will be written from the result. The runs are saved beside it; when it is written,
+        `KeptRuns.remove` removes them.
     force
-        Whether what is kept there of another tradeoff is thrown away.
+        Whether saved runs of another tradeoff are deleted.
     note
-        Called with a remark on what is taken from an earlier call.
+        Called with a remark on the runs that are taken from an earlier call.
 
     Returns
     -------
     xarray.Dataset
-        By ``rung`` and ``quantity``: see the long names in it.
+        Variables along ``rung`` and ``quantity``; their long names describe them.
 
     Raises
     ------
     SettingError
-        If the scene declares nothing to compare, or the budget is too small for any run.
+        If the scene declares nothing to compare, or the budget is not allowed or too small for any run.
+    FileError
+        If saved runs beside the file belong to another tradeoff.
     """
     module = scenarios.load(scene)
     row = getattr(module, "ladder", ())
@@ -117,7 +119,7 @@ def measure(
     def run_way(k: int, done: int, watch: Progress) -> Trial:
         try:
             return timed_run.run(scene, ways[own[k]], seed + done, watch, kept.place(k, done))
-        except Exception:  # given up, for whatever reason: a later attempt begins anew
+        except Exception:  # after any failure, a later attempt begins anew
             kept.drop(k, done)
             raise
 
@@ -146,20 +148,20 @@ def measure(
 
 
 def _request(scene: str, settings: Mapping[str, Any], budget: float, seed: int, ways: Sequence[Rung]) -> dict[str, Any]:
-    """Return all that decides what is measured, by what a sentence calls it."""
+    """Return all that determines the measurement, by names for messages."""
     words: dict[str, Any] = {"version of atmosbox": __version__, "scene": scene, "--budget": budget, "--seed": seed}
     words |= {f"--set {name}": str(value) for name, value in settings.items()}
     return words | {"the ways of running it": [way.label for way in ways]}
 
 
 def _first_alike(ways: Sequence[Rung], settings: Any) -> list[int]:
-    """Return, for each way of running, the first that is the same: two series may cross, and share a run."""
+    """Return for each way of running the index of the first that is equal: two series may have a run in common."""
     found: dict[str, int] = {}
     first = []
     for k, way in enumerate(ways):
         try:
             changed = settings.from_user(dict(way.settings)).changed()
-        except AtmosboxError:  # refused when its turn comes
+        except AtmosboxError:  # the error will be reported when this way is run
             changed = dict(way.settings)
         first.append(found.setdefault(json.dumps([way.engine, changed], sort_keys=True, default=str), k))
     return first
@@ -176,7 +178,7 @@ def _dataset(
     row: Sequence[Any],
     status: str,
 ) -> xr.Dataset:
-    """Lay all trials side by side."""
+    """Return all trials as one dataset."""
     quantities: dict[str, Quantity] = {}
     for done in trials:
         for one in done:
@@ -187,7 +189,7 @@ def _dataset(
     for k, done in enumerate(trials):
         for q, name in enumerate(names):
             members = [one for one in done if name in one.error]
-            if members and len(members) == len(done):  # what some runs do not reach has no fair mean
+            if members and len(members) == len(done):  # a quantity that some runs lack has no unbiased mean
                 bias[k, q], bias_se[k, q], noise[k, q] = _summary(
                     np.array([one.error[name] for one in members]), np.array([one.noise[name] for one in members])
                 )
@@ -265,7 +267,7 @@ def _of(long_name: str, units: str) -> dict[str, str]:
 
 
 def _reference(ways: Sequence[Rung], trials: Sequence[Sequence[Trial]]) -> int | None:
-    """Return the dearest run of the exact engine's first series: what the others are held against."""
+    """Return the index of the reference: the last way in the exact engine's first series; None if none has run."""
     exact = [k for k, way in enumerate(ways) if trials[k] and way.engine == str(engines.EXACT)]
     if not exact:
         return None
@@ -276,7 +278,7 @@ def _reference(ways: Sequence[Rung], trials: Sequence[Sequence[Trial]]) -> int |
 def _summary(error: NDArray[np.float64], own: NDArray[np.float64]) -> tuple[float, float, float]:
     """Return bias, its standard error, and the noise of one run, of ``error : (member, value)``.
 
-    A curve counts by its root mean square, less what chance alone would add to it.
+    For a curve, the bias is the root mean square of the mean error, less the part that chance alone would add.
     """
     keep = np.isfinite(error).all(axis=0) & np.isfinite(own).all(axis=0)
     if not keep.any():

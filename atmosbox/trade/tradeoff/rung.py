@@ -20,13 +20,13 @@ class Rung:
     Parameters
     ----------
     engine
-        What lets time pass, with its options.
+        The engine with its options.
     settings
-        What differs from the scene's defaults.
+        The settings that differ from the scene's defaults.
     series
-        Which series of the scene it belongs to.
+        Index of its series in the scene.
     value
-        Its value of what varies in the series.
+        Its value of the setting or option that varies in the series.
     """
 
     engine: str
@@ -36,7 +36,7 @@ class Rung:
 
     @property
     def label(self) -> str:
-        """The words that ask for this run, but for the scene.
+        """The engine and the settings as text, without the scene.
 
         Examples
         --------
@@ -54,12 +54,12 @@ def rungs(series: Sequence[Series], settings: Mapping[str, Any]) -> tuple[Rung, 
     series
         The series.
     settings
-        What a user has set, for all of them; a series overrides it where it varies the same.
+        The user's settings for all series; a series overrides them by its own settings and its varied setting.
 
     Raises
     ------
     SettingError
-        If a series varies what its engine does not know, or a value is not allowed.
+        If there are no series or values, or an engine or one of its options is refused.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What one run came to: its errors, and what it cost."""
+"""The errors and the cost of one run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PROFILES = {
     "speed_probability_density": "speed_probability_density_theory",
     "parcel_temperature": "adiabat_temperature",
 }
-"""Curves with a closed form beside them; their error is the root mean square of the misfit along the curve."""
+"""Curves with the variable of their theory; their error is the root mean square of the misfit along the curve."""
 
 _TEMPERATURES = ("K", "degC")
 
@@ -32,8 +32,8 @@ _TEMPERATURES = ("K", "degC")
 class Quantity(NamedTuple):
     """A number, or a curve, whose error is measured.
 
-    ``unit`` is K for temperatures; for everything else it is 1, the error being a share of the theory. ``theory``
-    is what theory said in the first run [SI], for a curve the mean of its size.
+    ``unit`` is K for temperatures; for all other quantities it is 1, because the error is a share of the theory.
+    ``theory`` is the value of theory in the first run [SI], for a curve the mean of its absolute value.
     """
 
     name: str
@@ -43,10 +43,10 @@ class Quantity(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """What one run came to.
+    """The errors and the cost of one run.
 
-    ``error`` and ``noise : (value,)`` by quantity: misfits to theory and their standard errors, one value
-    for a number and one for each point of a curve. ``collisions`` are per molecule and simulated second.
+    ``error`` and ``noise : (value,)`` hold, for each quantity, misfits to theory and their standard errors: one value
+    for a number, one for each point of a curve. ``collisions`` are per molecule and unit of the elapsed time.
     """
 
     quantities: Mapping[str, Quantity]
@@ -61,7 +61,7 @@ class Trial(NamedTuple):
 
 
 def warm_up(scene: str, rung: Rung) -> None:
-    """Compile what a rung needs, so that no trial is charged for it."""
+    """Compile what a rung needs, so that compilation does not count in the time of a trial."""
     prepared = runner.prepare(scene, rung.settings, engine=rung.engine)
     runner.build(prepared).parcel.advance(0.0)
 
@@ -74,9 +74,9 @@ def run(scene: str, rung: Rung, seed: int, progress: Callable[[float, str], None
     scene, rung, seed
         The run.
     progress
-        Called with the share that is done and a word on what is being done.
+        Called with the share that is done and a short text on the present step.
     state
-        Where the run keeps its state, and goes on from if there is one; see
+        Path of the saved state of the run, from which it continues if there is one; see
         `atmosbox.simulation.continuation.execute_from`.
 
     Raises
@@ -93,7 +93,7 @@ def _trial(outcome: Outcome, settings: Any) -> Trial:
     error: dict[str, NDArray[np.float64]] = {}
     noise: dict[str, NDArray[np.float64]] = {}
     for headline in outcome.headlines:
-        # what has no error of chance is the same whatever runs: the textbook beside another library, say
+        # a headline without a statistical error does not depend on the run: for instance theory against a library
         if headline.theory is None or headline.misfit is None or headline.standard_error == 0.0:
             continue
         absolute = headline.unit in _TEMPERATURES
@@ -109,7 +109,7 @@ def _trial(outcome: Outcome, settings: Any) -> Trial:
             continue
         theory = dataset[beside].values
         absolute = dataset[name].attrs.get("units") in _TEMPERATURES
-        # a curve that falls to nothing is compared with its mean: far out there is nothing to be wrong about
+        # the misfit is divided by the mean of the curve, because a curve may fall to zero
         mean = float(np.mean(np.abs(theory)))
         size = 1.0 if absolute else mean
         label = f"profile of {name.replace('_', ' ')}"

@@ -1,4 +1,7 @@
-"""An engine compiled in a process of its own, so that a budget of time can end it: a compiler cannot be interrupted."""
+"""Compilation of an engine in a process of its own, which can be stopped when a budget of time ends.
+
+A compiler cannot be interrupted otherwise.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ timed_run.warm_up(scene, Rung(engine, settings, 0, 0.0))
 
 
 def kind(rung: Rung) -> str:
-    """Return what is compiled for a rung: its engine, and the settings that are no numbers, as a plane or drops are.
+    """Return text that tells what is compiled for a rung: its engine, and its settings that are not numbers.
 
     Examples
     --------
@@ -39,10 +42,10 @@ def kind(rung: Rung) -> str:
 
 
 def compile_within(scene: str, rung: Rung, seconds: float) -> bool:
-    """Compile what a rung needs, unless that takes longer than it may, and tell whether it is done.
+    """Compile what a rung needs, unless that takes too long, and return whether it is compiled.
 
-    Another process compiles, and this one loads the machine code that it has left. Where that has been done before,
-    which a file beside the machine code says, no other process is begun.
+    Another process compiles, and this one loads the machine code from the disk. A file beside the machine code marks
+    what has been compiled before; then no other process is started.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def compile_within(scene: str, rung: Rung, seconds: float) -> bool:
     rung
         The way of running it.
     seconds
-        How long it may take.
+        Longest time that it may take [s].
 
     Raises
     ------
@@ -77,7 +80,7 @@ def compile_within(scene: str, rung: Rung, seconds: float) -> bool:
                 return False
             finally:
                 other.kill()
-    timed_run.warm_up(scene, rung)  # if the other has failed, this says why
+    timed_run.warm_up(scene, rung)  # if the other process has failed, this raises the same error
     if mark is not None:
         mark.parent.mkdir(parents=True, exist_ok=True)
         mark.touch()
@@ -85,6 +88,6 @@ def compile_within(scene: str, rung: Rung, seconds: float) -> bool:
 
 
 def _mark(folder: Path, scene: str, rung: Rung) -> Path:
-    """Return the file that says that an engine is compiled; a new engine has a new folder."""
+    """Return the file that marks an engine as compiled; other sources of the engine have another folder."""
     name = hashlib.sha256(f"{scene} {kind(rung)}".encode()).hexdigest()[:16]
     return folder / f"{name}.compiled"
