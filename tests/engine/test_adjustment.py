@@ -1,4 +1,4 @@
-"""What is changed by hand: the books close, molecules learn of it, and a box that nobody touches is as it was."""
+"""Changes by hand: the energy ledger closes, molecules react, and a box that is not changed stays the same."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The calendar always knows the next event: held to a heap, which is the textbook's way."""
+"""The calendar always knows the next event: compared with a heap, the method of textbooks."""
 
 import heapq
 import math
@@ -25,7 +25,7 @@ def test_the_calendar_names_the_same_next_event_as_a_heap(molecules, seed):
     heap = []
     for _ in range(150):
         i = int(random.integers(molecules))
-        # sooner, later or never again; whole numbers now and then, so that there are ties
+        # sooner, later or never again; sometimes whole numbers, so that there are ties
         time = float(random.choice([random.random(), float(random.integers(3)), math.inf], p=[0.7, 0.2, 0.1]))
         schedule(calendar, i, time)
         times[i] = time

@@ -1,6 +1,6 @@
 """Cells and slots: a sphere is listed in every cell that it overlaps, so two that touch always share one.
 
-Only `choose_grid` and what it returns is used: for random boxes its tables are held to the plain geometry.
+Only `choose_grid` and its result are used: for random boxes its tables are compared with plain geometry.
 """
 
 import math
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from atmosbox.engine import RefusedError
 from atmosbox.engine.exact.cells import append, choose_grid, remove, size_classes
 
-MARGIN = 1e-6  # how much larger than its sphere a molecule may be taken to be, in radii
+MARGIN = 1e-6  # how much larger than its sphere a molecule may be treated, in radii
 
 
 def grid_of(
@@ -64,7 +64,7 @@ def slots_of(grid, size, axis):
     number = grid.number[axis]
     boundary = grid.boundary[size, axis]
     if grid.spanning:
-        # between walls the outermost boundaries are infinite; what is left over of a table is filled with infinity
+        # between walls the outermost boundaries are infinite; the rest of a table is filled with infinity
         last = int(np.isfinite(boundary).sum()) + (-1 if math.isfinite(boundary[0]) else 1)
         first, span = grid.first[size, axis], grid.span[size, axis]
         sets = [[(int(first[s]) + k) % number for k in range(int(span[s]))] for s in range(last)]
@@ -125,7 +125,7 @@ def test_a_sphere_is_listed_in_the_cells_that_it_overlaps_and_in_no_other(made, 
 
 
 def check_boundaries(grid, sizes):
-    """Assert that each boundary means entering one cell or leaving one, as the engine takes it."""
+    """Check that at each boundary a molecule enters or leaves exactly one cell, as the engine assumes."""
     for size in range(sizes):
         for axis in range(3):
             boundary, sets = slots_of(grid, size, axis)
@@ -221,7 +221,7 @@ def test_a_cell_lists_whom_it_is_told_until_it_is_told_otherwise():
 
 @pytest.mark.parametrize(("to_a_cell", "rows"), [(17.9, True), (18.1, False)])
 def test_cells_that_large_spheres_make_wide_hold_lists_where_a_row_might_overflow(to_a_cell, rows):
-    # four cells of five diameters along each side, and a molecule on its way is in the rows of two cells on average
+    # four cells of five diameters along each side, and a moving molecule is in the rows of two cells on average
     grid = grid_of((20.0, 20.0, 20.0), (0.1, 2.0), molecules=round(to_a_cell * 64), rows=True)
     assert grid.rows == rows
     assert not rows or grid.number == (4, 4, 4)

@@ -1,4 +1,4 @@
-"""The classic schemes do what applets did: contact by contact, wall by wall, and with honest books."""
+"""The classic schemes do what applets did, contact by contact and wall by wall, and their energy ledger is right."""
 
 import itertools
 import math
@@ -126,7 +126,7 @@ def test_three_in_contact_are_resolved_one_pair_after_another():
         box = ClassicParcel(places[order], came[order], length=(10.0,) * 3, scheme="spheres", dt=1e-6)
         box.advance(1e-6)
         found.append(box.snapshot().velocity[np.argsort(order), 0])
-    # in the order of the blow it runs through all three in one step; against it, it waits for the next
+    # in the order of the collisions it passes through all three in one step; in the reverse order it needs another step
     assert found[0] == pytest.approx([0.0, 0.0, 1.0])
     assert found[1] == pytest.approx([0.0, 1.0, 0.0])
 
@@ -159,7 +159,7 @@ def test_contacts_are_counted_by_height():
 
 
 def by_all_pairs(x, v, side, periodic, strips):
-    """Let all pairs that overlap and approach exchange, found by looking at all, in the order of the strips."""
+    """Let all pairs that overlap and approach collide; all pairs are checked, in the order of the strips."""
     n = len(x)
     strip = np.minimum((x[:, 0] / side * strips).astype(int), strips - 1)
     pairs = []
@@ -315,7 +315,7 @@ def test_a_box_as_narrow_as_its_molecules_holds_them():
         assert box.wall_hits[:2].min() > 0
 
 
-# ---------------------------------------------------------------------------------------------- books
+# ---------------------------------------------------------------------------------------------- ledger
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -393,7 +393,7 @@ def test_molecules_at_rest_stay_there(scheme):
     assert (box.snapshot().position == before).all()
 
 
-# ---------------------------------------------------------------------------------------------- what it is given
+# ---------------------------------------------------------------------------------------------- arguments
 
 
 def test_the_scheme_follows_from_the_molecules_unless_it_is_chosen():

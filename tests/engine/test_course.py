@@ -1,4 +1,4 @@
-"""How far along its planned way a parcel is, left alone and led by hand."""
+"""The position of a parcel on its planned ascent, left alone and moved by hand."""
 
 import math
 

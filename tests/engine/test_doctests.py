@@ -1,7 +1,7 @@
-"""The examples in the docstrings of kernels are run, although a kernel is no plain function.
+"""The examples in the docstrings of kernels are run, although a kernel is not a plain function.
 
-Doctest looks for functions and may pass over what numba made of one; here each kernel's examples are looked up by
-hand, so that none can go stale unseen.
+Doctest looks for functions and may not find those that numba has compiled; here the examples of each kernel are
+looked up explicitly, so that none is left out.
 """
 
 import doctest
@@ -46,7 +46,7 @@ def test_the_examples_of_a_kernel_hold(module, name):
 
 
 def listed(module):
-    """Return the names that a docstring lists, one a line."""
+    """Return the names that a docstring lists, one in each line."""
     return {line.split("`")[1] for line in module.__doc__.splitlines() if line.startswith("`")}
 
 

@@ -1,4 +1,4 @@
-"""Drops keep the books event by event, stay in the box, merge, and do the same however a run is cut.
+"""Drops keep the balances at every event, stay in the box, merge, and do the same however a run is divided.
 
 The boxes below need one set of kernels, that of the scenes: each new set costs seconds of compilation, so that those
 of boxes that no scene has, periodic or under a piston, are left to the validate tier.
@@ -92,7 +92,7 @@ def damp(drops, air=20, vapour=10, *, sides=(8.0, 8.0, 8.0), walls=SMOOTH, kT=1.
 
 
 def box(name, drops=None, **changes):
-    """Return a box by the name of what is special of it."""
+    """Return a box by the name of its special feature."""
     walls = {"smooth": SMOOTH, "between heat baths": WARM, "periodic": TURNING, "under a piston": LIFT}[name]
     # wide enough that no molecule meets two images of a drop, as it does in the periodic box
     options = {"driver": Pulse(), "sides": (10.0, 10.0, 8.0)} if name == "under a piston" else {}
@@ -107,7 +107,7 @@ by_name = pytest.mark.parametrize(
 
 
 def flying(parcel):
-    """Return masses and velocities of the drops there are."""
+    """Return masses and velocities of the present drops."""
     alive = parcel._drops.alive == 1
     m = parcel._fields[parcel._drops.record[alive]]
     return parcel._kinds.table["mass"][parcel._first_drop :][alive], np.stack([m["vx"], m["vy"], m["vz"]], axis=1)
@@ -120,12 +120,12 @@ def momentum(parcel):
 
 
 def happened(parcel):
-    """Return how many came, left, met a drop and left again, and how often two drops became one."""
+    """Return the numbers of condensations, evaporations, hits with immediate return, and mergers of two drops."""
     return np.array([parcel.condensed, parcel.evaporated, parcel._reservoir.count[AIR_MET], parcel.merged])
 
 
 def deepest_overlap(parcel):
-    """Return how deep two molecules overlap, and how deep a molecule stands in a drop or drops overlap [length]."""
+    """Return the deepest overlap of two molecules, and that of a molecule and a drop or of two drops [length]."""
     x, (centre, radius, _) = parcel.snapshot().position, parcel.drops()
     facts = parcel.length, parcel.periodic
     r = 0.5 * parcel.diameter
@@ -138,7 +138,7 @@ def deepest_overlap(parcel):
 
 
 def out_of_its_cells(parcel):
-    """Return how far a drop is from the slots in which the engine thinks it stands [length]: then none would hit it."""
+    """Return the distance of a drop from the slots that the engine has for it [length]: molecules would miss it."""
     cells, furthest = parcel._cells, -math.inf
     for k in np.flatnonzero(parcel._drops.alive):
         i = parcel._drops.record[k]
@@ -165,7 +165,7 @@ def is_lawful(parcel, waters, drops):
     assert (held >= 0).all()
     assert len(now.position) == parcel.number == len(parcel.mass)
     assert len(centre) == len(drops.position) - parcel.merged >= 1
-    # what rounding leaves when the last molecule takes all
+    # the rounding error that is left when the last molecule takes all energy
     assert parcel.liquid_energy >= -1e-11
     assert parcel.ledger() < 1e-10
     # size and mass follow what they hold, and nothing is lost where two become one
@@ -197,12 +197,12 @@ def state(parcel):
     return [array.tobytes() for array in (*arrays, *drops, *flying(parcel))], numbers, parcel.wall_hits.tolist()
 
 
-# ------------------------------------------------------------------ their books, event by event
+# ------------------------------------------------------------------ their balances, event by event
 
 
 @pytest.fixture
 def by_single_events(monkeypatch):
-    """Let a box hand back control after every event."""
+    """Make a box return after every event."""
     monkeypatch.setattr(drop_parcelset, "_CHUNK", 1)
 
 
@@ -328,7 +328,7 @@ def test_a_piston_that_would_crush_a_drop_is_stopped():
 @pytest.mark.parametrize("seed", [1, 4, 8])
 @pytest.mark.parametrize("walls", [SMOOTH, pytest.param(TURNING, marks=own_kernels)], ids=["walled", "periodic"])
 def test_a_drop_that_has_swallowed_another_stands_in_its_cells_and_is_hit_by_all(walls, seed):
-    # it stands where the mass of both was, a radius away, among so many molecules that there are many cells
+    # it is at the centre of mass of both, a radius away, among so many molecules that there are many cells
     centres = ((3.0, 4.0, 4.0), (5.2, 4.0, 4.0))
     drops = nuclei(60, centres, water(1e-12), nucleus_mass=1.0)
     parcel = damp(drops, 200, 10, seed=seed, walls=walls)
@@ -340,7 +340,7 @@ def test_a_drop_that_has_swallowed_another_stands_in_its_cells_and_is_hit_by_all
     _, (radius,), (held,) = parcel.drops()
     assert held == parcel.liquid
     assert radius**3 == pytest.approx(2 * 0.5**3 + held * 0.3**3, rel=1e-12)
-    # those that stood where it is larger now fly out, and from then on nobody comes in
+    # molecules within the larger radius fly out, and from then on no molecule comes in
     parcel.advance(parcel.time + 20.0)
     assert parcel._cells.number_x > 2
     for _ in range(100):
@@ -398,7 +398,7 @@ def test_the_surface_that_two_drops_lose_warms_them_and_their_salts_add_up(by_si
     assert warm[last + 1] - warm[last] >= surface[last] - surface[last + 1]
 
 
-# ------------------------------------------------------------------ hardly anything
+# ------------------------------------------------------------------ very few molecules
 
 
 @many_events
@@ -454,7 +454,7 @@ def test_drops_that_boil_leave_their_nuclei():
     is_lawful(parcel, 20, drops)
 
 
-# ------------------------------------------------------------------ how it is looked at and cut
+# ------------------------------------------------------------------ runs watched and divided
 
 
 @many_events
@@ -483,7 +483,7 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name, monkeypatch)
         assert state(parcel) == state(whole)
 
 
-# ------------------------------------------------------------------ what it tells
+# ------------------------------------------------------------------ readings
 
 
 def test_drops_tell_what_they_hold():

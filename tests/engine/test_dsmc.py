@@ -1,5 +1,5 @@
-"""Direct simulation Monte Carlo keeps its counters, keeps its molecules at home, and does the same on any
-number of threads; what chance has no hand in, it does as the exact engine does.
+"""Direct simulation Monte Carlo keeps its counters, keeps its molecules in the box, and does the same on any
+number of threads; what does not depend on chance, it does as the exact engine does.
 """
 
 import math
@@ -21,7 +21,7 @@ ALL_LAWS = (*SMOOTH[:2], RAMP, HeatBath(1.5), HeatBath(1.0), Piston())
 
 
 class Pulse:
-    """A driver that moves the piston out and in, by what it sees of the gas."""
+    """A driver that moves the piston out and in, depending on the state of the gas."""
 
     interval = 3.3
 
@@ -30,7 +30,7 @@ class Pulse:
 
 
 def box(number, side=30.0, *, kT=1.0, seed=5, **changes):
-    """Return a gas at random places, molecules of it overlapping as chance will have it."""
+    """Return a gas at random places, whose molecules may overlap."""
     rng = np.random.default_rng(seed)
     made = {
         "position": 0.5 + (side - 1.0) * rng.random((number, 3)),
@@ -43,7 +43,7 @@ def box(number, side=30.0, *, kT=1.0, seed=5, **changes):
 
 
 def everything(number=12_000, **changes):
-    """Return a gas with all that there is: every law of walls, gravity, rotation, a piston that is driven."""
+    """Return a gas with all features: every law of walls, gravity, rotation, a piston with a driver."""
     spin = np.random.default_rng(6).exponential(size=number)
     return box(
         number, 60.0, walls=ALL_LAWS, gravity=0.02, driver=Pulse(), rotation=2, rotational_energy=spin,
@@ -52,7 +52,7 @@ def everything(number=12_000, **changes):
 
 
 def counters(parcel):
-    """Return all that a run leaves, as bytes."""
+    """Return all results of a run, as bytes."""
     now = parcel.snapshot()
     told = (*now[1:], parcel.wall_heat, parcel.wall_impulse, parcel.wall_hits, [parcel.work, parcel.contacts, now.time])
     return b"".join(np.asarray(a, np.float64).tobytes() for a in told)
@@ -116,7 +116,7 @@ def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
 )
 def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(walls, gravity):
     number, side = (BLOCK + 500, 8.0) if COMPILED else (40, 8.0)
-    small = 1e-7  # so that there are cells to be sorted into, and nobody meets anybody
+    small = 1e-7  # so that there are cells, and no collisions
     gas = box(number, side, walls=walls, gravity=gravity, diameter=small, dt=0.2)
     start = gas.snapshot()
     exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=gravity, diameter=small)

@@ -1,4 +1,4 @@
-"""Machine code is kept on disk, and never outlives the sources it was made from."""
+"""Machine code is kept on disk, and is never used when its sources have changed."""
 
 import os
 import shutil
@@ -41,7 +41,7 @@ needs_numba = pytest.mark.skipif(not jit.COMPILED, reason="nothing is compiled, 
 
 @pytest.fixture
 def tree(tmp_path):
-    """Return a package tree of its own that holds a copy of the engine and three files more."""
+    """Return a separate package tree with a copy of the engine and three more files."""
     engine = tmp_path / "tree" / "atmosbox" / "engine"
     shutil.copytree(ENGINE, engine, ignore=shutil.ignore_patterns("__pycache__"))
     (engine.parent / "__init__.py").write_text("", encoding="utf-8")
@@ -74,7 +74,7 @@ def edit(tree, name, old, new):
     assert old in source
     before = path.stat()
     path.write_text(source.replace(old, new), encoding="utf-8")
-    # a clock too coarse to tell, or a checkout that sets times back, must not matter
+    # a coarse clock, or a checkout that sets times back, must not matter
     os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
@@ -153,7 +153,7 @@ def test_the_home_of_caches_is_tried_before_the_temporary_folder(tmp_path, monke
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there, a user without a home is another matter")
 def test_a_user_without_a_home_has_a_folder_among_the_temporary_files(tmp_path, monkeypatch):
-    """In a container the user may be a number that is in no list, without a home."""
+    """In a container the user may be a number without an account and without a home folder."""
     import pwd
 
     def unknown(number):
@@ -238,7 +238,7 @@ class Outer(NamedTuple):
 
 @jit.kernel
 def fallen(x, outer, modes):
-    """Return a number; without gravity, the code of the branch has no meaning."""
+    """Return a number; the branch for gravity cannot be compiled, so it must be left out where there is none."""
     if modes.gravity and modes.drops < 2:
         x -= outer.inner.no_such_field
     if not modes.rotation:
@@ -249,7 +249,7 @@ def fallen(x, outer, modes):
 
 @pytest.fixture
 def nothing_kept(monkeypatch):
-    """Let every kernel be compiled by the test itself: another test's machine code on disk would say nothing here."""
+    """Make the test compile every kernel itself: machine code of another test on disk would prove nothing here."""
     monkeypatch.setattr(compiler, "_CACHE", None)
 
 

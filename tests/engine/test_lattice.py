@@ -1,4 +1,4 @@
-"""Molecules on a lattice: apart, inside, and denser than any random start."""
+"""Molecules on a lattice: without overlap, inside the box, and denser than any random start."""
 
 import math
 

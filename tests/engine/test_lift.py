@@ -1,4 +1,4 @@
-"""A piston that follows a pressure is turned by compiled code as its driver would turn it from Python."""
+"""A piston that follows a pressure is moved by compiled code as its driver would move it from Python."""
 
 import copy
 import math
@@ -17,7 +17,7 @@ TAU = 2.0
 
 
 class InPython(FollowPressure):
-    """The same law; of another type, so that it is asked in Python."""
+    """The same law; as another type, so that it is called in Python."""
 
 
 def gas(planar=False):
@@ -51,7 +51,7 @@ BOXES = {
 
 
 def pressure_of(name):
-    """Return about the pressure that the box has at the start."""
+    """Return approximately the pressure of the box at the start."""
     driver = follow(1.0, 1.0)
     return driver.pressure(BOXES[name](driver))
 

@@ -1,4 +1,4 @@
-"""The laws of the liquid: how fast it emits, with which energies, and what its ledger keeps.
+"""The laws of the liquid: how fast molecules leave, with which energies, and what is counted.
 
 Each moment is held to 4 standard errors, computed from the distribution itself: a false alarm in 16 000 seeds per
 check. Each Kolmogorov-Smirnov test gives a false alarm in 10 000.
@@ -52,7 +52,7 @@ def rate_at(ledger, energy):
 
 
 def microcanonical(energy, number, nuclei, phi=PHI, sticking=1.0):
-    """Return the rate of leaving, written down a second time."""
+    """Return the rate of evaporation, from a second, independent formula."""
     capacity = C_L * number + nuclei
     rest = capacity - C_L
     flux = sticking * AREA * K / math.sqrt(2.0 * math.pi * MASS)
@@ -69,7 +69,7 @@ def hertz_knudsen(kT, substance=WATER):
 
 
 def held(sample, mean, variance):
-    """Tell whether the sample's mean lies within 4 standard errors of the right one."""
+    """Return whether the sample's mean lies within 4 standard errors of the right one."""
     return abs(np.mean(sample) - mean) < 4.0 * math.sqrt(variance / len(sample))
 
 
@@ -115,7 +115,7 @@ def test_at_rest_the_rate_nears_that_of_hertz_and_knudsen_as_one_over_the_size(k
         assert off < 0.6 * previous
         previous = off
     assert off < 0.01 * max(abs(leading), 1.0)
-    # a million molecules leave no correction that could be seen; logarithms of 1e8 leave eight digits
+    # for a million molecules the correction is negligible; logarithms of 1e8 leave eight digits
     assert rate_at(ledger_of(1_000_000), 1e6 * C_L * kT) == pytest.approx(hertz_knudsen(kT), rel=1e-6)
 
 
@@ -197,7 +197,7 @@ def test_what_leaves_takes_its_share_by_the_number_of_degrees(number, nuclei):
         assert taken == pytest.approx(np.ones(NUMBER), rel=1e-14)
     else:
         assert stats.kstest(taken, "beta", args=(SHAPE, rest)).pvalue > 1e-4
-    # the two share it as Gamma(2) to Gamma(3/2), whatever stays behind
+    # the two share it as Gamma(2) to Gamma(3/2), whatever energy stays in the liquid
     share = flight / (flight + spin)
     assert stats.kstest(share, "beta", args=(2.0, 1.5)).pvalue > 1e-4
     assert held((share - 2.0 / 3.5) * (taken - taken.mean()), 0.0, np.var(share) * np.var(taken) + 1e-30)
@@ -238,7 +238,7 @@ def test_the_spectrum_of_a_liquid_that_was_cold_at_the_start_keeps_to_its_bins()
     assert room.sum() == 10
 
 
-# ------------------------------------------------------------------ what is booked
+# ------------------------------------------------------------------ counters
 
 
 def test_who_comes_and_leaves_takes_the_binding_energy_along():

@@ -1,4 +1,4 @@
-"""Air with water in it keeps its books event by event, does the same however it is cut, and bears hardly any of either.
+"""Moist air keeps its balances at every event, does the same however a run is divided, also with very few molecules.
 
 The boxes below need six sets of kernels in all: each new set costs seconds of compilation.
 """
@@ -80,7 +80,7 @@ def moist(liquid, air=20, vapour=10, *, sides=(5.5, 5.5, 6.0), kT=1.0, seed=9, *
 
 
 def box(name, **changes):
-    """Return a box by the name of what is special of it."""
+    """Return a box by the name of its special feature."""
     facts = {"number": 30, "nuclei": 50.0, "rain": 0.02, "sticking": 0.8}
     mist, pool = {"area": 60.0} | facts, facts
     lift = (*TURNING[:4], Specular(), Piston())
@@ -132,12 +132,12 @@ def is_lawful(parcel, waters):
     assert min(parcel.liquid, parcel.vapour, parcel.condensed, parcel.evaporated, parcel.rained) >= 0
     assert parcel.liquid + parcel.vapour + parcel.rained == waters
     assert len(now.position) == parcel.number == len(parcel.mass) == len(parcel.diameter)
-    # what rounding leaves when the last molecule takes all
+    # the rounding error that is left when the last molecule takes all energy
     assert parcel.liquid_energy >= -1e-11
     assert parcel.ledger() < 1e-10
 
 
-# ------------------------------------------------------------------ its books, event by event
+# ------------------------------------------------------------------ its balances, event by event
 
 
 def happened(parcel):
@@ -146,7 +146,7 @@ def happened(parcel):
 
 @pytest.fixture
 def by_single_events(monkeypatch):
-    """Let a box hand back control after every event."""
+    """Make a box return after every event."""
     monkeypatch.setattr(moist_parcelset, "_CHUNK", 1)
 
 
@@ -181,7 +181,7 @@ def test_energy_and_water_close_at_every_event(name, by_single_events):
     if "piston" in name:
         assert parcel.work != 0.0
     if "pool" in name:
-        # each that meets the pool is counted, and what it brings and takes is felt by the floor
+        # each molecule that hits the pool is counted, and its impulse acts on the floor
         assert parcel.wall_hits[4] >= parcel.condensed + parcel._reservoir.count[AIR_MET]
         assert parcel.wall_impulse[4] > 0.0
     is_lawful(parcel, waters)
@@ -206,7 +206,7 @@ def test_it_rains_only_what_the_liquid_does_not_keep(by_single_events):
             fell.append(parcel.liquid)
 
     parcel.advance(40.0, watch=check)
-    # one more than it keeps can fall, no more
+    # at most one more than the excess can fall as rain
     assert min(fell) >= 12
     assert len(fell) == parcel.rained > 15
     is_lawful(parcel, 40)
@@ -274,7 +274,7 @@ def test_a_piston_may_move_over_hardly_any_water(kind, number, vapour, nuclei, s
         is_lawful(parcel, number + vapour)
 
 
-# ------------------------------------------------------------------ how it is looked at and cut
+# ------------------------------------------------------------------ runs watched and divided
 
 
 @many_events
@@ -318,7 +318,7 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
 
 @many_events
 def test_cutting_changes_nothing_while_all_water_is_in_the_liquid():
-    # no air, and vapour only now and then: the molecules alone know of no next event
+    # no air, and only sometimes vapour: often no molecule has a next event
     def new():
         return moist(Mist(water(1e-4), number=8, nuclei=10.0, area=100.0), 0, 0, seed=3)
 
@@ -399,7 +399,7 @@ def test_all_vapour_condenses_where_none_can_leave():
     parcel = moist(Mist(water(1e-30), nuclei=50.0, area=60.0), 20, 10)
     parcel.advance(100.0)
     assert (parcel.vapour, parcel.liquid, parcel.evaporated, parcel.number) == (0, 10, 0, 20)
-    # what it was bound by warms all that is left: the liquid has a heat capacity of 140, the air of 50
+    # the binding energy warms the rest: the liquid has a heat capacity of 140, the air of 50
     values = []
     for k in range(2000):
         parcel.advance(101.0 + k)
@@ -530,7 +530,7 @@ def test_a_piston_may_compress_the_mist_until_it_would_crush_it():
     is_lawful(parcel, 30)
 
 
-# ------------------------------------------------------------------ what it tells
+# ------------------------------------------------------------------ readings
 
 
 @many_events
@@ -556,7 +556,7 @@ def test_a_whole_number_may_be_given_as_a_decimal():
     assert moist(Mist(water(), number=3.0)).liquid == 3
 
 
-# ------------------------------------------------------------------ what dry air pays
+# ------------------------------------------------------------------ costs for dry air
 
 
 def test_dry_air_never_hears_of_water():

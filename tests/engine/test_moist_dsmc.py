@@ -1,4 +1,4 @@
-"""Air with water in it keeps its counters step by step, does the same on any number of threads and however it is cut.
+"""Moist air keeps its counters at every step, does the same on any number of threads and however a run is divided.
 
 The boxes below need six sets of kernels in all: each new set costs seconds of compilation.
 """
@@ -40,7 +40,7 @@ def water(saturation=0.1, **changes):
 
 
 class Pulse:
-    """A driver that moves the piston up and down, and a little by what it sees of the parcel."""
+    """A driver that moves the piston up and down, and a little by the state of the parcel."""
 
     interval = 0.75
 
@@ -69,7 +69,7 @@ def moist(liquid, air=20, vapour=10, *, sides=(5.5, 5.5, 6.0), kT=1.0, seed=9, *
 
 
 def box(name, **changes):
-    """Return a box by the name of what is special of it."""
+    """Return a box by the name of its special feature."""
     facts = {"number": 30, "nuclei": 50.0, "rain": 0.02, "sticking": 0.8}
     mist, pool = {"area": 60.0} | facts, facts
     cases = {
@@ -87,7 +87,7 @@ by_name = pytest.mark.parametrize("name", NAMES)
 
 
 def many(name, **changes):
-    """Return so many molecules that threads share them."""
+    """Return a number of molecules that is large enough for several threads."""
     facts = {"number": 3000, "nuclei": 50.0, "rain": 0.01, "sticking": 0.8}
     liquid = Mist(water(0.2), area=3000.0, **facts) if name == "mist" else Pool(water(0.2), **facts)
     return moist(liquid, 8000, 1000, sides=(30.0, 30.0, 20.0), walls=LIFT, driver=Pulse(), **changes)
@@ -112,9 +112,9 @@ def is_lawful(parcel, waters):
     assert len(now.position) == n == len(parcel.mass) == len(parcel.diameter) == parcel.present.sum()
     names = parcel._columns.identity[:n]
     assert np.array_equal(np.sort(names), np.flatnonzero(parcel.present))
-    # each kind of molecule keeps its number: what stands in the columns is what the list says of it
+    # the number of molecules of each kind is constant, and the columns agree with the list
     assert np.array_equal(parcel._gas.masses[parcel._columns.kind[:n]], parcel._mass[names])
-    # what rounding leaves when the last molecule takes all
+    # the rounding error that is left when the last molecule takes all energy
     assert parcel.liquid_energy >= -1e-11
     assert parcel.ledger() < 1e-10
 
@@ -143,7 +143,7 @@ def test_energy_and_water_close_at_every_step(name):
     if "piston" in name:
         assert parcel.work != 0.0
     if "pool" in name:
-        # each that meets the pool is counted, and what it brings and takes is felt by the floor
+        # each molecule that hits the pool is counted, and its impulse acts on the floor
         assert parcel.wall_hits[4] == parcel.condensed + parcel._reservoir.count[AIR_MET]
         assert parcel.wall_impulse[4] > 0.0
     is_lawful(parcel, 40)
@@ -167,7 +167,7 @@ def test_it_rains_only_what_the_liquid_does_not_keep():
         parcel.advance((parcel.steps + 1) * parcel.time_step)
         held += [parcel.liquid] * (parcel.rained > rained)
     assert parcel.rained > 15
-    # after it has rained within a step some may still have left, hardly ever many
+    # after rain within a step some molecules may still have evaporated, hardly ever many
     assert 10 <= min(held) <= 12
     is_lawful(parcel, 40)
 
@@ -200,7 +200,7 @@ def test_unlike_molecules_come_to_one_temperature():
     still = Mist(water(1e-300), number=0, area=1e-9)
     parcel = moist(still, 3000, 3000, sides=(30.0, 30.0, 30.0), walls=TURNING, kT=1.0)
     is_vapour = parcel.mass < 0.9
-    # all the energy of rotation is given to the air's flight
+    # the air starts with twice the velocity along x, out of equilibrium
     parcel._columns.vx[:6000][~is_vapour] *= 2.0
     parcel.advance(100.0)
     rows = []
@@ -244,7 +244,7 @@ def test_a_box_may_hold_hardly_any_water_and_air(kind, number, vapour, air, nucl
         is_lawful(parcel, number + vapour)
 
 
-# ------------------------------------------------------------------ how it is looked at, cut and shared
+# ------------------------------------------------------------------ runs watched, divided and shared by threads
 
 
 @many_steps
@@ -324,7 +324,7 @@ def test_without_any_water_air_is_dry(kind):
 
 @many_steps
 def test_without_water_and_liquid_all_is_as_in_dry_air_to_the_last_byte():
-    # of one kind, with a mist so thin that nobody ever meets it
+    # of one kind, with a mist so thin that no molecule ever hits it
     rng = np.random.default_rng(5)
     facts = {
         "position": 0.5 + 19.0 * rng.random((2000, 3)),
@@ -357,7 +357,7 @@ def test_all_vapour_condenses_where_none_can_leave():
     parcel = moist(Mist(water(1e-30), nuclei=50.0, area=60.0), 20, 10)
     parcel.advance(100.0)
     assert (parcel.vapour, parcel.liquid, parcel.evaporated, parcel.number) == (0, 10, 0, 20)
-    # what it was bound by warms all that is left: the liquid has a heat capacity of 140, the air of 50
+    # the binding energy warms the rest: the liquid has a heat capacity of 140, the air of 50
     values = []
     for k in range(2000):
         parcel.advance(101.0 + k)
@@ -424,7 +424,7 @@ def test_a_piston_may_compress_the_mist_until_it_would_crush_it():
     is_lawful(parcel, 30)
 
 
-# ------------------------------------------------------------------ what it tells
+# ------------------------------------------------------------------ readings
 
 
 def test_a_box_tells_what_it_holds():

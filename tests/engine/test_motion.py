@@ -1,4 +1,4 @@
-"""Free flight reaches planes when its equations say so, and keeps its digits where they nearly cancel."""
+"""Free flight reaches planes at the right times, with full precision where terms nearly cancel."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Those that overlap are pushed apart, and nobody else is moved."""
+"""Molecules that overlap are pushed apart, and no other molecules are moved."""
 
 import numpy as np
 import pytest

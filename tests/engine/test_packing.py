@@ -1,4 +1,4 @@
-"""How much of the space molecules fill, and what geometry alone forbids."""
+"""The packing fraction of molecules, and the largest that geometry allows."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A parcel of air refuses what no box can have, keeps its books, and does the same however it is watched or cut.
+"""A parcel of air refuses impossible boxes, keeps its balances, and does the same however a run is divided.
 
 The boxes below need the kernels that `test_reference` needs, and no others: each new set costs seconds of compilation.
 """
@@ -31,7 +31,7 @@ TURNING = (Periodic(),) * 6
 
 @dataclass
 class Pulse:
-    """A driver that moves the piston out and in, and remembers when it was asked."""
+    """A driver that moves the piston out and in, and records when it was called."""
 
     interval: float = 0.75
     speeds: tuple = (0.1, -0.15, 0.0, -0.05, 0.1)
@@ -52,7 +52,7 @@ def lattice(number, sides, diameter):
 
 
 def box(name, number=40, **changes):
-    """Return the arguments of a box: the names are those of the sets of kernels."""
+    """Return the arguments of a box, whose name is that of the set of kernels that it needs."""
     random = np.random.default_rng(9)
     images = name == "periodic rotation"  # so small a box that a molecule meets several images of another
     number, sides = (min(number, 16), (3.0, 3.1, 3.2)) if images else (number, (5.5, 5.5, 6.0))
@@ -107,7 +107,7 @@ def state(parcel):
 
 
 def least_gap(parcel):
-    """Return the smallest distance of two molecules less that of contact, looking at all pairs and images."""
+    """Return the smallest distance of two molecules minus that of contact, over all pairs and images."""
     position = parcel.snapshot().position
     away = position[:, None] - position[None, :]
     away -= np.array(parcel.periodic) * parcel.length * np.rint(away / parcel.length)
@@ -160,7 +160,7 @@ def test_every_single_contact_keeps_momentum_and_energy(name):
 
 @pytest.mark.parametrize("name", ["equal", "piston", "mixed"])
 def test_what_the_walls_take_up_is_what_the_molecules_lose(name):
-    # smooth walls: those that give heat also pull sideways
+    # smooth walls: heat baths also exert forces along the wall
     parcel = ParcelSet(**box(name, driver=None, walls=(*SMOOTH[:5], Piston() if name == "piston" else Specular())))
     mass = parcel.mass[:, None]
     start = np.sum(mass * parcel.snapshot().velocity, axis=0)
@@ -187,7 +187,7 @@ def test_a_driven_piston_is_one_constant_piston_after_another(name):
         assert now.velocity == pytest.approx(reference.velocity, abs=1e-6)
         length = (*arguments["length"][:2], reference.place(5))
         assert parcel.ceiling == pytest.approx(length[2])
-        # the reference goes on from the engine's state, so that chaos never matters
+        # the reference continues from the engine's state, so that chaos does not matter
         arguments |= {"position": now.position, "velocity": now.velocity, "length": length}
         hits = parcel.wall_hits[5]
     assert hits > 3
@@ -233,7 +233,7 @@ def test_a_crowd_in_one_cell_finds_room():
     assert parcel.ledger() < 1e-12
 
 
-# ------------------------------------------------------------------ how it is looked at and cut
+# ------------------------------------------------------------------ runs watched and divided
 
 
 @by_name
@@ -327,7 +327,7 @@ def test_a_run_that_is_interrupted_can_be_looked_at_and_go_on(monkeypatch):
 # ------------------------------------------------------------------ small and special boxes
 
 
-# none and one need kernels of their own
+# boxes with no or one molecule need further kernels
 FEW = [(name, number) for name in ("equal", "piston", "mixed", "periodic") for number in range(4)]
 FEW = [
     pytest.param(*few, marks=pytest.mark.validate if few[0] in ("piston", "periodic") and few[1] < 2 else ())
@@ -346,7 +346,7 @@ def test_a_box_may_hold_hardly_anything(name, number):
     assert repr(parcel).startswith(f"<ParcelSet: {number} molecules")
 
 
-@pytest.mark.validate  # one alone needs kernels of its own
+@pytest.mark.validate  # a single molecule needs further kernels
 def test_points_may_move_in_a_periodic_box():
     point = ParcelSet([[1, 2, 2]], [[1, 0.5, 0.25]], length=(4, 4, 4), walls=TURNING, diameter=0.0)
     point.advance(6.0)
@@ -402,7 +402,7 @@ def test_energy_is_that_of_its_parts():
     assert parcel.energy() == pytest.approx((9.0 + 2.0, 3.0, 0.5 * (2.0 + 12.0)))
 
 
-# ------------------------------------------------------------------ what it refuses
+# ------------------------------------------------------------------ refusals
 
 
 def test_molecules_that_touch_or_stand_at_a_wall_by_rounding_are_accepted():

@@ -1,4 +1,4 @@
-"""A molecule that condenses is nowhere, one that evaporates stands in its cells: all tables agree after every event.
+"""A molecule that condenses is in no cell, one that evaporates is in its cells: all tables agree after every event.
 
 The kernels are those of `test_moist`.
 """
@@ -59,7 +59,7 @@ def box(name, *, air=20, vapour=10, sides=(5.5, 5.5, 6.0), number=30, seed=9, su
 
 
 def as_written(kernel):
-    """Return the Python function of a kernel: numba tells calls with other modes apart in compiled code alone."""
+    """Return the Python function of a kernel: numba distinguishes calls with other modes in compiled code only."""
     return getattr(kernel, "py_func", kernel)
 
 
@@ -94,7 +94,7 @@ def cells_it_overlaps(parcel, i):
 
 
 def tables_agree(parcel):
-    """Assert that cells, calendar, clocks and the list of the absent tell of the same molecules."""
+    """Check that cells, calendar, clocks and the list of absent molecules agree."""
     assert parcel._modes.rows or parcel._crowded
     absent = np.isinf(parcel._fields["clock"])
     top = int(parcel._reservoir.top[0])
@@ -155,7 +155,7 @@ def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
         gap[newest] = 0.0
         assert gap.min() > -1e-9
         if "pool" in name:
-            # it stands on the floor and goes up
+            # it is on the floor and moves up
             assert place[newest, 2] == 0.5 * DIAMETER
             assert m["vz"][newest] > 0.0
 

@@ -21,7 +21,7 @@ def random_state(seed=11):
 
 
 def held(sample, mean, variance):
-    """Tell whether the sample's mean lies within 4 standard errors of the right one."""
+    """Return whether the sample's mean lies within 4 standard errors of the right one."""
     return abs(np.mean(sample) - mean) < 4.0 * math.sqrt(variance / len(sample))
 
 
@@ -58,7 +58,7 @@ def test_uniform_numbers_are_splitmix64():
 
 
 def unmix(word):
-    """Return the state from which splitmix64 makes this word: its steps, undone."""
+    """Return the state from which splitmix64 makes this word, by inverting its steps."""
 
     def unshift(z, bits):
         x = z

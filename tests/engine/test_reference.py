@@ -1,8 +1,8 @@
-"""The exact engine does what its definition does: the same events in the same order, and the same velocities.
+"""The exact engine agrees with a reference implementation: the same events in the same order, and the same velocities.
 
-Hard spheres are chaotic, so two sound programs part after some tens of contacts per molecule. How far they can
-be compared is found case by case: the reference is run twice, once with all velocities nudged by one part in
-10^14 after each event, and the engine is held to it for as long as the nudged run follows.
+Hard spheres are chaotic, so two correct programs diverge after some tens of contacts per molecule. How far they
+can be compared is found case by case: the reference is run twice, once with all velocities nudged by one part in
+10^14 after each event, and the engine is compared with it for as long as the nudged run agrees.
 """
 
 import dataclasses
@@ -36,10 +36,10 @@ class Family:
     periodic: str = ""
     piston: bool = False
     sides: tuple[float, float] = (2.5, 6.0)  # in diameters of the largest molecule
-    numbers: tuple[int, ...] = (2, 3, 4, 6, 8, 10, 12)  # one alone needs kernels of its own
+    numbers: tuple[int, ...] = (2, 3, 4, 6, 8, 10, 12)  # a single molecule needs further kernels
 
 
-CROWDS = (2, 8, 12, 16)  # in a box without walls little happens to a few
+CROWDS = (2, 8, 12, 16)  # in a box without walls few molecules have few events
 FAMILIES = {
     "equal": Family(numbers=(1, 2, 3, 4, 6, 8, 10, 12)),
     "equal, gravity, piston": Family(gravity=True, piston=True),
@@ -54,7 +54,7 @@ FAMILIES = {
 
 
 def places(random, sides, diameter, periodic, planar):
-    """Return lawful centres for as many of the molecules as find a place at random."""
+    """Return centres without overlap for as many molecules as find a place at random."""
     centres = []
     for sigma in diameter:
         low = np.where(periodic, 0.0, 0.5 * sigma)
@@ -150,7 +150,7 @@ def participants(event):
 
 
 def agree(box):
-    """Hold the engine to the reference, event by event; return how many could be compared."""
+    """Compare the engine with the reference, event by event; return the number of events that could be compared."""
     history = comparable(box)
     parcel = ParcelSet(**box)
     sides, gravity = np.array(box["length"]), np.array([0.0, 0.0, box["gravity"]])

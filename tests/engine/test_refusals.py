@@ -1,6 +1,6 @@
-"""What the engines refuse: a number by its name and value, with what to give instead; a contradiction in a sentence.
+"""Refusals of the engines: a number by its name and value, with what to give instead; a contradiction in a sentence.
 
-Every engine is given what is no number at all by test_assessment, too.
+Test_assessment also gives every engine values that are not numbers.
 """
 
 import math
@@ -53,7 +53,7 @@ class Pulse:
 
 
 def box(engine):
-    """Return what makes two molecules at rest in a box of an engine."""
+    """Return a function that makes a box of an engine with two molecules at rest."""
 
     def make(**changes):
         facts = {"position": [[1.0, 2, 2], [3.0, 2, 2]], "velocity": np.zeros((2, 3)), "length": (4.0, 4.0, 4.0)}
@@ -124,7 +124,7 @@ def stirred(walls=COLUMN, **changes):
 exact, stepped, classic, dsmc = map(box, (ParcelSet, SteppedParcel, ClassicParcel, DsmcParcel))
 
 NUMBERS = [
-    # what is made, its argument, what a refusal calls that, values that it cannot have
+    # the object, its argument, the name of that in a refusal, values that are refused
     (exact, "mass", "mass", (0.0, -2.0, NAN, INF)),
     (exact, "diameter", "diameter", (-1.0, INF)),
     (exact, "rotation", "rotation", (-2.0, NAN)),
@@ -193,7 +193,7 @@ def test_an_impossible_number_is_refused_with_its_name_its_value_and_a_way_out()
 
 
 def refuses(make, *cases):
-    """Assert that each change of a box is refused with these words."""
+    """Check that each change of a box is refused with these words."""
     for changes, words in cases:
         with pytest.raises(RefusedError, match=words):
             make(**changes)

@@ -1,7 +1,7 @@
-"""No contact is missed: the glance leaves out nobody who is met, and the engine meets next whom all pairs say it must.
+"""No contact is missed: the glance at copies leaves out no collision partner, and the next contact is the right one.
 
-The oracle of whole boxes is not another run, which chaos would part from it: it is the first contact of all pairs, in
-double precision, from the state in which the engine itself stands.
+Whole boxes are not compared with another run, which would diverge by chaos, but with the first contact of all pairs, in
+double precision, computed from the engine's own state.
 """
 
 import functools
@@ -22,7 +22,7 @@ SMOOTH = (Specular(),) * 6
 
 @kernel(entry=True)
 def glance_at(values, place, velocity, since, slack, within, seen):
-    """Note which of the copies are named, each looked at by a molecule of its own."""
+    """Record which of the copies are found, each checked by a separate molecule."""
     for row in range(values.shape[0]):
         seen[row] = glance(
             values.reshape(-1), row * 7 * LANES, False, (place[row, 0], place[row, 1], place[row, 2]),
@@ -45,7 +45,7 @@ def unit(random, number):
     st.sampled_from([1.0, 1e-6, 1e-25]),
 )
 def test_a_glance_leaves_out_nobody_who_is_met(seed, width, head_on, fall, slow):
-    """Pairs are made at the moment when they meet, and taken back to one at which they share a cell."""
+    """Pairs are made at the moment of contact, and moved back in time to a moment at which they share a cell."""
     random = np.random.default_rng(seed)
     number = 40 * LANES
     top = 2.0
@@ -124,7 +124,7 @@ def all_pairs(number):
 
 
 def next_pair(parcel):
-    """Return which two molecules touch soonest, of those that reach no wall before, and when [time from now]."""
+    """Return the two molecules that touch first, of those that reach no wall before, and when [time from now]."""
     _, x, v, _ = parcel.snapshot()
     radius = 0.5 * parcel.diameter
     speed = np.abs(v)
@@ -148,7 +148,7 @@ def next_pair(parcel):
 
 
 def misses_none(parcel, looks, step):
-    """Assert that the two who must touch next do so, unless one is met by another before; return how often they did."""
+    """Check that the pair that must touch next does, unless a third molecule comes first; return how often it did."""
     seen = 0
     for _ in range(looks):
         parcel.advance(parcel.time + step)
@@ -197,14 +197,14 @@ def test_no_contact_of_a_molecule_at_a_thousand_thermal_speeds_is_missed():
     speeds = np.sqrt((parcel.snapshot().velocity ** 2).sum(axis=1))
     assert np.sort(speeds)[-2] < parcel._cells.copies.epoch[2] < speeds.max()
     assert misses_none(parcel, 150, 2e-5) > 30
-    # and so until its energy is shared by all
+    # and so on until its energy is shared by all
     assert misses_none(parcel, 50, 1e-3) > 10
     assert parcel.ledger() < 1e-12
 
 
 @many_events
 def test_a_copy_of_one_who_is_faster_than_the_bound_is_nowhere():
-    """Rounding would seldom miss a contact of it, so that no run tells: what is written down is looked at."""
+    """Rounding would rarely make it miss a contact, so no run would show the error: the stored values are checked."""
     made = gas(300, (21.0,) * 3)
     made["velocity"][150] = 1000.0 * np.array([0.6, 0.48, 0.64])
     parcel = ParcelSet(**made)
@@ -235,7 +235,7 @@ def test_none_is_missed_under_strong_gravity_and_a_piston_that_crushes():
     while parcel.ceiling > 7.0:
         misses_none(parcel, 3, 0.01)
         parcel.advance(parcel.time + 0.5)
-    parcel.set_piston_velocity(3.0)  # and above the cells that there are
+    parcel.set_piston_velocity(3.0)  # and above the existing cells
     assert misses_none(parcel, 100, 0.3) > 10
     assert parcel.ceiling > 60.0
     assert parcel.ledger() < 1e-10
@@ -243,7 +243,7 @@ def test_none_is_missed_under_strong_gravity_and_a_piston_that_crushes():
 
 @many_events
 def test_none_is_missed_where_layers_follow_molecules_that_fall():
-    # spread evenly over ten scale heights: in layers of equilibrium there would be too many for the rows high up
+    # spread evenly over ten scale heights: with the layers of equilibrium, rows high up would be too short
     parcel = ParcelSet(**gas(800, (24.0, 24.0, 200.0), walls=SMOOTH, gravity=0.3))
     layers = []
     while parcel.time < 30.0:

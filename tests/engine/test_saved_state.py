@@ -35,14 +35,14 @@ SMOOTH = (Specular(),) * 6
 
 
 def gas(number=64, side=12.0, seed=5):
-    """Return the places, on a lattice, and the velocities of a gas."""
+    """Return positions on a lattice, and velocities, of a gas."""
     random = np.random.default_rng(seed)
     site = np.stack(np.meshgrid(*[np.arange(5)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     return (random.permutation(site)[:number] + 0.5) * side / 5, random.normal(size=(number, 3))
 
 
 def lifted():
-    """Return what a gas under a piston is given that follows a falling pressure."""
+    """Return the arguments of a gas under a piston that follows a falling pressure."""
     follow = FollowPressure([0.0, 400.0], [0.036, 0.018], mean_free_time=2.0)
     return {"length": (12.0,) * 3, "walls": (*SMOOTH[:5], Piston()), "driver": follow, "rotation": 2.0}
 
@@ -90,7 +90,7 @@ def through_pickle(box):
 
 
 def through_a_file(box, make):
-    """Return another box in the state of this one; the state has been text and bytes meanwhile."""
+    """Return another box in the state of this one, after the state was converted to text and bytes and back."""
     state = box.state()
     memory = {name: np.frombuffer(piece.tobytes(), np.uint8) for name, piece in state.memory.items()}
     twin = make()
@@ -99,7 +99,7 @@ def through_a_file(box, make):
 
 
 def bits(box):
-    """Return all that a box tells, as bytes."""
+    """Return all readings of a box, as bytes."""
     told = [*box.snapshot()[1:], box.wall_impulse, box.wall_heat, box.virial, box.ledger(), box.contacts, box.ceiling]
     return box.time, b"".join(np.asarray(each).tobytes() for each in told)
 

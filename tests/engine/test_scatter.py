@@ -1,4 +1,4 @@
-"""Molecules scattered at random: inside their walls, apart, and as thin above as an atmosphere."""
+"""Molecules scattered at random: inside their walls, without overlap, and with the density of an atmosphere."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A schedule is a polygon in time: its corners, and what it refuses."""
+"""A schedule is piecewise linear in time: its corners, and what is refused."""
 
 import math
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from atmosbox.engine.core.walls import new_walls, wall_kT
 
 
 def kT_at(schedule, times):
-    """Return what a wall under this schedule makes of it."""
+    """Return the schedule as a wall stores it."""
     walls = new_walls((*(Specular(),) * 4, HeatBath(schedule), Specular()), 1.0)
     return [float(wall_kT(walls, 4, time)) for time in times]
 
 
 @dataclass(frozen=True)
 class Zigzag:
-    """A schedule of somebody's own."""
+    """A user's own schedule."""
 
     corners: tuple = ((1.0, 1.0), (2.0, 3.0), (4.0, 2.0))
 

@@ -1,4 +1,4 @@
-"""The time-stepped engine finds every pair, keeps its books, and does the same however it is cut or shared out.
+"""The time-stepped engine finds every pair, keeps its balances, and does the same for any division and threads.
 
 The boxes below need few kernels: each new set of flags costs seconds of compilation. Most have all at once, or are
 equal molecules in a column with gravity.
@@ -92,14 +92,14 @@ BOXES = {
 
 
 def state(box):
-    """Return all that a run may differ in, as bytes."""
+    """Return everything in which runs can differ, as bytes."""
     now = box.snapshot()
     arrays = (now.position, now.velocity, now.rotational_energy, box.wall_impulse, box.wall_heat, box.virial)
     return b"".join(np.ascontiguousarray(a).tobytes() for a in arrays) + repr((box.contacts, box.receding)).encode()
 
 
 def boxes_but(other):
-    """Return a mark that tries every box, that one in the validate tier: each compiles a set of kernels of its own."""
+    """Return a mark that tests every box, the named one in the validate tier: each compiles its own set of kernels."""
     params = [pytest.param(name, marks=pytest.mark.validate if name == other else ()) for name in BOXES]
     return pytest.mark.parametrize("name", params)
 

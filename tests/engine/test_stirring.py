@@ -1,4 +1,4 @@
-"""Parcels change places: what stays, what an exchange does to energies; a run does not depend on its cuts."""
+"""Parcels change places: what is conserved, how energies change; and runs do not depend on how they are divided."""
 
 import copy
 
@@ -51,7 +51,7 @@ def test_an_exchange_keeps_heights_and_momentum_and_books_its_work(rotation, wor
     gained = energy_of(box) - sum(energies)
     assert box.stirring_work == pytest.approx(gained, abs=1e-10)
     if works:
-        # an isothermal column is stable: to turn it over costs work, which is motion now and no height
+        # an isothermal column is stable: overturning it takes work, whose energy is now kinetic
         assert gained > 1.0
         assert box.energy()[2] == pytest.approx(energies[2], rel=1e-14)
     else:
@@ -62,7 +62,7 @@ def test_an_exchange_keeps_heights_and_momentum_and_books_its_work(rotation, wor
 
 @pytest.mark.parametrize("rotation", [0.0, 2.0])
 def test_a_parcel_that_rises_cools_by_the_law_of_poisson(rotation):
-    """One exchange: energies of what rises, and of what sinks, against the pressures of the weight above."""
+    """One exchange: energies of the rising and of the sinking parcel, from the pressures of the weight above."""
     box = column(STIRRING, rotation, kT=1.3)
     before = box.snapshot()
     order = np.argsort(before.position[:, 2])

@@ -1,4 +1,4 @@
-"""Each wall keeps its law: what it sends back, what it takes, and what it may not be.
+"""Each wall obeys its law: the velocities of molecules that it sends back, the heat that it takes, and refusals.
 
 Statistical checks have a fixed seed and accept within 4 standard errors, which come from the closed-form
 variances: each gives a false alarm for one seed in 16 000.
@@ -22,7 +22,7 @@ def random_state(seed=5):
 
 
 def held(sample, mean, variance):
-    """Tell whether the sample's mean lies within 4 standard errors of the right one."""
+    """Return whether the sample's mean lies within 4 standard errors of the right one."""
     return abs(np.mean(sample) - mean) <= 4.0 * math.sqrt(variance / len(sample))
 
 

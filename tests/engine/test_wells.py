@@ -1,4 +1,4 @@
-"""Molecules that attract each other: the same events as the reference, an energy that is kept, wells that are counted.
+"""Molecules that attract each other: events as in the reference, conserved energy, and the count of wells.
 
 Thermodynamics of the square well are in tests/physics/test_square_well.py.
 """
@@ -28,7 +28,7 @@ ROUND = (Periodic(),) * 6
 
 
 def few(seed, *, mixed, gravity, periodic, planar):
-    """Return what a box of a few molecules is made of, at random: arguments that engine and reference share."""
+    """Return random arguments for a box of a few molecules, for engine and reference."""
     random = np.random.default_rng(seed)
     number = int(random.choice([2, 3, 5, 8, 12]))
     sides = random.uniform(4.3, 6.5, 3)
