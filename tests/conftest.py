@@ -1,18 +1,18 @@
-"""The tiers of the suite, and what all tests share.
+"""The tiers of the suite, and the fixtures that all tests share.
 
 unmarked
     Everything that guards the code, a few minutes in all: ``python -m pytest``. Each physical law is held to
     the accuracy that its own sampling allows, with fixed seeds.
 ``@pytest.mark.validate``
-    Long statistical tests that narrow the error bars further. They are left out unless asked for:
+    Long statistical tests with smaller error bars. They are left out unless asked for:
     ``--validate`` runs them with the rest, ``-m validate`` alone, and a test named by its node id
     (``file.py::test_name``) runs in any case.
 ``@pytest.mark.soak``
     Runs of an hour, by hand: ``-m soak``. ``--soak 0.001`` makes them a thousandth as long, ``--soak-report FILE``
-    writes their figures down, line by line.
+    writes their results to a file, line by line.
 
-``--fuzz 100`` tries a hundred times as many examples of whatever hypothesis makes up, other ones each time; with
-``--soak-report FILE`` it says how many there were.
+``--fuzz 100`` tries a hundred times as many random examples in the tests with hypothesis, other ones each time; with
+``--soak-report FILE`` it writes how many there were.
 
 Timings are never tests; they live in ``benchmarks/``. Every warning is an error.
 """
@@ -29,7 +29,7 @@ from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "agg")
 
-# A kernel's first call compiles it, which no deadline should judge; and two runs of the suite test the same.
+# No deadline, since a kernel's first call compiles it; and no random seed, so that two runs test the same.
 settings.register_profile("atmosbox", deadline=None, derandomize=True)
 settings.load_profile("atmosbox")
 
@@ -63,7 +63,7 @@ def pytest_collection_modifyitems(config, items):
 
 
 def pytest_collection_finish(session):
-    """Exempt what is loaded by now from the garbage collector, which would go through it hundreds of times."""
+    """Exempt all objects loaded so far from the garbage collector, which would check them hundreds of times."""
     gc.collect()
     gc.freeze()
 
@@ -78,7 +78,7 @@ def pytest_sessionfinish(session):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Give all tests of a file to one worker: they share what they compile, and the site or the run of a fixture."""
+    """Give all tests of a file to one worker: they share compiled kernels, and the site or the run of a fixture."""
     from xdist.scheduler import LoadFileScheduling
 
     return LoadFileScheduling(config, log) if config.getoption("dist") == "load" else None
@@ -100,7 +100,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
 def name_of_browser():
-    """Return the browser that `ATMOSBOX_BROWSER` names, else one of this computer, None if it has none."""
+    """Return the browser that `ATMOSBOX_BROWSER` names, else one of this computer; None if there is none."""
     wanted = os.environ.get("ATMOSBOX_BROWSER")
     return wanted or next((found for name in BROWSERS if (found := shutil.which(name))), None)
 

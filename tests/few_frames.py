@@ -1,4 +1,4 @@
-"""Runs of a test cut into fewer frames: a run in as many as a scene has spends most of its time on what ends each."""
+"""Cut the runs of a test into fewer frames: with all frames of the scene, the ends of frames take most of the time."""
 
 from atmosbox import scenarios
 
@@ -6,7 +6,7 @@ __all__ = ["cut"]
 
 
 def cut(patch, frames):
-    """Set into how many frames scenes cut a run, and how many of them settle, for as long as a patch lasts.
+    """Set the number of frames of a scene's runs, and how many of them are for settling, while a patch lasts.
 
     ``frames`` has both numbers by scene; the second is None where a scene works it out.
     """

@@ -1,4 +1,4 @@
-"""What every case of a fuzz is held to: an end within some seconds of processor time; and how many cases there were."""
+"""Checks of every case of a fuzz test: it must end within some seconds of processor time; and counts of the cases."""
 
 import contextlib
 import signal
@@ -11,9 +11,9 @@ from typer import testing
 from atmosbox.cli import app
 
 CASES = Counter()
-"""How many cases there were, by what was fuzzed, and what became of them."""
+"""Number of cases, by what was fuzzed and by their outcome."""
 STATUSES = (0, 1, 2, 3, 130)
-COMMAND = typer.main.get_command(app)  # built once: to build it takes thirty times as long as to refuse a word
+COMMAND = typer.main.get_command(app)  # built once: this takes thirty times as long as refusing a word
 _LONGEST = 20.0
 
 
@@ -23,10 +23,9 @@ class Endless(BaseException):
 
 @contextlib.contextmanager
 def fuzz_case(kind):
-    """Count a case, and stop it after twenty seconds of processor time, however long it waited for other programs.
+    """Count a case, and stop it after twenty seconds of processor time; waiting for other programs does not count.
 
-    A library that never comes back to Python hears of no exception: it is killed, and the tests with it, after a
-    minute.
+    An exception cannot stop a library that never returns to Python: the whole test process is killed after a minute.
     """
 
     def stop(number, frame):
@@ -45,7 +44,7 @@ def fuzz_case(kind):
 
 
 def typed(kind, *words):
-    """Type a command in this process; return its result after making sure that it failed decently if it failed."""
+    """Type a command in this process; return its result after checking that a failure, if any, was one sentence."""
     with fuzz_case(kind), pytest.MonkeyPatch.context() as patch:
         patch.setattr(testing, "_get_command", lambda app: COMMAND)
         result = testing.CliRunner().invoke(app, [*words])

@@ -1,4 +1,4 @@
-"""What a short run of each scene ends in, as a digest; `state_digest.json` holds what it must be on every machine.
+"""Digests of the final state of a short run of each scene; `state_digest.json` holds the expected ones.
 
 ``python state_digest.py CASE...`` prints the digests of some cases, or of all, as JSON.
 """
@@ -17,7 +17,7 @@ __all__ = ["CASES", "digest"]
 
 
 class Case(NamedTuple):
-    """A scene with a few molecules, for which share of its time it runs, and its engine."""
+    """A scene with a few molecules, the share of its time that it runs, and its engine."""
 
     scene: str
     settings: dict[str, Any]
@@ -51,7 +51,7 @@ CASES = {
 
 
 def digest(name: str) -> str:
-    """Return a digest of all molecules and of all that was counted after a short run."""
+    """Return a digest of all molecules and all counters after a short run."""
     case = CASES[name]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a coarse step will do

@@ -1,4 +1,4 @@
-"""How accurate a run will be: what a user wishes, what is picked, what the report says, and whether the table is so."""
+"""Expected accuracy: what a user asks for, what is picked, what the report says, and whether the table is right."""
 
 import importlib.util
 import itertools
@@ -65,7 +65,7 @@ TABLES = {
 
 @pytest.fixture
 def hand_made(monkeypatch):
-    """Let the hand-made table be the one that comes with atmosbox."""
+    """Replace the table that comes with atmosbox by a hand-made one."""
     monkeypatch.setattr(cheapest_of, "load", lambda: TABLES)
 
 
@@ -424,7 +424,7 @@ def test_every_target_has_a_pick_in_every_measured_scene():
 def hold(scene, held, members):
     """Hold a way of running a scene to a fresh measurement with other seeds.
 
-    The scatter of the seeds is all that either measurement knows of its noise, so the bias is judged by Student's
+    Both measurements estimate their noise from the scatter of the seeds, so the bias is judged by Student's
     distribution (Welch) and the noise by Fisher's, both at the odds of four standard errors: a table that is right
     is called wrong with a probability of 6e-5 for each bias and each noise.
     """

@@ -1,4 +1,4 @@
-"""The stability assessment: what each engine makes of each extreme, and that an engine which fails is found out."""
+"""The stability assessment: how each engine does in each extreme case, and that an engine which fails is detected."""
 
 import importlib.util
 import itertools
@@ -39,7 +39,7 @@ SLOW = {
     *("crushing-piston", "piston-on-points", "supersonic-piston"),
     *("count-of-pi", "strong-gravity"),
 }
-"""What takes engines that go in steps more than a second or two, compilation included."""
+"""Cases that take engines with time steps more than a second or two, compilation included."""
 OWN_KERNELS = {
     *("water-at-95", "step-of-a-quarter", "bouncing-ball", "stack-at-rest", "three-walls-at-once", "two-molecules"),
     *("touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60", "drying-pool"),
@@ -47,9 +47,9 @@ OWN_KERNELS = {
     *("strong-gravity", "crushing-gravity", "tall-column"),
     *("crushing-piston", "piston-on-points", "supersonic-piston", "fleeing-piston"),
 }
-"""Boxes of which each needs two to ten seconds to compile, as no scene has such a box on the exact engine.
+"""Boxes that each take two to ten seconds to compile, because no scene has such a box on the exact engine.
 
-What remains has the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, with a mist.
+The other cases use the kernels of scenes: between smooth walls and heat baths, periodic, of unlike masses, with a mist.
 Empty boxes, pistons and unlike molecules are tried elsewhere, too: test_extremes,
 physics/test_piston, physics/test_column.
 """
@@ -58,17 +58,17 @@ IN_GRAVITY = {
     *("ball-at-rest", "bouncing-ball", "three-walls-at-once", "stack-at-rest"),
     *("crushing-gravity", "tall-column", "cold-floor"),
 }
-"""Between six walls these have two sets of kernels of their own on the stepped engine: see engine/test_stepped."""
+"""Between six walls these need two further sets of kernels of the stepped engine: see engine/test_stepped."""
 
 SECONDS = {
     *("drop-of-pure-water", "drop-of-salt", "drop-in-tenfold-vapour"),
     *("wells-of-no-depth", "narrow-wells", "wide-wells", "hot-wells"),
 }
-"""What takes the exact engine seconds; tests/physics asks the same of wells and curved drops in smaller boxes."""
+"""Cases that take the exact engine seconds; tests/physics tests wells and curved drops in smaller boxes."""
 
 
 def knows_nothing_of(name, family):
-    """Return whether an engine refuses a whole family of extremes, so that one of them tells as much as all."""
+    """Return whether an engine refuses a whole family of extremes, so that testing one of them is enough."""
     return all(name in stored()[each.name] and stored()[each.name][name].outcome == "refused" for each in family)
 
 
@@ -102,7 +102,7 @@ def test_the_stored_outcomes_are_those_of_the_extremes_there_are():
             assert row["exact"].outcome != "degrades", name
 
 
-# An engine that fails is found out
+# An engine that fails is detected
 
 
 @dataclass
@@ -277,7 +277,7 @@ def test_right_is_only_what_is_known_to_a_twentieth():
 
 
 class Run:
-    """What the rules on refusals need of a guarded run."""
+    """The part of a guarded run that the rules on refusals need."""
 
     def __init__(self, says):
         self.says = says

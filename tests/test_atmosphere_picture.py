@@ -25,7 +25,7 @@ def lift(height, **others):
 
 
 def drawn(dataset, until):
-    """Return what the legend says of a parcel that has come as far as a frame."""
+    """Return the text of the legend for a parcel at a frame."""
     axes, way = Figure(figsize=(2.0, 4.0)).add_subplot(), ascent_of(dataset)
     draw_ground(axes, way, NOTES)
     return [label for _, label in draw_way(axes, way, until, np.array([until]), NOTES)]
@@ -33,7 +33,7 @@ def drawn(dataset, until):
 
 def test_the_cloud_appears_when_the_parcel_has_passed_its_measured_base():
     height = np.linspace(0.0, 6e3, 61)
-    haze = np.where(height < 1.5e3, 3e-4, 2e-3)  # clusters of molecules below the base are no cloud
+    haze = np.where(height < 1.5e3, 3e-4, 2e-3)  # clusters of molecules below the cloud base are not a cloud
     run = lift(height, cloud_liquid_water_mixing_ratio=haze, cloud_base=1e5 * np.exp(-1.5e3 / 8e3))
     assert ascent_of(run).base == pytest.approx(1.5, abs=0.02)
     assert drawn(run, 10) == ["parcel"]

@@ -15,7 +15,7 @@ from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.core.state import Modes
 
 ROOT = Path(__file__).resolve().parents[1]
-# what liquid does is in kernels of its own, which a gas never loads; how rows are kept is no feature of a gas
+# liquid has kernels of its own, which a gas never loads; the layout of rows is not a feature of a gas
 LIQUID = {"phases", "pool", "drops", "rows"}
 
 

@@ -174,7 +174,7 @@ checkpoint.save(run_so_far(5))
     with pytest.raises(FileError, match=r"run\.nc does not exist: a run that was stopped left .*run\.part\.nc"):
         read(path)
 
-    assert len(list(tmp_path.glob(".*"))) == 2  # half a file, and the lock of who is no more
+    assert len(list(tmp_path.glob(".*"))) == 2  # half a file, and the lock of a process that has ended
     checkpoint = Checkpoint(path).begin()
     assert not list(tmp_path.glob(".*.tmp"))
     checkpoint.finish(run_so_far(3))
@@ -212,7 +212,7 @@ def test_the_lock_of_a_run_that_was_killed_counts_for_nothing(tmp_path):
 
 @pytest.mark.parametrize("locks", [True, False])
 def test_a_lock_without_the_systems_help_is_believed_as_long_as_its_owner_lives(tmp_path, monkeypatch, locks):
-    """A shared folder may know no locks, and the owner may be on another computer."""
+    """A shared folder may have no locks, and the owner may be on another computer."""
     lock = tmp_path / ".run.nc.lock"
     if not locks:
         monkeypatch.setattr(output_lock, "_hold", lambda opened: None)

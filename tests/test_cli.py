@@ -45,12 +45,12 @@ posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and terminals
 
 
 def atmosbox_in_process(*words, **environment):
-    """Run a command in this process; where it is no terminal, its width has no end."""
+    """Run a command in this process; the width of output that is not a terminal is unlimited."""
     return CliRunner().invoke(app, list(words), env={"COLUMNS": None, **environment})
 
 
 def command_line(*words, **options):
-    """Return the arguments of subprocess that run a command in a process of its own."""
+    """Return the arguments of `subprocess.run` for a command in a separate process."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), **options.pop("env", {})}
     return {"args": [sys.executable, "-m", "atmosbox", *words], "env": environment, "text": True, **options}
 
@@ -66,7 +66,7 @@ def finished(tmp_path_factory):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """An empty folder, which is the current one."""
+    """An empty folder, which is made the current one."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -396,7 +396,7 @@ READERS = [
 
 
 def test_no_path_is_a_bug(folder, no_computing, finished):
-    """Whatever stands where a file is read, the answer is one sentence, and nothing is written."""
+    """Whatever path a command is told to read, the answer is one sentence, and nothing is written."""
     Path("folder").mkdir()
     Path("empty.nc").touch()
     Path("text.nc").write_text("elapsed_time, temperature\n", encoding="utf-8")
@@ -444,7 +444,7 @@ WRITERS = [
 
 
 def test_no_output_path_is_a_bug(folder, no_computing, finished):
-    """Whatever stands where a file is written, the answer is one sentence, and nothing is written."""
+    """Whatever is at the path that a command is told to write, the answer is one sentence, and nothing is written."""
     Path("folder").mkdir()
     shutil.copy(finished, "whole.nc")
     before = sorted(folder.rglob("*"))
@@ -475,7 +475,7 @@ def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):
 
 
 def failing(monkeypatch, error):
-    """Let every run fail."""
+    """Make every run fail."""
 
     def execute(*args, **kwargs):
         raise error
@@ -535,7 +535,7 @@ def test_a_run_stopped_before_its_first_frame_keeps_nothing_and_says_so(folder, 
 
 
 def stop_after(monkeypatch, fraction):
-    """Let Ctrl-C be pressed when a run is so far."""
+    """Simulate Ctrl-C when a share of a run is done."""
     execute = runner.execute
 
     def stopped(*args, progress, **kwargs):
@@ -571,7 +571,7 @@ def test_a_stopped_run_tells_a_program_the_file_it_left(folder, monkeypatch, opt
 
 
 def press_ctrl_c_inside(monkeypatch, home, name, call):
-    """Let Ctrl-C be pressed while a function is called for the n-th time."""
+    """Simulate Ctrl-C in the n-th call of a function."""
     original, calls = getattr(home, name), []
 
     def pressed(*args, **kwargs):
@@ -601,7 +601,7 @@ def test_ctrl_c_while_the_finished_file_is_written_keeps_it(folder, monkeypatch)
 @posix
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_signal_stops_a_run_and_what_is_complete_is_kept(folder, number, status):
-    # a shell starts what runs in the background deaf to Ctrl-C, and its children inherit that
+    # a shell makes background processes ignore Ctrl-C, and their children inherit that
     def listen():
         signal.signal(number, signal.SIG_DFL)
 
@@ -658,7 +658,7 @@ def test_a_result_that_cannot_be_written_is_one_sentence():
 
 
 class Stream(io.StringIO):
-    """A stream of an encoding, which may be a terminal."""
+    """A stream with an encoding, which can act as a terminal."""
 
     def __init__(self, encoding="utf-8", tty=False):
         super().__init__()
@@ -701,7 +701,7 @@ def test_a_terminal_shows_how_far_a_run_is_and_no_trace_of_it_is_left(monkeypatc
     assert "a [bold]scene" in text
     assert "25%" in text
     assert "50%" in text
-    assert re.search(r"\d:\d\d:\d\d|-:--:--", text)  # the time that remains
+    assert re.search(r"\d:\d\d:\d\d|-:--:--", text)  # the remaining time
     assert not re.search(r"\x1b\[\d*(;\d+)*m", text)  # no colour
     assert text.endswith("\x1b[1A\x1b[2K")  # the line is cleared
 

@@ -1,4 +1,4 @@
-"""Whatever is typed or stands in a settings file: a run or one sentence, and never a traceback."""
+"""Whatever is typed or is in a settings file, the result is a run or one sentence, and never a traceback."""
 
 import os
 from pathlib import Path
@@ -14,7 +14,7 @@ from tests import fuzz_case
 
 NAMES = sorted({p.name for name in scenarios.names() for p in scenarios.load(name).Settings.describe()})
 
-# All that an operating system can pass: any bytes but zero.
+# Any argument that an operating system can pass: all bytes but zero.
 typed = st.one_of(
     st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=40),
     st.binary(max_size=20).map(lambda raw: os.fsdecode(raw.replace(b"\0", b""))),
@@ -54,7 +54,7 @@ config_files = st.one_of(
 
 @pytest.fixture(scope="module", autouse=True)
 def folder(tmp_path_factory):
-    """An empty folder to be in, where a run computes nothing."""
+    """An empty current folder, and runs that compute nothing."""
     place = tmp_path_factory.mktemp("fuzz")
     nothing = runner.Outcome(xr.Dataset(), (), 1.0, 1, 0.0, 1.0, 0.0, 0)
     with pytest.MonkeyPatch.context() as patch:
@@ -87,7 +87,7 @@ SPARED = {"extremes", "version", "help"}
 
 @st.composite
 def any_command(draw):
-    """Return a command with arguments and options that it has, and values of all kinds."""
+    """Return a command with arguments and options of that command, and values of all kinds."""
     name = draw(st.sampled_from(sorted(COMMANDS)))
     words = [name, *draw(st.lists(scenes, max_size=2))]
     for option in draw(st.lists(st.sampled_from(COMMANDS[name]), max_size=4)):

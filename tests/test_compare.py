@@ -1,4 +1,4 @@
-"""Runs laid over each other: what differs is named, and nothing else; differences have their errors."""
+"""Comparisons of runs: exactly the settings that differ are named, and differences have standard errors."""
 
 import json
 import math
@@ -117,7 +117,7 @@ def test_a_scene_of_ones_own_is_named_without_being_run(files, tmp_path):
     assert naming([one, other], ["a", "b"]).title == "temperature 15 / 5"
 
 
-# By how much
+# By how much the results differ
 
 
 def run_with(value, error, theory=None):

@@ -1,4 +1,4 @@
-"""What a first run waits for is told when it is so, and can be done in advance."""
+"""The compilation before a first run is announced, and can be done in advance."""
 
 import itertools
 import json
@@ -19,7 +19,7 @@ SCENE = "elastic-collisions"
 
 
 def new_kernel(value):
-    """Return a kernel of which no other test has the like."""
+    """Return a kernel that differs from those of all other tests."""
 
     @kernel(entry=True)
     def add(x):

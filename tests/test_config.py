@@ -1,4 +1,4 @@
-"""A settings file is read, or refused with its line and what to write."""
+"""A settings file is read, or refused with the line of the error and what to write instead."""
 
 import pytest
 from hypothesis import example, given

@@ -1,4 +1,4 @@
-"""From one unit to another, checked against pint."""
+"""Conversion of units, checked against pint."""
 
 import pint
 import pytest

@@ -1,4 +1,4 @@
-"""The dataset that is made of the numbers of a run."""
+"""The dataset that is made from the numbers of a run."""
 
 import json
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""The pages say what is so: links lead somewhere, tables are fresh, examples run as they are printed."""
+"""The pages are right: links work, tables are up to date, examples give the output that is printed."""
 
 import importlib.util
 import itertools
@@ -24,7 +24,7 @@ def script(*words):
 
 
 def heading_anchor(heading):
-    """Return what a page's host makes of a heading."""
+    """Return the anchor that the host of a page makes from a heading."""
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 
 
@@ -34,7 +34,7 @@ def links(page):
 
 
 def commands(page):
-    """Return what the blocks of a page tell to type, without comments."""
+    """Return the commands in the blocks of a page, without comments."""
     for block in re.findall(r"```sh\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
         for line in block.splitlines():
             if line.startswith("atmosbox run "):
@@ -111,5 +111,5 @@ def test_every_run_that_a_page_suggests_is_understood():
             given = [word for option, word in itertools.pairwise(words) if option == "--set"]
             settings = dict(word.split("=", 1) for word in given)
             changed = runner.prepare(scene, settings).settings.changed().keys()
-            # stirring brings other settings along
+            # stirring changes other settings too
             assert changed <= settings.keys() or "stirring" in settings, words

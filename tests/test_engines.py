@@ -1,4 +1,4 @@
-"""The register of engines: what may be asked for, and what is refused."""
+"""The list of engines: which engines and options are accepted, and which are refused."""
 
 import inspect
 import warnings
@@ -22,7 +22,7 @@ def test_an_engine_is_what_it_says_and_knows_its_options(name):
     known = {**inspect.signature(Parcel.__init__).parameters, **inspect.signature(parcel.__init__).parameters}
     for option in engine.parameters:
         assert option.name in known
-        if option.name not in ("scheme", "cell"):  # what suits the box, and what stands in place of another
+        if option.name not in ("scheme", "cell"):  # they depend on the box, or replace another option
             assert known[option.name].default == option.default
 
 
@@ -133,7 +133,7 @@ def test_a_repeat_keeps_the_engine(tmp_path, monkeypatch):
     ],
 )
 def test_the_books_of_every_engine_can_be_checked_in_its_file(scene, engine, settings):
-    """Energy less heat, work and what the scheme has made is the same in all frames, whatever lets time pass."""
+    """Energy minus heat, work and the energy made by the scheme is the same in all frames, with every engine."""
     few = {"molecules": 300} | ({"duration": 5} if scene == "atmosphere" else {})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseStepWarning)

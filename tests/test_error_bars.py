@@ -1,4 +1,4 @@
-"""Error bars against the scatter from run to run: of every headline and every profile of every scene.
+"""Standard errors compared with the scatter between runs, for every headline and every profile of every scene.
 
 For each number x of n runs that differ in their seed, the sum of (x - theory)^2 over the mean square of the errors
 stated is chi-square of n degrees of freedom: more says that errors are stated too small or that the mean is off, less
@@ -8,7 +8,7 @@ of an F distribution of n and 12 n degrees.
 
 The cheap tier does so in small boxes, in a few seconds each. With ``--validate`` each scene runs 60 times as it comes:
 of one processor one or two minutes for temperature, discs, atmosphere, evaporation and lifting-dry, and five or six for
-condensation and each moist ascent, half an hour in all. Nothing slips through: a headline that
+condensation and each moist ascent, half an hour in all. No headline is left out: one that
 states no error must be among those known to have none, and every headline that a scene names must be seen in a case.
 """
 
@@ -36,14 +36,14 @@ FRAMES = {
     "evaporation": (200, None),
     "temperature": (200, 10),  # and temperature-large, which is built there
 }
-"""Into how many frames the cheap tier cuts a run, and how many of them settle.
+"""Number of frames of a run in the cheap tier, and how many of them are for settling.
 
 The run is as long as before, and so are the blocks that its errors are read from.
 """
 
 
 def runs(scene, number, **settings):
-    """Return the outcomes of so many runs that differ in their seed."""
+    """Return the outcomes of runs that differ in their seed."""
     return [runner.execute(runner.prepare(scene, settings | {"seed": 1000 + seed})) for seed in range(number)]
 
 
@@ -54,18 +54,18 @@ def fewer_frames(monkeypatch):
 
 
 def range_of_ratio(number):
-    """Return the 99.9 % range of a mean square over the stated one, of so many degrees of freedom."""
+    """Return the 99.9 % range of a mean square over the stated one, for a number of degrees of freedom."""
     return stats.f.ppf([0.0005, 0.9995], number, 12 * number)
 
 
 def ratio_of(misfit, stated, known):
-    """Return the mean square of misfits over that stated, after at most the known error is taken off all of them."""
+    """Return the mean square of misfits over the stated one, after at most the known error is subtracted.""" 
     apart = misfit - np.clip(misfit.mean(axis=0), -known, known)
     return apart**2 / np.mean(stated**2, axis=0)
 
 
 class Row(NamedTuple):
-    """What the runs say of one headline."""
+    """The results of the runs for one headline."""
 
     ratio: float
     least: float
@@ -84,7 +84,7 @@ def headlines_of(outcomes):
             rows.setdefault(headline.name, []).append(headline)
     found, without = {}, set()
     for name, each in rows.items():
-        if len(each) < 0.8 * len(outcomes):  # what some runs do not come to has no fair mean
+        if len(each) < 0.8 * len(outcomes):  # a result that some runs lack has a biased mean
             continue
         value, stated, known = (
             np.array([getattr(headline, part) for headline in each])
@@ -94,7 +94,7 @@ def headlines_of(outcomes):
             without.add(name)
             continue
         theory = [headline.theory for headline in each]
-        lost = 0 if None not in theory and not known.any() else 1  # a mean that is taken off costs a degree of freedom
+        lost = 0 if None not in theory and not known.any() else 1  # a mean that is subtracted costs a degree of freedom
         if None in theory:
             misfit, known = value - value.mean(), np.zeros(1)
         else:
@@ -106,7 +106,7 @@ def headlines_of(outcomes):
 
 
 def assert_headlines_are_covered(outcomes, without=frozenset()):
-    """Assert it of each headline; only those named may state no error."""
+    """Check each headline; only those named may have no standard error."""
     found, silent = headlines_of(outcomes)
     assert found
     assert silent <= without
@@ -120,9 +120,9 @@ def profiles_of(outcome):
 
 
 def assert_profiles_are_covered(outcomes, names):
-    """Assert it of the scatter of profiles, on average over their layers.
+    """Check the scatter of profiles, averaged over their layers.
 
-    Layers know of each other: the mean of k ratios of a covariance matrix C scatters as one of (tr C)^2 / tr C^2.
+    Layers are correlated: k ratios with a covariance matrix C count as (tr C)^2 / tr C^2 independent ones.
     """
     wrong = {}
     for name in names:
@@ -130,7 +130,7 @@ def assert_profiles_are_covered(outcomes, names):
         if (beside := PROFILES.get(name)) in outcomes[0].dataset:  # a parcel is at another pressure in each run
             values = values - np.array([o.dataset[beside].values for o in outcomes])
         known = np.isfinite(values).all(axis=0) & np.isfinite(errors).all(axis=0) & (errors > 0.0).any(axis=0)
-        if name.startswith("left_gas_share_"):  # where one gas has not come in any run there is no scatter to compare
+        if name.startswith("left_gas_share_"):  # without scatter where one gas has not come in any run
             known &= (values > 0.0).any(axis=0) & (values < 1.0).any(axis=0)
         assert known.any()
         values, errors = values[:, known], errors[:, known]
@@ -174,9 +174,9 @@ def test_a_dense_column_has_the_pressure_n_k_t_z_and_its_errors_are_its_scatter(
 
 
 class Case(NamedTuple):
-    """A scene at some settings, how often it runs, and which headlines are no matter of chance.
+    """A scene with settings, the number of its runs, and the headlines that do not depend on chance.
 
-    ``long`` leaves it to the validate tier: what takes minutes, and a second case of a scene.
+    ``long`` cases are left to the validate tier: those that take minutes, and second cases of a scene.
     """
 
     scene: str
@@ -219,16 +219,16 @@ CASES = [
 ]
 """Small boxes of every scene."""
 QUICK = {("attraction", True): {"molecules": 200, "duration": 0.5}, ("mountains", True): {"molecules": 400}}
-"""Of long cases: what is enough to see the names of their headlines."""
+"""Settings for long cases that are enough to get the names of their headlines."""
 
 
 def named(case):
-    """Return what a case is called."""
+    """Return the name of a case."""
     return ", ".join([case.scene, *(f"{name}={value}" for name, value in case.settings.items())])
 
 
 def spelled(scene):
-    """Return the headlines that a scene spells out."""
+    """Return the headlines that are named in the source of a scene."""
     source = Path(scenarios.load(scene).headlines.__code__.co_filename)
     calls = [node for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
     return {
@@ -239,13 +239,13 @@ def spelled(scene):
 
 
 def names_of(outcomes):
-    """Return the headlines that some run has."""
+    """Return the headlines that at least one run has."""
     return {headline.name for outcome in outcomes for headline in outcome.headlines}
 
 
 @pytest.fixture(scope="module")
 def seen():
-    """What the cases have seen of each scene."""
+    """The headlines of each scene that the cases have seen."""
     return {}
 
 
@@ -282,7 +282,7 @@ def test_the_errors_of_a_rising_cloud_are_its_scatter():
 @pytest.mark.parametrize("scene", scenarios.names())
 @pytest.mark.usefixtures("fewer_frames")
 def test_every_headline_that_a_scene_names_is_seen_in_a_case(scene, seen):
-    if not spelled(scene) <= seen.get(scene, set()):  # asked for alone, or a case is left to the validate tier
+    if not spelled(scene) <= seen.get(scene, set()):  # this test alone, or a case of the validate tier
         cases = [case.settings | QUICK.get((scene, case.long), {}) for case in CASES if case.scene == scene]
         own = [each for settings in cases for each in runs(scene, 1, **settings)]
         seen[scene] = names_of(own)

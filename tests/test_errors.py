@@ -19,7 +19,7 @@ from atmosbox.errors import (
 )
 
 TREE = [
-    # error, builtin that it also is, exit status
+    # error, built-in exception that it is a subclass of, exit status
     (AtmosboxError, Exception, 1),
     (SettingError, ValueError, 2),
     (UnknownSettingError, SettingError, 2),

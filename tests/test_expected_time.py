@@ -1,4 +1,4 @@
-"""How long a run will take: from the measured table and the pace of this computer; said before it, and in its bar."""
+"""The expected time of a run, from the measured table and the speed of this computer, and how it is shown."""
 
 import contextlib
 import json
@@ -16,7 +16,7 @@ from atmosbox.text import progress as bars
 
 @pytest.fixture(autouse=True)
 def home(tmp_path, monkeypatch):
-    """A cache of one's own, in which no pace is known yet."""
+    """A separate, empty cache, in which no speed of this computer is known yet."""
     monkeypatch.setattr(times, "cache_home", lambda: tmp_path)
     return tmp_path
 
@@ -61,7 +61,7 @@ def test_a_run_tells_the_pace_of_this_computer(home):
     assert here.here
     assert here.seconds == pytest.approx(3.0 * ours.seconds, rel=1e-3)
     assert "as fast" not in str(here)
-    remember_pace(runner.prepare("elastic-collisions", {}), 0.01)  # too short to tell anything
+    remember_pace(runner.prepare("elastic-collisions", {}), 0.01)  # too short for a measurement
     assert json.loads((home / "pace.json").read_text()) == [3.0, 2.0, 50.0]
     for odd in ("", "[", "{}", '["x"]', "[-1]", "[NaN]", "[1e999]"):
         (home / "pace.json").write_text(odd)

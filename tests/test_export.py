@@ -1,4 +1,4 @@
-"""Runs for other programs: molecules as extended XYZ and GSD, numbers as CSV, each read by a program of others."""
+"""Runs for other programs: molecules as extended XYZ and GSD, numbers as CSV, each read by another program."""
 
 import csv
 import io

@@ -1,9 +1,9 @@
-"""Boxes that break simulations, and what only the exact engine promises of them.
+"""Boxes that break simulations, and the properties that only the exact engine promises for them.
 
-Those that every engine is put into stand in `atmosbox.trade.extremes` and are run by test_assessment.py.
+The boxes that every engine is tested in are in `atmosbox.trade.extremes`, and are run by test_assessment.py.
 
-Every wait is bounded twice: `within` gives a run so many events and no more, and a run that does not come back at
-all ends the whole suite with a traceback.
+Every wait is bounded twice: `within` limits the number of events of a run, and a run that does not return ends
+the whole suite with a traceback.
 """
 
 import faulthandler
@@ -40,7 +40,7 @@ def nothing_hangs():
 
 
 def within(box, until, events=4_000_000):
-    """Let time pass, but not more than so many events (the watch is called every 200 000)."""
+    """Advance, but by no more than this number of events (the watch is called every 200 000 events)."""
     start = sum(box.events.values())
     calls = itertools.count(1)
 
@@ -118,7 +118,7 @@ def many(number):
     side = (number * math.pi / 6.0 / 0.05) ** (1.0 / 3.0)
     box = sphere_box(number, (side,) * 3)
     before = sum(box.energy())
-    # pushed apart at the start, they must first forget it
+    # after they were pushed apart at the start, they must first come to equilibrium
     within(box, 2.0, 40 * number)
     contacts = box.contacts
     within(box, 3.0, 40 * number)
@@ -151,7 +151,7 @@ def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(numbe
     # and it does not go on from there
     with pytest.raises(StalledError, match="crush"):
         within(box, 7.0)
-    # but it may go back; the gas is by now hot beyond measure, so a short while will do
+    # but it may go back; the gas is extremely hot by now, so a short time is enough
     box.set_piston_velocity(0.5)
     ceiling, speed = box.ceiling, math.sqrt(sum(box.energy()) / number)
     within(box, box.time + 0.01 / speed)

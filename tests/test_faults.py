@@ -1,6 +1,6 @@
-"""Faults of the system, each against a promise of docs/reliability.md.
+"""Faults of the system; each test checks a promise of docs/reliability.md.
 
-What takes long, or must be root to be tried, stands in the tier ``soak``.
+Tests that take long, or must run as root, are in the tier ``soak``.
 """
 
 import contextlib
@@ -43,13 +43,13 @@ def started(words, folder, *flags, package=ROOT, **variables):
 
 
 def listen():
-    """Hear signals, also where this is run by nohup or in the background, which are deaf to some of them."""
+    """Restore signals that nohup or a background job ignores."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
 
 
 def command(words, folder, *flags, **more):
-    """Run the real command to its end; return its status, what it said, and what it complained of."""
+    """Run the real command to its end; return its status, stdout and stderr."""
     with started(words, folder, *flags, **more) as process:
         out, said = process.communicate()
     assert "Traceback" not in said, said
@@ -59,7 +59,7 @@ def command(words, folder, *flags, **more):
 
 @pytest.fixture(scope="module")
 def usual(tmp_path_factory):
-    """The folder of a run on a computer that is as it should be."""
+    """The folder of a run on a computer without faults."""
     folder = tmp_path_factory.mktemp("usual")
     assert command(SHORT, folder)[0] == 0
     return folder
@@ -69,10 +69,10 @@ def same(folder, usual):
     return content(folder / "x.nc") == content(usual / "x.nc")
 
 
-# Odd environments
+# Unusual environments
 
 TURKISH = "tr_TR.UTF-8"
-"""Its numbers have commas, as German ones, and its capital i has a dot."""
+"""In this locale numbers have decimal commas, and the capital of i has a dot."""
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_an_odd_environment_changes_no_number(usual, tmp_path, flags, variables)
 
 @pytest.mark.parametrize("tongue", ["de_DE.UTF-8", "tr_TR.UTF-8"])
 def test_numbers_are_written_and_read_with_a_point_in_every_language(usual, tmp_path, tongue):
-    """Also where a program around atmosbox has set the locale, as a desktop does."""
+    """Also if the program that calls atmosbox has set the locale, as a desktop does."""
     script = """
 import json, locale, sys
 try:
@@ -140,7 +140,7 @@ def test_a_checkout_that_was_moved_runs_and_finds_the_same(usual, tmp_path):
 
 
 def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, monkeypatch):
-    """Checkpoints, locks, the bar and the expected time go by a clock that nobody sets."""
+    """Checkpoints, locks, the bar and the expected time use a clock that cannot be set."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     monkeypatch.setattr(runner, "_BREATH", 0.0)
     draw, now = random.Random(3), time.time()
@@ -164,7 +164,7 @@ def test_a_clock_that_is_set_back_and_forth_changes_no_number(usual, tmp_path, m
 @pytest.mark.skipif(shutil.which("faketime") is None, reason="needs the program faketime")
 @pytest.mark.parametrize("jump", ["-3y", "+3y"])
 def test_a_computer_with_a_wrong_clock_goes_on_with_a_run(usual, tmp_path, monkeypatch, jump):
-    """A run that was begun in another year goes on, and its file is the same."""
+    """A run that was begun in another year continues, and its file is the same."""
     prepared = runner.prepare(SCENE, {"duration": 2.0})
 
     def half(share, word):
@@ -211,7 +211,7 @@ def test_a_signal_to_a_sweep_keeps_what_is_complete_and_says_so_by_its_status(tm
 
 @contextlib.contextmanager
 def disk(place, options):
-    """Mount a small disk of its own."""
+    """Mount a small separate disk."""
     place.mkdir()
     subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", place], check=True)
     try:
@@ -235,7 +235,7 @@ def test_a_disk_that_fills_ends_a_run_with_a_sentence_and_nothing_half_written(t
         assert names <= {"old.nc", "x.part.nc"}
         if "x.part.nc" in names:
             assert read(place / "x.part.nc").sizes["elapsed_time"] > 0
-            if room == 1200:  # with more room it goes on
+            if room == 1200:  # with more room the run continues
                 subprocess.run(["mount", "-o", "remount,size=200m", place], check=True)
                 assert command(["run", "--resume", "x.part.nc"], place)[0] in (0, 3)
 

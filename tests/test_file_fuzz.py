@@ -1,4 +1,4 @@
-"""Whatever stands in a netCDF file: what it holds, or one sentence, and never a traceback."""
+"""Whatever is in a netCDF file, the result is its content or one sentence, and never a traceback."""
 
 import contextlib
 import json
@@ -32,7 +32,7 @@ COMMANDS = {
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
-    """Small files of all kinds, in a folder to be in."""
+    """Small files of all kinds, in the current folder."""
     place = tmp_path_factory.mktemp("files")
 
     def stop(share, word):
@@ -52,7 +52,7 @@ def files(tmp_path_factory):
 
 
 def other_bytes(path, draw):
-    """Change some bytes of a file, cut it, or put a piece of it into another place."""
+    """Change some bytes of a file, cut it, or move a piece of it to another place."""
     content = bytearray(path.read_bytes())
     kind = draw.randrange(5)
     start = draw.randrange(len(content))
@@ -68,13 +68,13 @@ def other_bytes(path, draw):
         place = draw.randrange(len(content))
         content[place : place + len(piece)] = piece
     else:
-        for _ in range(draw.randrange(1, 4)):  # in the first blocks HDF5 says what lies where
+        for _ in range(draw.randrange(1, 4)):  # the first blocks are HDF5's tables of addresses
             content[draw.randrange(min(4096, len(content)))] = draw.choice([0, 255, draw.randrange(256)])
     path.write_bytes(content)
 
 
 def other_content(path, draw):
-    """Change attributes, names and numbers of a file that stays a whole one."""
+    """Change attributes, names and numbers of a file that stays a valid netCDF file."""
     with netCDF4.Dataset(path, "r+") as file:
         for _ in range(draw.randrange(1, 4)):
             owner = draw.choice([file, *file.variables.values()])
@@ -105,7 +105,7 @@ def other_content(path, draw):
 
 
 def other_json(held, draw):
-    """Return what a text holds, with one thing in it another."""
+    """Return a JSON text with one value in it changed."""
     if isinstance(held, dict) and held and draw.random() < 0.8:
         name = draw.choice(sorted(held))
         return {**held, name: other_json(held[name], draw)}
@@ -116,7 +116,7 @@ def other_json(held, draw):
 
 
 def tried(files, seed):
-    """Damage a file in a way that a number decides, and give it to a command."""
+    """Damage a file in a way that depends on a number, and give it to a command."""
     draw = random.Random(seed)
     good = draw.choice(files)
     odd = good.with_name("odd.nc")

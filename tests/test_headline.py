@@ -1,4 +1,4 @@
-"""The few numbers that a run is about."""
+"""Headlines: the few main results of a run."""
 
 import math
 from dataclasses import replace

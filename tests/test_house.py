@@ -1,4 +1,4 @@
-"""The house itself: what an import costs, what the README promises, and the tiers of this suite."""
+"""The project itself: what an import costs, what the README promises, and the tiers of this suite."""
 
 import ast
 import doctest

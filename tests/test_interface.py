@@ -1,4 +1,4 @@
-"""What a script or a notebook calls: `atmosbox.run` and its kin."""
+"""The functions that scripts and notebooks call: `atmosbox.run` and the others."""
 
 import ast
 import importlib.util
@@ -228,7 +228,7 @@ def test_no_refusal_of_the_package_keeps_an_option_when_it_is_said_in_python():
     assert {place: text for place, text in kept.items() if "dask worker" not in text} == {}
 
 
-# What an editor knows
+# The stub for editors
 
 
 def test_what_an_editor_knows_is_what_the_scenes_say():
@@ -253,7 +253,7 @@ def test_an_editor_completes_the_settings_of_a_scene():
 
 
 def test_importing_atmosbox_takes_no_time():
-    """Both are measured as processor time, so that a busy machine does not matter; Python itself is taken off."""
+    """Both are measured as processor time, so a busy machine does not matter, without the time of Python itself."""
     code = "import time; began = time.process_time(); import atmosbox; print(time.process_time() - began)"
     spent = min(
         float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout)

@@ -1,6 +1,6 @@
-"""Who may import whom, read off the syntax tree of every file.
+"""Which modules may import which, checked with the syntax tree of every file.
 
-For the engine this is a matter of correct answers and not of taste: its compiled kernels are kept under a
+For the engine this is a matter of correct results and not of taste: its compiled kernels are kept under a
 digest of the engine's own sources, so a constant imported from elsewhere could change while old machine
 code lives on.
 """
@@ -15,9 +15,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @dataclass(frozen=True)
 class Layer:
-    """What the files of one layer may import beside the standard library and each other."""
+    """What the files of one layer may import besides the standard library and each other."""
 
-    parts: str = ""  # rooms of atmosbox; "version" is atmosbox/version.py and the door itself, "*" any room
+    parts: str = ""  # packages of atmosbox; "version" is atmosbox/version.py and atmosbox itself, "*" any package
     libraries: str = ""
     lazily: str = ""  # parts and libraries that only a function may import, or a type checker
 
@@ -54,10 +54,10 @@ LAYERS = {
     "__main__": Layer("cli"),
     "version": Layer("callable_room", lazily="interface plot sweep"),
 }
-"""One row a room; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
+"""One row for each package; ``a scenario`` is a file of the top-level folder ``scenarios/``."""
 
 DOORS = ("by_reference", "compiler", "constant_modes", "lanes", "window")
-"""The files that may speak to the compiler: what compiles kernels, how, and what is written in single instructions."""
+"""The files that may use the compiler: those that compile kernels, and those that write single instructions."""
 
 
 class Imports(ast.NodeVisitor):
@@ -147,7 +147,7 @@ def refusal(importer, name, late):
 
 
 def violations(root):
-    """Return one line for every import below a checkout that the layers forbid."""
+    """Return one line for every import in a checkout that the layers forbid."""
     lines = []
     for path in sorted([*root.glob("atmosbox/**/*.py"), *root.glob("scenarios/**/*.py")]):
         place = path.relative_to(root)
@@ -243,7 +243,7 @@ def test_no_name_of_a_file_means_two_things():
 
 
 def test_rooms_stand_on_floors():
-    """A room imports only from rooms below it: without a circle there is an order."""
+    """The imports between packages have no cycle, so the packages can be put in an order."""
     standing = {name: set(f"{row.parts} {row.lazily}".split()) & set(LAYERS) for name, row in LAYERS.items()}
     standing["version"] -= {"interface", "plot", "sweep"}  # `atmosbox.run` imports them when it is used
     standing.pop("cli")

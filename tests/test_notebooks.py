@@ -1,4 +1,4 @@
-"""The notebooks: kept without output, begun by a line that installs, launched from where they stand.
+"""The notebooks: stored without output, with a first line that installs atmosbox, and links that launch them.
 
 Here their cells run in small boxes. The site runs them as they are when it is published, and in the validate tier
 (tests/test_site.py); a cell that fails is a failure of it.

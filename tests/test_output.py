@@ -1,4 +1,4 @@
-"""Files: complete or absent, CF throughout, and read again as they were written."""
+"""Files: complete or absent, according to CF, and read again as they were written."""
 
 import ast
 import errno
@@ -92,7 +92,7 @@ def bins(name, count, width):
 
 
 def filled(names, coords, companions=("_se", "_count", "_theory", "_tolerance")):
-    """Return an array for every variable named, and for its companions where it is measured."""
+    """Return an array for every named variable, and for its derived variables if it is measured."""
     random = np.random.default_rng(1)
     sizes = {"wall": 6, "axis": 3, "drop": 5} | {name: len(values) for name, values in coords.items()}
     frames = {}
@@ -153,12 +153,12 @@ def interrupted(*_arguments, **_options):
     raise KeyboardInterrupt
 
 
-# What is in a file
+# The content of a file
 
 
 @pytest.fixture(scope="module")
 def faults(tmp_path_factory):
-    """What the strict check of CF finds in files, by name, in one process: the checker takes seconds to begin."""
+    """The results of the strict check of CF for files by name, in one process: the checker takes seconds to start."""
     folder = tmp_path_factory.mktemp("checked")
     whole, wrong = everything(), lifting()
     declared = sorted(map(str, whole.data_vars))
@@ -205,7 +205,7 @@ def test_a_file_is_read_as_it_was_written(tmp_path, make):
 
 def test_writing_leaves_the_dataset_alone(tmp_path):
     run = everything()
-    untouched = run.copy(deep=True)  # made again, it would have another date
+    untouched = run.copy(deep=True)  # if it were made again, it would have another date
     output.write(run, tmp_path / "run.nc")
     assert run.identical(untouched)
     for name, entry in untouched.variables.items():
@@ -241,7 +241,7 @@ def test_a_dataset_that_could_not_be_read_again_is_not_written(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-# Where a file may be written
+# Paths that may be written
 
 
 def test_a_file_is_replaced_only_by_force(tmp_path):
@@ -255,7 +255,7 @@ def test_a_file_is_replaced_only_by_force(tmp_path):
 
 
 def test_no_function_that_saves_replaces_a_file_unasked(tmp_path):
-    """Commands ask before they begin (test_cli), and each function for itself, before it looks at what it is given."""
+    """Commands check the path before they begin (test_cli), and each function checks it before its other arguments."""
     for save, ending in [
         (output.write, "nc"),
         (plot.save, "svg"),
@@ -415,7 +415,7 @@ def test_the_part_has_the_name_of_the_file():
         assert str(part_path(name)) == part.replace("/", os.sep)
 
 
-# What may be read
+# Files that may be read
 
 
 def foreign(path):

@@ -1,4 +1,4 @@
-"""Every Python line of a page runs: its fenced blocks, in order, in a folder that holds the files they name.
+"""Every line of Python in a page runs: its fenced blocks, in order, in a folder with the files that they name.
 
 Boxes hold few molecules, so that all pages take some seconds; nothing else of a block is changed.
 """
@@ -59,7 +59,7 @@ def swept():
 
 
 def built():
-    """Return what a ``build`` has made of its settings where it makes a setup of them."""
+    """Return the local variables of a ``build`` at its call of `Setup`."""
     page = {}
     exec(blocks(ROOT / "docs/own-scene.md")[0][1], page)
     settings = page["Settings"]()
@@ -68,7 +68,7 @@ def built():
 
 
 GIVEN = {"docs/netcdf.md": lifted, "docs/sweep.md": swept, "docs/own-scene.md": built}
-"""What a page takes for granted: files, or names."""
+"""What a page assumes to exist: files, or names."""
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())

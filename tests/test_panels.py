@@ -1,4 +1,4 @@
-"""What a scene's figure shows, written into a file and read again."""
+"""The panels of a scene's figure, written to a file and read again."""
 
 import json
 from dataclasses import FrozenInstanceError

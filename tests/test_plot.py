@@ -1,4 +1,4 @@
-"""The figures: drawn from the dataset alone, the same bytes twice, legible on a page and on a wall."""
+"""The figures: drawn from the dataset alone, byte for byte reproducible, legible on a page and on a wall."""
 
 import itertools
 import json
@@ -368,7 +368,7 @@ def runs():
 def drawings(runs):
     made = {(name, theme): plot.figure(run, theme) for name, run in runs.items() for theme in plot.THEMES}
     for drawing in made.values():
-        drawing.draw_without_rendering()  # legends take their place when they are drawn
+        drawing.draw_without_rendering()  # the places of legends are known only after drawing
     return made
 
 
@@ -388,7 +388,7 @@ def all_axes(drawing):
 
 
 def tick_texts(axis):
-    """Return the numbers that are seen on an axis."""
+    """Return the numbers that are visible on an axis."""
     low, high = sorted(axis.get_view_interval())
     room = 1e-9 * (high - low)
     drawn = [tick for tick in axis.get_major_ticks() if low - room <= tick.get_loc() <= high + room]
@@ -397,7 +397,7 @@ def tick_texts(axis):
 
 
 def texts(drawing):
-    """Return all text that is seen in a figure."""
+    """Return all visible text of a figure."""
     found = list(drawing.texts)
     for axes in all_axes(drawing):
         found += [axes.xaxis.label, axes.yaxis.label, *axes.texts]
@@ -410,7 +410,7 @@ def written(drawing):
     return [text.get_text().replace("\n", " ") for text in texts(drawing)]
 
 
-# What stands where
+# Layout
 
 
 def test_no_text_meets_another_or_leaves_the_figure(drawings):
@@ -503,7 +503,7 @@ def test_panels_over_each_other_share_the_axis_of_time(drawings):
     assert (first.get_xlabel(), second.get_xlabel()) == ("", "elapsed time (ns)")
 
 
-# What is drawn
+# Curves and other content
 
 
 def lines_of(axes):
@@ -631,7 +631,7 @@ def test_a_reference_is_broad_and_pale_under_the_theory_that_it_coincides_with(r
         assert reference.get_zorder() < theory.get_zorder()
         assert reference.get_linewidth() > 2 * theory.get_linewidth()
         dark, pale = (np.dot((0.299, 0.587, 0.114), to_rgb(line.get_color())) for line in (theory, reference))
-        assert dark + 0.4 < pale < 0.8  # apart from each other and from white paper in grey print, too
+        assert dark + 0.4 < pale < 0.8  # distinct from each other and from white paper in grey print too
 
 
 def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so(runs):
@@ -765,7 +765,7 @@ def test_gaps_single_frames_and_constants_can_be_drawn(tmp_path, scale):
         assert plot.save(small(values, panel), tmp_path / "figure.svg", force=True).stat().st_size > 1000
 
 
-# What is said
+# Texts
 
 
 def test_numbers_stand_first_and_large_and_what_the_textbook_says_under_them(drawings):

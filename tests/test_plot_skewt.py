@@ -45,7 +45,7 @@ NAN = float("nan")
 def ascent(frames=FRAMES, panels=(SKEWT, BUOYANCY), warmer=0.0, **scalars):
     """Return the run of a parcel that is lifted through the air before a thunderstorm.
 
-    The levels are those where the temperatures of theory's parcel and of the air cross, lest they depend on noise.
+    The levels are those where the temperatures of theory's parcel and of the air cross, so that they have no noise.
     """
     air = weisman_klemp()
     pressure = np.geomspace(1000e2, 150e2, FRAMES)[:frames]
@@ -108,7 +108,7 @@ def areas(axes):
 
 
 def corners(area):
-    """Return temperatures [degC] and pressures [hPa] of what is shaded."""
+    """Return temperatures [degC] and pressures [hPa] of the shaded areas."""
     paths = [path.vertices for path in area.get_paths()]
     return np.concatenate(paths) if paths else np.zeros((0, 2))
 
@@ -123,7 +123,7 @@ def names_of_levels(axes):
 
 
 def box_of(text):
-    """Return the room of a text alone, without the line that leads to it."""
+    """Return the bounding box of a text, without the line that leads to it."""
     return Text.get_window_extent(text)
 
 
@@ -132,7 +132,7 @@ def legend_texts(axes):
 
 
 def tick_texts(axis, limits):
-    """Return the numbers that are read on an axis, between its ends."""
+    """Return the numbers at the ticks of an axis, between its ends."""
     low, high = min(limits), max(limits)
     drawn = [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
     return [text for text in drawn if text.get_text()]

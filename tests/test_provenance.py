@@ -1,4 +1,4 @@
-"""What a file says of where it comes from."""
+"""Provenance: the attributes of a file that say how it was made."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""What publishes the project: workflows, forms, the host of the site, the package index, the recipe for conda."""
+"""Files that publish the project: workflows, forms, the host of the site, the package index, the recipe for conda."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""What a user types is the number that was meant, or is refused with what to type instead."""
+"""A value that a user types is read as the intended number, or is refused with what to type instead."""
 
 import math
 import subprocess

@@ -1,4 +1,4 @@
-"""The page on other programs: what it shows in R and in MATLAB's language runs, where R and Octave can be had."""
+"""The page on other programs: its examples in R and in MATLAB's language run, if R and Octave are installed."""
 
 import re
 import shutil

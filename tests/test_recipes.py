@@ -1,4 +1,4 @@
-"""The recipes of the page on design: a copy of the package is changed as it is printed there, and does what is said."""
+"""The recipes of the page on design: applied to a copy of the package as printed, they work as described."""
 
 import json
 import re
@@ -13,7 +13,7 @@ RECIPES = dict(SECTION.findall((ROOT / "docs" / "design.md").read_text(encoding=
 
 
 def follow(recipe, folder):
-    """Change a copy of the package: lines that a file must hold stand behind a space, those to add behind a plus."""
+    """Change a copy of the package: lines that a file must contain begin with a space, lines to add with a plus."""
     ignore = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "atmosbox", folder / "atmosbox", ignore=ignore)
     shutil.copytree(ROOT / "scenarios", folder / "scenarios", ignore=ignore)
@@ -32,7 +32,7 @@ def follow(recipe, folder):
 
 
 def python(folder, code):
-    """Return what code prints that imports the copy."""
+    """Return the output of code that imports the copy."""
     command = [sys.executable, "-c", f"import sys\nsys.path.insert(0, {str(folder)!r})\n{code}"]
     done = subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done.stderr

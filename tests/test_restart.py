@@ -1,4 +1,4 @@
-"""A run that was stopped, killed or finished goes on: what comes out is what a run that was let alone measures."""
+"""A run that was stopped, killed or finished is continued: the results are those of a run that was not stopped."""
 
 import contextlib
 import json
@@ -39,7 +39,7 @@ RUNS = {
 }
 
 
-# The same boxes, so large that each takes some seconds: what a process needs to be killed in.
+# The same boxes, so large that each takes some seconds, so that a process can be killed meanwhile.
 LARGE = {
     "discs": {"molecules": 400, "duration": "7500 s"},
     "walls": {"molecules": 4000, "duration": "200 ns"},
@@ -56,11 +56,11 @@ LARGE = {
     "drops": {"molecules": 2000, "duration": "200 ns", "drops": 2},
     "rain": {"molecules": 2000, "travel": 2000},
 }
-KILLS = 56  # four of each, so that fifty strike also where a box is done with before the last of them
+KILLS = 56  # four for each box; if some boxes finish before their last kill, fifty kills are still made
 
 
 class Stop(KeyboardInterrupt):
-    """Stand for Ctrl-C at a moment that a test chooses."""
+    """Simulates Ctrl-C at a moment that a test chooses."""
 
 
 def content(path):
@@ -81,7 +81,7 @@ def same_date(monkeypatch):
 
 
 def stopping(shares):
-    """Return a progress that stops a run at some shares of it."""
+    """Return a progress function that stops a run at given shares of it."""
     left = sorted(shares)
 
     def progress(share, word):
@@ -121,11 +121,11 @@ from atmosbox.file import checkpoint
 checkpoint.Checkpoint.__init__.__defaults__ = (0.05,)
 main()
 """
-"""The command, which saves its first state after a twentieth of a second: a run of a second is killed behind it."""
+"""The command, changed to save its first state after 0.05 s, so that a run of a second can be killed after that."""
 
 
 def started(words, folder, *program):
-    """Start the real command, or a program, in a folder of its own."""
+    """Start the real command, or a program, in a separate folder."""
     folder.mkdir(exist_ok=True)
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     return subprocess.Popen(
@@ -135,11 +135,11 @@ def started(words, folder, *program):
 
 
 def killed_again_and_again(words, folder, kills, draw, *program):
-    """Run the command, kill it at random moments, and let it go on each time; return where each kill struck.
+    """Run the command, kill it at random moments, and resume it each time; return at which stage each kill struck.
 
-    Every second kill waits for a state that is newer than the one from which the process goes on, so that the run
-    comes to its end; the others strike whenever they like: while Python starts, while the state is put back, while
-    the engine runs, inside a writing.
+    Every second kill waits for a state that is newer than the one from which the process was resumed, so that the run
+    comes to its end; the others come at random: while Python starts, while the state is loaded, while the engine runs,
+    or while a file is written.
     """
     part, struck = folder / "x.part.nc", []
     now = words
@@ -163,7 +163,7 @@ def killed_again_and_again(words, folder, kills, draw, *program):
 
 
 def test_the_command_killed_at_a_random_moment_goes_on_bit_for_bit(tmp_path):
-    """kill -9, as a computer that is switched off: what was saved last is where it goes on."""
+    """kill -9, like switching off the computer: the run continues from the last saved state."""
     words = ["run", "temperature", "--set", "molecules=5000", "--quiet", "--out", "x.nc"]
     whole = tmp_path / "whole.nc"
     prepared = runner.prepare("temperature", {"molecules": 5000})
@@ -176,7 +176,7 @@ def test_the_command_killed_at_a_random_moment_goes_on_bit_for_bit(tmp_path):
 
 @pytest.mark.soak
 def test_fifty_kills_of_the_command_change_nothing(tmp_path, request):
-    """All engines and kinds of liquid; the moments are other ones each time, and written down."""
+    """All engines and kinds of liquid; the moments differ each time, and are printed."""
     seed = random.SystemRandom().randrange(2**32)
     report = request.config.getoption("--soak-report")
     total = 0

@@ -23,19 +23,19 @@ LIBRARY = re.compile(
     rb"\0_?(?:numba_)?(?:log|log2|log10|log1p|exp|exp2|expm1|pow|sin|cos|tan|sincos|sinh|cosh|tanh|atan2?|asin|acos|"
     rb"lgamma|tgamma|gamma|erfc?|cbrt|hypot|fma|ldexp)f?(?=\0)"
 )
-"""Functions of the C library that do not round alike everywhere, as machine code names what it still lacks."""
+"""Functions of the C library that round differently on different systems, by their names in machine code."""
 PLAIN_NUMPY = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
 
 
 def digests(*names, **environment):
-    """Return the digests that another process finds."""
+    """Return the digests that another process computes."""
     command = [sys.executable, "-W", "ignore", str(HERE / "state_digest.py"), *names]
     run = subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=True)
     return json.loads(run.stdout)
 
 
 def known(*names):
-    """Return what they must be."""
+    """Return the expected digests."""
     return {name: KNOWN[name] for name in names}
 
 
@@ -46,7 +46,7 @@ def test_a_short_run_of_each_scene_ends_in_a_known_state(name):
 
 @pytest.fixture(scope="module")
 def other_library(tmp_path_factory):
-    """Return what makes a process use a C library that rounds otherwise, where one can be built; else nothing."""
+    """Return the environment for a process with a C library that rounds differently; empty if none can be built."""
     compiler = shutil.which("cc") if sys.platform == "linux" else None
     if compiler is None:
         return {}
@@ -75,7 +75,7 @@ def test_python_itself_ends_there_too_with_numpys_plainest_loops_and_another_c_l
 
 
 def oldest_processor(folder):
-    """Return what makes numba compile for the first of all 64-bit processors of this kind, into a folder."""
+    """Return the environment that makes numba compile for the oldest 64-bit processor of this kind, into a folder."""
     return {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(folder)}
 
 

@@ -1,4 +1,4 @@
-"""When the molecules of a run are sampled, against a molecule whose path is known."""
+"""The times at which the molecules of a run are sampled, checked with a molecule whose path is known."""
 
 from types import SimpleNamespace
 
@@ -12,7 +12,7 @@ from atmosbox.simulation.recording import Recording
 
 
 class Tracker:
-    """An instrument that notes where the first molecule is at each sample, and how many samples a frame has."""
+    """An instrument that records the position of the first molecule at each sample, and the samples of each frame."""
 
     def __init__(self):
         self.sampled, self.closed = [], []
@@ -26,7 +26,7 @@ class Tracker:
 
 @pytest.mark.parametrize(("frames", "samples"), [(4, 1), (5, 3), (3, 8)])
 def test_samples_lie_evenly_in_a_frame_and_the_last_at_its_end(frames, samples):
-    # one molecule that crosses 0.1 to 7.3 at unit speed and meets nobody
+    # one molecule that moves from 0.1 to 7.3 at unit speed without a collision
     walls = (Periodic(),) * 6
     position = [[0.1, 2.0, 2.0], [0.1, 6.0, 6.0]]
     parcel = ParcelSet(position, [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], length=(8.0, 8.0, 8.0), walls=walls)

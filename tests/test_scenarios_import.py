@@ -1,4 +1,4 @@
-"""The scenarios are found however atmosbox is installed, and a lecturer's own file is as good as they are.
+"""The scenarios are found however atmosbox is installed, and a lecturer's own file works like them.
 
 Nothing here needs a network: the wheels are built by the build backend directly and unpacked where an
 installer would put them, in environments that borrow the libraries of this one.
@@ -89,7 +89,7 @@ def sdist(tmp_path_factory):
 
 @pytest.fixture
 def classroom(tmp_path):
-    """Return a user's folder that has a folder ``scenarios`` and a ``lifting_dry.py`` of its own."""
+    """Return a user's folder with the user's own folder ``scenarios`` and file ``lifting_dry.py``."""
     folder = tmp_path / "classroom"
     for name in ("scenarios/__init__.py", "scenarios/lifting_dry.py", "lifting_dry.py"):
         path = folder / name

@@ -261,7 +261,7 @@ def test_a_scene_that_is_run_by_its_path_may_postpone_annotations(tmp_path):
     assert module.Settings(temperature="300 K").temperature == 26.85
 
 
-# Whatever may come
+# Any input
 
 numbers = st.booleans() | st.integers() | st.floats()
 others = st.none() | st.text() | st.binary() | st.lists(st.integers()) | st.dates()

@@ -1,4 +1,4 @@
-"""Sheets: every scene has one that fills two pages, with commands that run, units, and answers from its own runs."""
+"""Sheets: every scene has one of two pages, with commands that run, units, and answers from its own runs."""
 
 import base64
 import gzip
@@ -61,7 +61,7 @@ def commands_of(text):
 
 
 def table_of(text):
-    """Return the cells of the table of a sheet, line by line without its head."""
+    """Return the cells of the table of a sheet, row by row without the heading."""
     rows = [line for line in text.splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows[2:]]
 
@@ -146,7 +146,7 @@ def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
     assert words.row
     for row in words.row:
         headline = filled(row.headline, {"A": made})
-        if headline not in made.headlines:  # few molecules, or a hurried run, may have no level to report
+        if headline not in made.headlines:  # a run with few molecules, or a fast one, may have no level to report
             assert headline in ("cloud_base", "lfc", "el", "cin", "cape", "mean_liquid_temperature", "metpy_cape")
             continue
         found = made.headlines[headline]

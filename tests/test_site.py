@@ -1,4 +1,4 @@
-"""The site: it is built without a warning, needs no network, and everything in it leads somewhere."""
+"""The site: it is built without a warning, needs no network, and all its links work."""
 
 import importlib
 import json
@@ -27,20 +27,20 @@ DOCS = ROOT / "docs"
 PAGES = sorted(path for path in [*DOCS.glob("**/*.md"), *DOCS.glob("**/*.rst")])
 MARKDOWN = [ROOT / "README.md", *sorted(DOCS.glob("**/*.md"))]
 LOADS = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src", "use": "href"}
-"""Elements that make a browser fetch something, and the attribute that says what."""
+"""Elements that make a browser fetch a file, and the attribute that names it."""
 FETCHED = {"stylesheet", "icon", "shortcut", "preload", "prefetch", "modulepreload", "apple-touch-icon"}
 """Kinds of ``<link>`` whose target a browser fetches."""
 VERBATIM = {"code", "pre", "script", "style", "math", "title"}
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 SHOWN = ["elastic-collisions"]
-"""Scenes that the gallery has here; each takes seconds."""
+"""Scenes in the gallery of this test; each takes seconds."""
 PARTS = ["Run it", "What to notice, what to try", "Settings", "What is modelled, left out, exaggerated", "Theory"]
 PARTS += ["What it does not show", "Questions"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", "MPLBACKEND": "agg"}
 
 
 class Page(HTMLParser):
-    """What a page holds: anchors, links, what it loads, pictures, and its words outside of code and formulas."""
+    """The content of a page: anchors, links, loaded files, pictures, and its words outside of code and formulas."""
 
     def __init__(self, path):
         super().__init__()
@@ -75,7 +75,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(request, tmp_path_factory):
-    """Return the folder of the site as it was built, what the build said, and its exit status.
+    """Return the folder of the built site, the messages of the build, and its exit status.
 
     Only the validate tier runs the notebooks in it, each in a process of Jupyter: see test_notebooks.
     """
@@ -228,7 +228,7 @@ def test_a_scene_has_a_page_with_all_its_parts():
 
 
 def test_no_number_in_a_sentence_begins_a_line():
-    """Markdown takes a line that begins with a comment for HTML, and the sentence would end before it."""
+    """Markdown treats a line that begins with a comment as HTML, which would cut the sentence in two."""
     for page in MARKDOWN:
         text = page.read_text(encoding="utf-8")
         assert re.findall(r"^\s*<!-- number:.*", text, re.MULTILINE) == [], page

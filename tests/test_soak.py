@@ -19,7 +19,7 @@ SMOOTH = (Specular(),) * 5
 
 
 def gas(fraction, edge=8, seed=3):
-    """Return places on a lattice, velocities and the side of a box so full."""
+    """Return places on a lattice, velocities and the side of a box with this packing fraction."""
     number = edge**3
     side = (number * np.pi / 6.0 / fraction) ** (1.0 / 3.0)
     site = np.stack(np.meshgrid(*[np.arange(edge)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -64,7 +64,7 @@ BOXES = {
 
 
 def deepest_overlap(box):
-    """Return how deep the worst pair overlaps, in diameters; negative where all are apart."""
+    """Return the deepest overlap of a pair, in diameters; negative if no pair overlaps."""
     x = box.snapshot().position
     d = x[:, None] - x[None, :]
     for axis in range(3):
@@ -76,7 +76,7 @@ def deepest_overlap(box):
 
 @pytest.fixture
 def figures(request):
-    """Return what writes figures down: what a soak that is stopped has done so far counts, too."""
+    """Return a function that writes results at once, so that those of a soak test that is stopped are kept."""
     path = request.config.getoption("--soak-report")
     began, memory = time.process_time(), []
 

@@ -1,4 +1,4 @@
-"""Every DOI that the repository cites stands on the page of sources, with how it was checked."""
+"""Every DOI that the repository cites is on the page of sources, with how it was checked."""
 
 import re
 from pathlib import Path

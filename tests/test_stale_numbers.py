@@ -1,8 +1,8 @@
-"""A number in the pages cannot outlive, unnoticed, the code that made it.
+"""A number in the pages is listed as stale when the code that made it changes.
 
-That a job is stale is listed, by `.ci/run` among others, and is no failure: a slow job takes minutes, most edits of the
+`.ci/run` and others list stale jobs, but a stale job is not a failure: a slow job takes minutes, most edits of the
 engine do not change what it finds, and a test that is red for an hour's work after each of them would be switched off.
-What must not fail is the list, and that is tested here. Jobs that take seconds are run anew by tests/test_docs.py.
+The list itself must be right, and that is tested here. Jobs that take seconds are run anew by tests/test_docs.py.
 """
 
 import importlib.util
@@ -38,7 +38,7 @@ def figures():
 
 @pytest.fixture
 def house(tmp_path):
-    """Return a small copy of the project: four rooms of physics, a room beside them, two scenarios and a job."""
+    """Return a small copy of the project: four packages of physics, another package, two scenarios and a job."""
     for name in (*source.PHYSICS, "sheet"):
         (tmp_path / "atmosbox" / name).mkdir(parents=True)
         (tmp_path / "atmosbox" / name / "law.py").write_text(f"def {name}(x):\n    return 2 * x\n")

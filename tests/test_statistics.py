@@ -1,4 +1,4 @@
-"""Error bars: honest for correlated series, and refused where there is nothing to tell."""
+"""Standard errors: right for correlated series, and refused if there are too few data."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def variance_of_mean(memory):
 
 
 def assert_covered(found, variance, *, short=0.0):
-    """The stated error is the scatter: both of 4000 runs, of which each knows its own by a fourth at worst.
+    """The stated error equals the scatter of 4000 runs, each of which knows its own error to a fourth at worst.
 
     Four standard errors of the mean of the squares, 0.02 each for errors that scatter by a half. `short` is the share
     of the variance that blocks of this length cannot see.

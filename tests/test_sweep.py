@@ -1,4 +1,4 @@
-"""Sweeps: what varies, seeds, results, what is saved and never computed twice, refusals, workers that die."""
+"""Sweeps: settings that vary, seeds, results, saved runs that are not computed twice, refusals, lost workers."""
 
 import errno
 import importlib
@@ -97,14 +97,14 @@ QUICK = {"duration": 2.0}
 
 @pytest.fixture
 def scene(tmp_path):
-    """The path of a scene of one's own that leaves a file for each run it begins."""
+    """The path of a user's own scene that writes a file for each run that it begins."""
     path = tmp_path / "discs.py"
     path.write_text(SCENE, encoding="utf-8")
     return path
 
 
 def begun(scene):
-    """Return how often a run was begun, by its seed."""
+    """Return the number of times that a run was begun, by its seed."""
     return Counter(int(path.name.split("-")[1]) for path in scene.parent.glob("run-*"))
 
 
@@ -120,7 +120,7 @@ def typed(*words):
 
 
 def stop_after(runs, total):
-    """Return a progress that is stopped, as by Ctrl-C, when so many runs are complete."""
+    """Return a progress function that stops, as by Ctrl-C, when a number of runs are complete."""
 
     def show(share, word):
         if share > runs / total:
@@ -460,12 +460,12 @@ def test_a_full_disk_ends_the_sweep_with_what_was_saved_kept(tmp_path, monkeypat
 
     def full(descriptor):
         calls.append(descriptor)
-        if len(calls) == 4:  # the head and two runs have found room
+        if len(calls) == 4:  # the first line and two runs have been written
             raise OSError(errno.ENOSPC, "No space left on device")
         real(descriptor)
 
     with monkeypatch.context() as patch:
-        # of the journal alone: on a slow computer the states of runs are written in between
+        # writes of the journal only: on a slow computer the states of runs are written in between
         patch.setattr("atmosbox.file.journal.os", SimpleNamespace(**{**vars(os), "fsync": full}))
         with pytest.raises(DiskFullError, match=r"a\.part\.jsonl, which stays as it was"):
             sweep(grid, tmp_path / "a.nc", jobs=1)
@@ -573,7 +573,7 @@ def raises(error):
 
 @pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.validate), 2])
 def test_a_killed_sweep_goes_on_within_its_runs_computes_nothing_twice_and_leaves_no_process(scene, tmp_path, jobs):
-    """kill -9 while two runs are saved and others half-way: the same again finds what an undisturbed sweep finds."""
+    """kill -9 when two runs are saved and others half-way: the same command again gives the undisturbed results."""
     scene.write_text(HELD, encoding="utf-8")
     out = tmp_path / "out"
     out.mkdir()

@@ -1,4 +1,4 @@
-"""The figure of a sweep: curves, families, fields, words, and what cannot be drawn."""
+"""The figure of a sweep: curves, families of curves, fields, words, and sweeps that cannot be drawn."""
 
 import numpy as np
 import pytest
@@ -75,7 +75,7 @@ SLAB = {
 
 
 def slabs(names=tuple(SLAB), vary="temperature=111.4K,123.8K,136.2K"):
-    """Return a sweep over slabs of liquid with the numbers that six real ones gave."""
+    """Return a sweep over slabs of liquid with the results of six real runs."""
     grid = plan("attraction", [vary], members=1, settings={"start": "slab", "density": 1.0})
     records = []
     for task in grid.tasks():

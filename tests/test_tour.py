@@ -1,4 +1,4 @@
-"""The tour: every step works, waits for Enter, and Ctrl-C leaves without a trace of trouble."""
+"""The tour: every step works and waits for Enter, and Ctrl-C ends the tour without an error message."""
 
 import contextlib
 import importlib
@@ -25,7 +25,7 @@ def typed(*words, folder, **more):
 
 
 def test_the_tour_goes_through_without_stopping_and_leaves_what_it_has_made(tmp_path, monkeypatch):
-    """Its sixteen commands are run in this process, where they have loaded all libraries after the first."""
+    """The sixteen commands are run in this process, where all libraries are loaded after the first one."""
 
     def status(words, folder):
         with contextlib.chdir(folder):
@@ -90,7 +90,7 @@ def test_enter_goes_on_and_ctrl_c_leaves_cleanly(tmp_path, ending):
     assert "lifting-dry  " in said
     until("info temperature\n  [Enter]")
     if ending == "ctrl-c":
-        # a signal between the prompt and the wait for a line is told to Python after that line only
+        # Python handles a signal between the prompt and the wait for a line only after that line
         time.sleep(0.3)
         for _ in range(12):
             tour.send_signal(signal.SIGINT)

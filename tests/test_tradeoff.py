@@ -41,7 +41,7 @@ QUICK = (
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled():
-    """Compile the engines, which would count, before any budget begins."""
+    """Compile the engines before any budget begins, since compilation would count."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseStepWarning)
         for rung in rungs(QUICK, {}):
@@ -52,7 +52,7 @@ def compiled():
 @pytest.fixture(scope="module")
 def found():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(budgeted_runs, "MOST_RUNS", 4)  # which ends it, on a computer that has nothing else to do
+        patch.setattr(budgeted_runs, "MOST_RUNS", 4)  # this ends it, on a computer that is not busy
         return measure("lifting-dry", ladder=rungs(QUICK, {}), budget=60.0)
 
 
@@ -96,7 +96,7 @@ def test_few_members_are_judged_by_their_own_error_bars():
 
 
 def test_the_noise_of_a_curve_is_no_bias():
-    # 25 points without bias: what chance adds to the mean square is taken off, to within its own scatter.
+    # 25 points without bias: the part of the mean square due to chance is subtracted, to within its own scatter.
     rng = np.random.default_rng(2)
     bias, _, noise = _summary(rng.normal(size=(16, 25)), np.ones((16, 25)))
     assert noise == pytest.approx(1.0, abs=4.0 / math.sqrt(2 * 15 * 25))
@@ -161,7 +161,7 @@ def test_what_an_engine_cannot_do_is_said_and_not_measured(monkeypatch):
 
 
 class Clock:
-    """A clock that stands still but for what is done, and the runs that are done by it.
+    """A clock that moves only with the simulated work, and the runs that use it.
 
     ``compiling``, ``building`` and ``running`` are seconds by way; a run calls its watch a hundred times.
     """
@@ -257,7 +257,7 @@ def test_its_figure_is_the_same_to_the_byte_and_survives_the_file(found, tmp_pat
 
 
 def stored(scene):
-    """Return a trade that was measured for the pages."""
+    """Return a tradeoff that was measured for the pages."""
     return read(ROOT / f"benchmarks/tradeoff-{scene}.nc")
 
 
@@ -353,7 +353,7 @@ LONG = (Rung("exact", {"molecules": 100}, 0, 100.0), Rung("exact", {"molecules":
 
 @pytest.mark.soak
 def test_a_tradeoff_that_is_killed_goes_on_within_its_run(tmp_path, monkeypatch):
-    """kill -9: runs that are complete are kept, the one under way goes on, and every number is the same."""
+    """kill -9: complete runs are kept, the interrupted run is continued, and every number is the same."""
     monkeypatch.setattr(budgeted_runs, "MOST_RUNS", 2)
 
     def under_way():

@@ -41,7 +41,7 @@ def test_the_units_of_a_scale_fit_together():
     assert scale.temperature == pytest.approx(288.15, rel=1e-14)
     assert scale.pressure * scale.length**3 == pytest.approx(scale.total_energy, rel=1e-14)
     assert scale.mass_density * scale.velocity**2 == pytest.approx(scale.pressure, rel=1e-14)
-    # A wall's pressure is the impulse that it receives per area and time.
+    # The pressure on a wall is the impulse that it receives per area and time.
     impulse_per_area_and_time = scale.total_impulse / (scale.length**2 * scale.time)
     assert impulse_per_area_and_time == pytest.approx(scale.pressure, rel=1e-14)
 

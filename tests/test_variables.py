@@ -1,4 +1,4 @@
-"""The declarations of the variables: what a file says of one, and how it stores it.
+"""The declarations of the variables: the attributes of a variable in a file, and how it is stored.
 
 That every variable has a unit, words and a name that CF knows is checked by CF's own program in tests/test_output.py.
 """
