@@ -57,6 +57,13 @@ def water(scale: Scale, diameter: float = 1.0) -> Substance:
 def vapour_molecules(molecules: int, vapour_pressure: float, pressure: float) -> int:
     """Return how many of ``molecules`` are vapour at a partial pressure.
 
+    Parameters
+    ----------
+    molecules
+        Number of molecules of air and vapour together.
+    vapour_pressure, pressure
+        Partial pressure of the vapour, and pressure of the gas, both in one unit.
+
     Examples
     --------
     >>> vapour_molecules(1000, 23.0, 1000.0)
@@ -99,6 +106,13 @@ class MoistAir:
 
 def moist_air(molecules: int, vapour: int, rng: Source) -> MoistAir:
     """Return molecules of moist air, some of them vapour, at kT = 1 to rounding and without total momentum.
+
+    Parameters
+    ----------
+    molecules, vapour
+        Number of molecules, and number of them that are vapour.
+    rng
+        Source of the random numbers.
 
     Examples
     --------

@@ -245,6 +245,13 @@ def kolmogorov_smirnov_critical(samples: ArrayLike, level: ArrayLike = 0.01) -> 
 def running_mean(values: ArrayLike, block: int) -> NDArray[np.float64]:
     """Return the mean of each value and its neighbours, the same number on either side, up to half a block.
 
+    Parameters
+    ----------
+    values : (value,)
+        The series.
+    block
+        Number of values of which a mean is taken; one more if it is even.
+
     Examples
     --------
     >>> running_mean([0.0, 3.0, 0.0, 3.0], 3)

@@ -73,6 +73,16 @@ def diffusivity_error(mass: tuple[float, float]) -> float:
     box with one gas on each side it is larger on one side and smaller on the other; the two cancel except for this
     error.
 
+    Parameters
+    ----------
+    mass
+        Mass of a molecule of each gas [mass].
+
+    Returns
+    -------
+    float
+        Relative error, at least 0 [1].
+
     Examples
     --------
     >>> diffusivity_error((1.0, 1.0)), round(diffusivity_error((1.0, 10.0)), 3)

@@ -59,6 +59,17 @@ def thin_gas_conductivity(kT: float, mass: float, diameter: float, freedom: int 
     :math:`1.0252 \cdot \tfrac{75}{64} \sqrt{kT/\pi m} / \sigma^2`, and 5/4 of it with two degrees of freedom
     of rotation.
 
+    Parameters
+    ----------
+    kT
+        Temperature [energy].
+    mass
+        Mass of a molecule [mass].
+    diameter
+        Diameter of a molecule [length].
+    freedom
+        Degrees of freedom of a molecule, 3 or 5.
+
     Examples
     --------
     >>> round(thin_gas_conductivity(1.0, 1.0, 1.0), 6)

@@ -101,7 +101,22 @@ def atmosphere_panel(title: str, headlines: tuple[str, ...] = (), way: str = "")
 
 
 def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict[str, Array]:
-    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed."""
+    """Return what theory expects along the ascent: water, humidity, and the adiabat if nothing condensed.
+
+    Parameters
+    ----------
+    dataset
+        The measured ascent.
+    ascent
+        The ascent that was planned.
+    frames
+        Number of frames of the whole ascent.
+
+    Returns
+    -------
+    dict
+        Arrays (frame,) by the names of the variables: temperature [K], mixing ratios [kg kg-1], relative humidity [1].
+    """
     pressure = dataset.parcel_pressure.values
     if ascent.rains:
         shares, along = ascent.planned

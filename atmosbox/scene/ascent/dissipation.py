@@ -69,6 +69,11 @@ def entropy_gain(cloud: Cloud) -> Gain:
 def gathered(rate: Array, moment: Array) -> Array:
     """Return the integral of a rate up to each moment, from the start at zero.
 
+    Parameters
+    ----------
+    rate, moment : (moment,)
+        The rate, and the moments at which it is known, with the unit of time of the rate.
+
     Examples
     --------
     >>> gathered(np.array([2.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]))

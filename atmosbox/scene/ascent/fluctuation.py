@@ -100,7 +100,15 @@ def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False)
 
 
 def vapour_covariance(cloud: Cloud, samples: int) -> Array:
-    """Return the covariance of the frame means of the number of molecules of vapour, (frame, frame)."""
+    """Return the covariance of the frame means of the number of molecules of vapour, (frame, frame).
+
+    Parameters
+    ----------
+    cloud
+        The parcel at each sample.
+    samples
+        Number of samples in a frame.
+    """
     none = np.zeros_like(cloud.moment)
     gone = np.zeros((len(none), 2))
     gone[:, 0] = -1.0

@@ -20,6 +20,11 @@ Array = NDArray[np.float64]
 def weighted_slope(x: Array, y: Array, weight: Array) -> float:
     """Return the slope of the straight line through points with weights, by least squares.
 
+    Parameters
+    ----------
+    x, y, weight : (point,)
+        Coordinates of the points, and their weights.
+
     Examples
     --------
     >>> weighted_slope(np.arange(3.0), np.array([1.0, 3.0, 9.0]), np.array([1.0, 1.0, 0.0]))
