@@ -146,7 +146,7 @@ def place(radius, length, inverse, state):
 
 @kernel
 def _fastest(number, columns):
-    """Return the highest speed of all molecules [length/time]; with four maxima, as each must wait for its last one."""
+    """Return the highest speed of all molecules [length/time]; four maxima side by side are faster than one."""
     a = b = c = d = 0.0
     vx, vy, vz = columns.vx, columns.vy, columns.vz
     whole = number - number % 4
