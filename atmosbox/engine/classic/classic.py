@@ -1,7 +1,7 @@
-"""The box as teaching applets have moved it: three schemes, each in its own file, as a lesson and a baseline.
+"""The schemes of common teaching applets: three of them, each in its own file, as a lesson and a baseline.
 
 ================  ======================================  ==================  ==========================
-scheme            molecules                               who is tested       beyond a wall
+scheme            molecules                               tested pairs        beyond a wall
 ================  ======================================  ==================  ==========================
 `classic_strips`     equal discs in a plane                  strips              the move is undone
 `classic_lookahead`  discs of unequal mass in a plane        all pairs           put back onto the wall
@@ -34,7 +34,7 @@ SCHEMES: tuple[Scheme, ...] = ("strips", "lookahead", "spheres")
 class ClassicParcel(MarchingParcel):
     r"""Molecules in a box, advanced the way teaching applets do it.
 
-    What it is given, and what it tells, is described at `Parcel`; it takes no rotation and no piston. Molecules may
+    Its other parameters, and its properties, are described at `Parcel`; it has no rotation and no piston. Molecules may
     overlap, at the start too.
 
     Parameters
@@ -42,25 +42,25 @@ class ClassicParcel(MarchingParcel):
     position, velocity : (molecule, axis)
         Centres [length] and velocities [length/time].
     scheme
-        ``"strips"``, ``"lookahead"`` or ``"spheres"``; by default what suits the molecules: strips for equal discs in
-        a plane, looking ahead for unequal ones, else spheres.
+        ``"strips"``, ``"lookahead"`` or ``"spheres"``; by default strips for equal discs in a plane, lookahead for
+        unequal ones, else spheres.
     delta
-        The time step, as the part of its diameter that a molecule moves in it at its thermal speed,
-        :math:`\Delta t \sqrt{kT/m} / \sigma`: that of the fastest kind and the smallest size. A tenth is what an
+        The time step, as the fraction of its diameter that a molecule moves in it at its thermal speed,
+        :math:`\Delta t \sqrt{kT/m} / \sigma`, for the fastest kind and the smallest size. A tenth is what an
         applet of 60 frames a second takes if a molecule crosses a picture of a hundred diameters in some 17 s.
     dt
         The time step itself [time], instead of delta.
     epsilon
-        How far the look ahead looks [time].
+        How far ahead the scheme ``"lookahead"`` looks [time].
     closing_only
-        Whether spheres that are already parting are left alone; False shows a common mistake.
+        Whether spheres that move apart already are left unchanged; False shows a common mistake.
     **box
-        What every engine's box is given: see `Parcel`.
+        The parameters of every engine's box: see `Parcel`.
 
     Raises
     ------
     RefusedError
-        If a number is impossible, or the box holds what no classic scheme knows.
+        If a number is impossible, or the box has a feature that no classic scheme has.
 
     Examples
     --------
@@ -144,50 +144,50 @@ class ClassicParcel(MarchingParcel):
         return n if self._scheme == "strips" else n + n * n // 16
 
     def snapshot(self) -> Snapshot:
-        """Return all molecules as they are now; nothing in the box changes by being looked at."""
+        """Return all molecules as they are now; the box does not change."""
         discs = self._discs
         return Snapshot(self.time, discs.position.T.copy(), discs.velocity.T.copy(), np.zeros(self._number))
 
     def memory(self) -> int:
-        """Return the bytes that molecules and strips take."""
+        """Return the memory of molecules and strips [bytes]."""
         arrays: list[Any] = [*self._discs, self._strips.order, self._strips.first, self._strips.strip]
         return sum(int(array.nbytes) for array in arrays)
 
-    # ------------------------------------------------------------------ what only these schemes report
+    # ------------------------------------------------------------------ tallies that only these schemes have
 
     @property
     def scheme(self) -> Scheme:
-        """Which scheme moves the molecules."""
+        """Name of the scheme that moves the molecules."""
         return self._scheme
 
     @property
     def numerical_heat(self) -> float:
-        """Energy that the scheme itself has made since the start [energy], by its falls and at the walls.
+        """Energy that the scheme itself has made since the start [energy], by its rule for the fall and at the walls.
 
-        It is neither heat of a wall nor work, but an error; without gravity there is none. That the ledger closes says
-        only that nothing is unaccounted for.
+        It is neither heat of a wall nor work, but an error; without gravity there is none. A ledger that closes shows
+        only that all energy is accounted for.
         """
         return float(self._score.numerical_heat[0])
 
     @property
     def pair_tests(self) -> int:
-        """How many pairs have been tested since the start."""
+        """Number of pairs that have been tested since the start."""
         return int(self._score.count[0])
 
     @property
     def repeated_contacts(self) -> int:
-        """How many contacts came a step after one of the same two molecules, as the last partner of each tells."""
+        """Number of contacts one step after a contact of the same two, as far as each one's last partner tells."""
         return int(self._score.count[1])
 
     @property
     def parting_contacts(self) -> int:
-        """How many contacts were those of a pair that was already parting: they never happened."""
+        """Number of contacts of pairs that were already moving apart: false collisions."""
         return int(self._score.count[2])
 
-    # ------------------------------------------------------------------ how
+    # ------------------------------------------------------------------ how steps are made
 
     def _choose(self) -> Scheme:
-        """Return the scheme asked for, or the one that suits the molecules; refuse what no scheme can do."""
+        """Return the scheme asked for, or the default for these molecules; refuse what the scheme cannot do."""
         if self._walls.law[5] == PISTON:
             raise RefusedError("the classic schemes have no piston, wall z_high: give that box to the exact engine")
         if self._rotates:
@@ -209,7 +209,7 @@ class ClassicParcel(MarchingParcel):
         return self._wish
 
     def _cut(self) -> Strips:
-        """Return the strips, empty where the scheme needs none."""
+        """Return the strips; none if the scheme needs none."""
         n = self._number
         across = 0
         if self._scheme == "strips" and n:
@@ -225,7 +225,7 @@ class ClassicParcel(MarchingParcel):
     def _passage(self, velocity: Array) -> float:
         """Return the time in which a molecule moves by a diameter at its thermal speed [time].
 
-        Molecules of no size, or at rest, are timed by the way to their neighbour.
+        For molecules without size, or at rest, it is the natural time of the box: see `inputs.natural_time`.
         """
         fastest = float(self._thermal_speeds(velocity).max(initial=0.0))
         sizes = self._diameter[self._diameter > 0.0]

@@ -1,16 +1,16 @@
-r"""The second classic scheme: discs of unequal mass in a plane, which look ahead to see whether they approach.
+r"""The second classic scheme: discs of unequal mass in a plane; a look ahead in time tells whether a pair approaches.
 
-Each step is Euler's: :math:`z + v \Delta t` with the velocity as it was, then :math:`v - g \Delta t`. A disc that
-ends beyond a wall is put back onto it, and its velocity turned round. Then all pairs are tested, in the order of
+Each step is Euler's: :math:`z + v \Delta t` with the old velocity, then :math:`v - g \Delta t`. A disc that
+ends beyond a wall is put back onto it, and its velocity is reversed. Then all pairs are tested, in the order of
 their indices. For those that overlap the distance a time :math:`\epsilon` later is computed; if it is smaller, they
-approach, and both new velocities follow from both old ones.
+approach, and both new velocities are computed from both old ones.
 
-What that costs: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low by
-:math:`(3/\sqrt{\pi}) \delta` of itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`; and
-because relative motion is straight, the look ahead passes over pairs with
+Cost and errors: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low by
+the fraction :math:`(3/\sqrt{\pi}) \delta`, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`; and
+because relative motion is straight, the look ahead misses pairs with
 :math:`-\epsilon v^2 / 2 < r \cdot v < 0`, which graze each other. Euler's fall heats each molecule by
-:math:`m g^2 \Delta t / 2` per unit of time, and discs put back onto a floor gain half as much again. Put back, they
-have also lost the rest of their step: the pressure on walls a length L apart is low by
+:math:`m g^2 \Delta t / 2` per unit of time, and discs put back onto a floor gain half as much again. Discs that are put
+back also lose the rest of their step: the pressure on walls a length L apart is low by
 :math:`\sqrt{2/\pi} \Delta t \sqrt{kT/m} / L`. Without gravity energy is kept to rounding.
 """
 
@@ -28,13 +28,13 @@ def is_approaching(rx, rz, vx, vz, epsilon):
     Parameters
     ----------
     rx, rz, vx, vz
-        Position [length] and velocity [length/time] of one relative to the other.
+        Position [length] and velocity [length/time] of one disc relative to the other.
     epsilon
         How far to look ahead [time].
 
     Examples
     --------
-    A pair that grazes is too far on a moment later, and is taken for one that parts:
+    A grazing pair has passed its nearest distance a moment later, and is wrongly taken for one that moves apart:
 
     >>> is_approaching(1.0, 0.0, -1.0, 0.0, 0.001), is_approaching(1.0, 0.0, -0.001, 2.0, 0.001)
     (True, False)
@@ -46,7 +46,7 @@ def is_approaching(rx, rz, vx, vz, epsilon):
 
 @kernel
 def _move(discs, frame, walls, tallies, score, time):
-    """Move every disc by one step of Euler's; put back onto a wall what ends beyond it."""
+    """Move every disc by one Euler step; put a disc that ends beyond a wall back onto it."""
     x, v = discs.position, discs.velocity
     dt, gravity = frame.time_step, frame.gravity
     made = 0.0
@@ -78,7 +78,7 @@ def _move(discs, frame, walls, tallies, score, time):
 
 @kernel
 def _collide(step, epsilon, discs, frame, tallies, score):
-    """Give every pair that overlaps and approaches new velocities, all pairs in the order of their indices."""
+    """Give new velocities to all pairs that overlap and approach, in the order of their indices."""
     x, z = discs.position[0], discs.position[2]
     v, mass, radius = discs.velocity, discs.mass, discs.radius
     n = mass.size
@@ -108,7 +108,7 @@ def _collide(step, epsilon, discs, frame, tallies, score):
 
 @kernel(entry=True)
 def march_lookahead(discs, epsilon, frame, walls, tallies, score, done, steps):
-    """Advance by so many steps after those that are done.
+    """Advance by ``steps`` steps after the first ``done``.
 
     Parameters
     ----------
@@ -117,9 +117,9 @@ def march_lookahead(discs, epsilon, frame, walls, tallies, score, done, steps):
     epsilon
         How far to look ahead [time].
     tallies, score
-        What is counted.
+        The tallies.
     done, steps
-        Number of steps since the start, and of those to do.
+        Number of steps since the start, and number of steps to make.
     """
     for step in range(done, done + steps):
         _move(discs, frame, walls, tallies, score, (step + 1) * frame.time_step)

@@ -1,22 +1,22 @@
 r"""The third classic scheme: spheres in space, all pairs in the order of their indices.
 
-Each step is Euler's: :math:`z + v \Delta t` with the velocity as it was, then :math:`v - g \Delta t`. A sphere that
-ends beyond a wall is reflected in it, as light in a mirror; at a heat bath it is put onto the wall and emitted.
+Each step is Euler's: :math:`z + v \Delta t` with the old velocity, then :math:`v - g \Delta t`. A sphere that
+ends beyond a wall is reflected, like light in a mirror; at a heat bath it is put onto the wall and emitted.
 Then all pairs are tested. Those that overlap exchange the components of their velocities along the line of centres,
-weighted by mass. Nothing moves them apart: they may overlap, and do until they have flown apart. Where three are in
+weighted by mass. They are not moved apart: they overlap until they have flown apart. Where three are in
 contact, one pair is resolved after another.
 
-A pair that still overlaps because it is just parting must be left alone: only closing pairs exchange. An applet that
-forgets this (``closing_only=False``) turns parting pairs, those that passed their point of closest approach between
-two steps, back into each other. They stay together, exchanging step by step, until they have moved apart or a third
-one parts them: it counts collisions that never happened, more and more of them the longer it runs, and the
+A pair that still overlaps but already moves apart must be left unchanged: only closing pairs exchange. An applet that
+forgets this (``closing_only=False``) makes pairs that have passed their point of closest approach between
+two steps turn back towards each other. They stay together, exchanging in every step, until they have moved apart or a
+third molecule separates them: the applet counts false collisions, more and more of them the longer it runs, and the
 energy does not show it, because every exchange conserves it.
 
-What the scheme costs: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low
-by :math:`(4/\sqrt{\pi}) \delta` of itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`;
-pairs that graze each other are missed, a part :math:`(8/3) \delta^2`. In gravity Euler's fall, and the mirror at
-the floor, each heat a molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy is kept to
-rounding.
+Cost and errors: N (N - 1) / 2 tests a step. The contact comes late, so that the collisional pressure is low
+by the fraction :math:`(4/\sqrt{\pi}) \delta`, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`;
+a fraction :math:`(8/3) \delta^2` of the pairs, which graze each other, is missed. In gravity Euler's fall, and the
+mirror at the floor, each heat a molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy is
+kept to rounding.
 """
 
 import numpy as np
@@ -33,11 +33,11 @@ _MOST_REFLECTIONS = 1000.0
 
 @kernel
 def mirror(x, low, high):
-    """Return a coordinate [length] reflected between two walls as often as it takes, and how often that was.
+    """Return a coordinate [length] reflected between two walls as often as needed, and the number of reflections.
 
     Examples
     --------
-    Five lengths up in a box of two, it has been at the ceiling and at the floor:
+    Five lengths up in a box of height two, it has been reflected at the ceiling and at the floor:
 
     >>> place, times = mirror(5.0, 0.0, 2.0)
     >>> float(place), float(times)
@@ -54,7 +54,7 @@ def mirror(x, low, high):
 
 @kernel
 def _turn_round(i, discs, frame, walls, tallies, time):
-    """Put a sphere back between the walls, first the place and then the velocity, axis by axis."""
+    """Put a sphere back between the walls, first its position and then its velocity, axis by axis."""
     x, radius = discs.position, discs.radius[i]
     for axis in range(3):
         side = beyond(x[axis, i], radius, frame.length[axis], frame.inverse[axis])
@@ -73,7 +73,7 @@ def _turn_round(i, discs, frame, walls, tallies, time):
 
 @kernel
 def _move(discs, frame, walls, tallies, score, time):
-    """Move every sphere by one step of Euler's; reflect what ends beyond a wall, or put it onto a heat bath."""
+    """Move every sphere by one Euler step; reflect it if it ends beyond a wall, or put it onto a heat bath."""
     x, v = discs.position, discs.velocity
     dt, gravity = frame.time_step, frame.gravity
     made = 0.0
@@ -93,14 +93,14 @@ def _move(discs, frame, walls, tallies, score, time):
         fallen = v[2, i]
         if hit:
             _turn_round(i, discs, frame, walls, tallies, time)
-        if gravity > 0.0:  # what walls do to the velocity is not the scheme's
+        if gravity > 0.0:  # energy from the walls' laws is not made by the scheme
             made += discs.mass[i] * (gravity * (x[2, i] - old) + 0.5 * (fallen * fallen - before * before))
     score.numerical_heat[0] += made
 
 
 @kernel
 def _collide(step, closing_only, discs, frame, tallies, score):
-    """Let all pairs that overlap exchange, in the order of their indices."""
+    """Exchange velocities in all pairs that overlap, in the order of their indices."""
     x, y, z = discs.position[0], discs.position[1], discs.position[2]
     v, mass, radius = discs.velocity, discs.mass, discs.radius
     n = mass.size
@@ -134,18 +134,18 @@ def _collide(step, closing_only, discs, frame, tallies, score):
 
 @kernel(entry=True)
 def march_spheres(discs, closing_only, frame, walls, tallies, score, done, steps):
-    """Advance by so many steps after those that are done.
+    """Advance by ``steps`` steps after the first ``done``.
 
     Parameters
     ----------
     discs, frame, walls
         The molecules, the box and its walls.
     closing_only
-        Whether a pair that is already parting is left alone.
+        Whether a pair that already moves apart is left unchanged.
     tallies, score
-        What is counted.
+        The tallies.
     done, steps
-        Number of steps since the start, and of those to do.
+        Number of steps since the start, and number of steps to make.
     """
     for step in range(done, done + steps):
         _move(discs, frame, walls, tallies, score, (step + 1) * frame.time_step)

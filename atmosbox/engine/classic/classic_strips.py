@@ -1,15 +1,15 @@
 r"""The first classic scheme: equal discs in a plane, sorted into strips one diameter wide.
 
-Each step every disc falls with the mean of its velocities before and after, :math:`z + (v + v') \Delta t / 2`,
-which is the exact parabola. A move that ends beyond a wall is undone along that axis, and the velocity turned round.
+In each step every disc falls with the mean of its velocities before and after, :math:`z + (v + v') \Delta t / 2`,
+which is the exact parabola. A move that ends beyond a wall is undone along that axis, and the velocity is reversed.
 Then the discs are sorted into upright strips, and each is tested against those of its own strip and of the next: a
 pair that overlaps, :math:`d^2 < \sigma^2`, and approaches, :math:`r \cdot v > 0`, exchanges the components of its
 velocities along the line of centres.
 
-What that costs: the contact comes late, so that the collisional pressure is low by :math:`(3/\sqrt{\pi}) \delta` of
-itself, in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`, and pairs that graze each other
-between two steps are missed, a part :math:`\delta^2`. An undone move returns the height but not the fall of the
-velocity: on a floor that heats each molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy
+Errors: the contact comes late, so that the collisional pressure is low by the fraction :math:`(3/\sqrt{\pi}) \delta`,
+in a dilute gas, with :math:`\delta = \Delta t \sqrt{kT/m} / \sigma`; a fraction :math:`\delta^2` of the pairs, which
+graze each other between two steps, is missed. An undone move restores the height but not the velocity before the
+fall: on a floor this heats each molecule by :math:`m g^2 \Delta t / 2` per unit of time. Without gravity energy
 is kept to rounding.
 """
 
@@ -24,11 +24,11 @@ __all__ = ["Strips", "march_strips", "strips_across"]
 
 
 class Strips(NamedTuple):
-    """The discs sorted by strips along x.
+    """The discs sorted into strips along x.
 
-    ``order : (molecule,)``: strip by strip, by index within each; ``first : (strip + 1,)``: where each strip starts
-    in it; ``strip : (molecule,)``; ``number`` of strips, 0 for discs without size, which never meet;
-    ``per_length`` [1/length].
+    ``order : (molecule,)``: indices strip by strip, in increasing order within each; ``first : (strip + 1,)``: where
+    each strip starts in it; ``strip : (molecule,)``: the strip of each disc; ``number``: number of strips, 0 for discs
+    without size, which never meet; ``per_length``: strips per length [1/length].
     """
 
     order: Any
@@ -39,16 +39,16 @@ class Strips(NamedTuple):
 
 
 def strips_across(width: float, diameter: float, molecules: int, periodic: bool) -> int:
-    """Return how many strips, no narrower than a diameter, a box is cut into.
+    """Return the number of strips, none narrower than a diameter, into which a box is cut.
 
     Parameters
     ----------
     width, diameter
-        Of the box along x, and of a disc [length].
+        Width of the box along x, and diameter of a disc [length].
     molecules
-        Their number: more than four strips for each would only cost time.
+        Number of discs: more than four strips for each would only cost time.
     periodic
-        Whether the last strip is the first one's neighbour; that takes at least three.
+        Whether the last strip is a neighbour of the first; that takes at least three.
 
     Examples
     --------
@@ -58,14 +58,14 @@ def strips_across(width: float, diameter: float, molecules: int, periodic: bool)
     if not diameter > 0.0:
         return 0
     most = 4 * molecules + 1
-    ratio = width / diameter * (1.0 - 1e-12)  # never a strip narrower than a diameter, by rounding either
+    ratio = width / diameter * (1.0 - 1e-12)  # so that rounding makes no strip narrower than a diameter
     number = most if ratio > most else max(1, math.floor(ratio))
     return 1 if periodic and number < 3 else number
 
 
 @kernel
 def _fall(discs, frame, walls, tallies, score, time):
-    """Move every disc by one step, with the mean of its velocities; undo what ends beyond a wall."""
+    """Move every disc by one step, with the mean of its velocities; undo a move that ends beyond a wall."""
     x, v = discs.position, discs.velocity
     dt, gravity = frame.time_step, frame.gravity
     made = 0.0
@@ -81,7 +81,7 @@ def _fall(discs, frame, walls, tallies, score, time):
             x[0, i] = wrap(to_x, frame.length[0], frame.inverse[0])
         if side_z == 0:
             x[2, i] = wrap(to_z, frame.length[2], frame.inverse[2])
-        elif gravity > 0.0:  # the height is given back, what the velocity fell is not
+        elif gravity > 0.0:  # the height is restored, the velocity gained in the fall is kept
             made += 0.5 * discs.mass[i] * (after * after - before * before)
         if side_x != 0:
             meet_wall(i, 0, side_x, time, discs, frame, walls, tallies)
@@ -92,7 +92,7 @@ def _fall(discs, frame, walls, tallies, score, time):
 
 @kernel
 def _sort(discs, strips):
-    """Sort the discs by strips, those of a strip by index."""
+    """Sort the discs into strips, by index within a strip."""
     x, first = discs.position, strips.first
     first[:] = 0
     for i in range(discs.mass.size):
@@ -112,7 +112,7 @@ def _sort(discs, strips):
 
 @kernel
 def _test(i, begin, end, step, discs, strips, frame, tallies, score):
-    """Test a disc against those from one place in the order to another; let what overlaps and approaches exchange."""
+    """Test a disc against discs ``begin`` to ``end - 1`` in the order; exchange if they overlap and approach."""
     x, z, v = discs.position[0], discs.position[2], discs.velocity
     diameter = 2.0 * discs.radius[i]
     for q in range(begin, end):
@@ -135,7 +135,7 @@ def _test(i, begin, end, step, discs, strips, frame, tallies, score):
 
 @kernel
 def _exchange(step, discs, strips, frame, tallies, score):
-    """Let all pairs that overlap and approach exchange: within each strip, and with the next one."""
+    """Exchange velocities in all pairs that overlap and approach: within each strip, and with the next one."""
     for strip in range(strips.number):
         begin, end = strips.first[strip], strips.first[strip + 1]
         following = strip + 1
@@ -151,16 +151,16 @@ def _exchange(step, discs, strips, frame, tallies, score):
 
 @kernel(entry=True)
 def march_strips(discs, strips, frame, walls, tallies, score, done, steps):
-    """Advance by so many steps after those that are done.
+    """Advance by ``steps`` steps after the first ``done``.
 
     Parameters
     ----------
     discs, strips, frame, walls
         The molecules, the strips they are sorted into, the box and its walls.
     tallies, score
-        What is counted.
+        The tallies.
     done, steps
-        Number of steps since the start, and of those to do.
+        Number of steps since the start, and number of steps to make.
     """
     for step in range(done, done + steps):
         _fall(discs, frame, walls, tallies, score, (step + 1) * frame.time_step)

@@ -1,4 +1,4 @@
-"""What the three classic schemes share: the molecules as plain arrays, their walls, and what is counted."""
+"""The common part of the three classic schemes: the molecules as plain arrays, their walls, and the tallies."""
 
 from typing import Any, NamedTuple
 
@@ -14,7 +14,7 @@ class Discs(NamedTuple):
     """The molecules, discs or spheres.
 
     ``position``, ``velocity : (axis, molecule)`` [length, length/time]; ``mass``, ``radius : (molecule,)``
-    [mass, length]; ``partner``, ``met : (molecule,)``: with whom each had its last contact, and in which step.
+    [mass, length]; ``partner``, ``met : (molecule,)``: partner and step of the last contact of each molecule.
     """
 
     position: Any
@@ -42,10 +42,10 @@ class Frame(NamedTuple):
 
 
 class Score(NamedTuple):
-    """What only an approximate scheme counts.
+    """The tallies that only an approximate scheme has.
 
-    ``numerical_heat : (1,)`` [energy]: what the scheme itself has made. ``count : (3,)``: pairs looked at, contacts
-    of a pair that had one in the step before, contacts of pairs that were already parting.
+    ``numerical_heat : (1,)`` [energy]: energy made by the scheme itself. ``count : (3,)``: pairs tested, contacts
+    of a pair that had one in the step before, contacts of pairs that were already moving apart.
     """
 
     numerical_heat: Any
@@ -85,10 +85,10 @@ def beyond(x, radius, length, inverse):
 def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
     r"""Give a molecule that has come beyond a wall, and moves outward, its velocity by the law of the wall.
 
-    Where it is then put differs from scheme to scheme. It gets its velocity at the end of the step and does not fly
-    for what is left of it, as in the applets. Where the wall is a heat bath that makes the gas too hot: each flight
+    The schemes differ in where they put it then. The molecule gets its velocity at the end of the step and does not fly
+    for the rest of it, as in the applets. At a heat bath that makes the gas too hot: each flight
     ends about :math:`\Delta t / 2` late, and the molecules that walls emit carry more energy than the mean one, in
-    space :math:`2 kT` for :math:`3/2\,kT`.
+    space :math:`2 kT` instead of :math:`3/2\,kT`.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
     time
         Time since the start, at the end of the step [time].
     discs, frame, walls, tallies
-        The molecules, the box, its walls, and what is counted.
+        The molecules, the box, its walls, and the tallies.
     """
     v = discs.velocity
     if v[axis, i] * side <= 0.0:
@@ -123,7 +123,7 @@ def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
 def tally_contact(i, j, step, height, virial, parting, discs, tallies, score):
     """Count a contact of molecules i and j at a height [length], with its virial r . dp [energy].
 
-    Contacts of the same two in successive steps are counted as repeated as far as the last partner of each tells.
+    Contacts of the same two in successive steps count as repeated, as far as the last partner of each tells.
     """
     layer = min(max(int(height * tallies.layer_scale), 0), tallies.virial.size - 1)
     tallies.virial[layer] += virial
