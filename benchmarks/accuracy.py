@@ -1,15 +1,17 @@
 """How accurate a scene is, and what that costs, by engine and settings: the table that comes with atmosbox.
 
     python benchmarks/accuracy.py [SCENE ...] [--budget 60s]
-    python benchmarks/accuracy.py FILE.nc ...                  from what `atmosbox tradeoff` has measured
+    python benchmarks/accuracy.py FILE.nc ...                  from measurements of `atmosbox tradeoff`
 
-Every scene that declares a ladder is measured by `atmosbox.trade.tradeoff`: each way of running it as often as the
-budget allows, with other seeds. For each headline the table keeps the mean misfit to theory (bias), its standard
-error, and the standard deviation of a single run (noise), in K or as a share of the theory; and for each way the
-processor time of its engine as a ratio to that of the scene's default run, both from this measurement; the seconds of
-that run are kept, too, which are those of the computer that measured. Left out is
-what ran less than four times, so that the scatter of the seeds says little, left the box, or did not close its ledger.
-Scenes that are not named keep what they have.
+`atmosbox.trade.tradeoff` measures every scene that declares a ladder: each way of running it as often as the budget
+allows, with different seeds. For each headline the table holds the mean misfit to theory (bias), its standard error,
+and the standard deviation of a single run (noise), in K or as a share of the theory. For each way of running it holds
+the processor time of the engine as a ratio to that of the scene's default run in the same measurement. It also holds
+the seconds of the default run on the computer of the measurement.
+
+The table leaves out ways that ran less than four times (the scatter of so few seeds says little), ways in which
+molecules left the box, and ways whose energy ledger did not close. Entries of scenes that are not named stay as they
+are.
 """
 
 import argparse
@@ -36,19 +38,19 @@ from atmosbox.trade.tradeoff.timed_run import PROFILES  # noqa: E402
 
 TABLE = ROOT / "atmosbox" / "simulation" / "accuracy" / "accuracy.json"
 FEWEST = 4
-"""Runs below which the noise is taken from the runs' own error bars and not from their scatter."""
+"""Least number of runs of a way in the table; the scatter of fewer says little."""
 
 
 def varies(module: Any) -> list[str]:
-    """Return the settings that a scene's ladder varies: those that trade accuracy for time."""
+    """Return the settings that a scene's ladder varies, in order to trade accuracy for time."""
     own = module.Settings.model_fields
     return sorted({series.vary for series in module.ladder} & set(own))
 
 
 def ways(dataset: Any, module: Any) -> tuple[list[dict[str, Any]], float]:
-    """Return the ways of running a scene that can be relied on, each once, their cost relative to the default run.
+    """Return the reliable ways of running a scene, each once, with their costs relative to the default run.
 
-    And the processor time that the engine took in that run [s].
+    The second result is the processor time of the engine in the default run [s].
     """
     names = [name for name in dataset.quantity.values if name not in PROFILES]
     found: dict[str, dict[str, Any]] = {}
@@ -145,7 +147,7 @@ def printed(entry: dict[str, Any]) -> str:
 
 
 def write(path: Path, scene: str, entry: dict[str, Any]) -> None:
-    """Put the entry of a scene into the table, whole or not at all."""
+    """Write the entry of a scene into the table; the file is replaced only when the new one is complete."""
     held = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"scenes": {}}
     held["scenes"] = dict(sorted({**held["scenes"], scene: entry}.items()))
     hidden = path.with_name(f".{path.name}.{os.getpid()}.tmp")
@@ -154,7 +156,7 @@ def write(path: Path, scene: str, entry: dict[str, Any]) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Measure, print the tables and keep them."""
+    """Measure, print the tables and save them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
         "sources", nargs="*", metavar="SCENE|FILE.nc", help="scenes or measurements; all that have a ladder by default"

@@ -3,11 +3,11 @@
     python benchmarks/classic.py
     python benchmarks/classic.py --molecules 100 --phi 0.1 --contacts 1000000
 
-Two tables. The first is the CPU time of each scheme by the number of molecules. In the second the spheres take the
-step at which their collisional pressure Z - 1 is low by 1 %, found from a pilot run with a longer one, because it is
-low in proportion to the step: by 4 / sqrt(pi) delta in a dilute gas, by more in a dense one. Beside them runs the
-exact engine, in turns, and both measure Z - 1. The factor is CPU time per contact over CPU time per contact.
-Machines are noisy: only ratios of one run count.
+There are two tables. The first gives the CPU time of each scheme for several numbers of molecules. The second compares
+spheres in steps with the exact engine. The step is the one at which the collisional pressure Z - 1 of the spheres is
+too low by 1 %. A pilot run with a longer step finds it, because the error is proportional to the step: 4 / sqrt(pi)
+delta in a dilute gas, more in a dense one. Both engines run in turns on the same gas and measure Z - 1. The factor is
+the ratio of their CPU times per contact. Machines are noisy: only ratios from one run count.
 """
 
 import argparse
@@ -26,12 +26,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from atmosbox.engine import Parcel, ParcelSet, Periodic, Specular, maxwell_velocities, random_positions
 from atmosbox.engine.classic.classic import SCHEMES, ClassicParcel
 
-PILOT = 0.04  # the step, in delta, at which it is measured by how much Z - 1 is low
+PILOT = 0.04  # the step of the pilot run, in delta, which measures the error of Z - 1
 RATE = {0.01: 0.138854, 0.1: 1.765845}  # collisions of a molecule per reduced time
 
 
 def gas(number: int, covered: float, planar: bool) -> dict[str, Any]:
-    """Return the arguments of a periodic box of equal molecules that cover, or fill, a part of it."""
+    """Return the arguments of a periodic box of equal molecules, with a covered area (planar) or packing fraction."""
     rng = np.random.default_rng(1)
     side = math.sqrt(number * math.pi / 4.0 / covered) if planar else (number * math.pi / 6.0 / covered) ** (1.0 / 3.0)
     length = (side, 1.0, side) if planar else (side,) * 3
@@ -46,11 +46,11 @@ def gas(number: int, covered: float, planar: bool) -> dict[str, Any]:
 
 
 def cost(scheme: str, number: int, seconds: float, repeats: int) -> dict[str, Any]:
-    """Return what a scheme costs per molecule and step, and how many pairs it looks at."""
+    """Return the CPU time of a scheme per molecule and step, and the number of pairs that it tests in a step."""
     box = ClassicParcel(**gas(number, 0.02, scheme != "spheres"), scheme=scheme)
     box.advance(3 * box.time_step)
     steps = 1
-    while True:  # as many steps as fill the time
+    while True:  # find the number of steps that takes the wanted time
         start = time.process_time()
         box.advance(box.time + steps * box.time_step)
         spent = time.process_time() - start
@@ -74,7 +74,7 @@ def cost(scheme: str, number: int, seconds: float, repeats: int) -> dict[str, An
 
 
 def turn(box: Parcel, until: float) -> tuple[float, float, int]:
-    """Return CPU time, virial per time and number of contacts of a slice."""
+    """Return CPU time, virial per time and number of contacts while a box is advanced to a time."""
     virial, contacts, begun = box.virial.sum(), box.contacts, box.time
     start = time.process_time()
     box.advance(until)
@@ -83,7 +83,7 @@ def turn(box: Parcel, until: float) -> tuple[float, float, int]:
 
 
 def in_turns(number: int, covered: float, delta: float, contacts: float) -> tuple[np.ndarray, ClassicParcel]:
-    """Return what spheres and the exact engine do on the same gas, ``(block, engine, what)`` of `turn`."""
+    """Run spheres and the exact engine in turns on the same gas; return the results of `turn`, (block, engine, 3)."""
     made = gas(number, covered, planar=False)
     spheres = ClassicParcel(**made, scheme="spheres", delta=delta)
     exact = ParcelSet(**made)
@@ -96,14 +96,14 @@ def in_turns(number: int, covered: float, delta: float, contacts: float) -> tupl
 
 
 def low(table: np.ndarray) -> tuple[float, float]:
-    """Return by how much the collisional pressure of the spheres is low, and the standard error."""
+    """Return the share by which the collisional pressure of the spheres is too low, and its standard error."""
     mean = table[:, :, 1].mean(axis=0)
     spread = table[:, :, 1].std(axis=0, ddof=1) / math.sqrt(len(table))
     return float(1.0 - mean[0] / mean[1]), float(np.hypot(*(spread / mean)))
 
 
 def beside(number: int, covered: float, error: float, contacts: float) -> dict[str, Any]:
-    """Return how spheres at a given error of Z - 1, and the exact engine, fare in turns on the same gas."""
+    """Compare spheres at a given error of Z - 1 with the exact engine, in turns on the same gas."""
     late, _ = low(in_turns(number, covered, PILOT, 3.0 * contacts)[0])
     table, spheres = in_turns(number, covered, PILOT * error / late, contacts)
     measured, uncertain = low(table)
@@ -124,7 +124,7 @@ def beside(number: int, covered: float, error: float, contacts: float) -> dict[s
 
 
 def main(arguments: list[str] | None = None) -> dict[str, Any]:
-    """Run what is asked for and print two tables."""
+    """Run the cases asked for and print two tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--n", type=int, nargs="*", default=[60, 200, 600, 1000, 3000], help="for the first table")
     parser.add_argument("--seconds", type=float, default=1.0, help="CPU time of a row of the first table")

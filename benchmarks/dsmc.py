@@ -3,11 +3,11 @@
     python benchmarks/dsmc.py
     python benchmarks/dsmc.py --threads 1 2 --against FOLDER --repeats 9
 
-A gas in gravity between two heat baths, the floor twice a scale height below the ceiling; ten molecules and half
-a mean free path to a cell, 0.14 mean free times to a step. Machines are noisy: what counts is the ratio of two engines
-that take turns, the median over many short slices; CPU time counts on one thread, wall time on several.
-FOLDER holds a module ``dsmc.py`` with ``Sim(N, T, par, mgH, thermal, ppc)``, which advances N molecules on T threads
-by ``go(steps)``, in parallel where ``par``, and counts collisions in ``out[thread, 1]``.
+The gas is in gravity between two heat baths; the box is two scale heights high. A cell holds ten molecules, its side is
+half a mean free path, and a step is 0.14 mean free times. Machines are noisy: use the ratio of two engines that take
+turns, the median over many short slices; CPU time on one thread, wall time on several.
+FOLDER contains a module ``dsmc.py`` with ``Sim(N, T, par, mgH, thermal, ppc)``, which advances N molecules on T threads
+by ``go(steps)``, in parallel if ``par`` is true, and counts collisions in ``out[thread, 1]``.
 """
 
 import argparse
@@ -50,11 +50,11 @@ class Ours:
         )  # fmt: skip
 
     def go(self, steps: int) -> None:
-        """Advance by so many steps."""
+        """Advance by a number of steps."""
         self.box.advance((self.box.steps + steps) * self.box.time_step)
 
     def contacts(self) -> int:
-        """Return how many collisions there were."""
+        """Return the number of collisions so far."""
         return self.box.contacts
 
 
@@ -65,16 +65,16 @@ class Theirs:
         self.sim = module.Sim(n, threads, threads > 1, mgH=HEIGHTS, thermal=True, ppc=int(OCCUPANCY))
 
     def go(self, steps: int) -> None:
-        """Advance by so many steps."""
+        """Advance by a number of steps."""
         self.sim.go(steps)
 
     def contacts(self) -> int:
-        """Return how many collisions there were."""
+        """Return the number of collisions so far."""
         return int(self.sim.out[:, 1].sum())
 
 
 def times(go: Callable[[int], None], steps: int) -> tuple[float, float]:
-    """Return CPU and wall time of so many steps [s]."""
+    """Return CPU and wall time of a number of steps [s]."""
     cpu, wall = time.process_time(), time.perf_counter()
     go(steps)
     return time.process_time() - cpu, time.perf_counter() - wall
@@ -84,7 +84,7 @@ def measure(n: int, threads: int, sides: str, repeats: int, other: Any) -> dict[
     """Return the medians of one case."""
     ours = Ours(n, threads, sides)
     theirs = Theirs(other, n, threads) if other else None
-    steps = 32 * max(1, 100_000 // n)  # whole rounds of sorting
+    steps = 32 * max(1, 100_000 // n)  # a multiple of the steps between two sortings
     for engine in filter(None, (ours, theirs)):
         engine.go(33)
     rows, others = [], []

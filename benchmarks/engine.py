@@ -3,10 +3,10 @@
     python benchmarks/engine.py
     python benchmarks/engine.py --against FOLDER --repeats 9
 
-Machines are noisy: what counts is the ratio of two engines that take turns, the median over many short slices.
-FOLDER is a checkout of atmosbox, of another commit, whose engine runs in a second process. Or it holds a module
+Machines are noisy: use the ratio of two engines that take turns, the median over many short slices.
+FOLDER is a checkout of another commit of atmosbox, whose engine runs in a second process. Or it contains a module
 ``exact.py`` with ``make(PX, PZ, GRAV, THERM, K)``, which returns kernels, and ``Sim(kernels, X, V, L, g, m, PX, PZ)``,
-which advances equal spheres of unit diameter by ``go(nc=collisions)`` and counts them in ``cnt[0]``.
+which advances equal spheres of unit diameter by ``go(nc=collisions)`` and counts the collisions in ``cnt[0]``.
 """
 
 import argparse
@@ -40,19 +40,19 @@ class Ours:
         self.box = ParcelSet(x, v, length=(side,) * 3, walls=(Periodic(),) * 4 + ends, gravity=gravity)
 
     def advance(self, collisions: int) -> int:
-        """Advance by about so many collisions; return how many there were."""
+        """Advance by about a number of collisions; return how many there were."""
         before = self.box.contacts
         rate = self.box.contacts / self.box.time if self.box.time else 0.0
         self.box.advance(self.box.time + (collisions / rate if rate else 1e-3))
         return self.box.contacts - before
 
     def warm_up(self, time: float) -> None:
-        """Compile, and find the rate."""
+        """Advance to a time, so that the engine is compiled and the rate of collisions is known."""
         self.box.advance(time)
 
 
 class Checkout:
-    """The engine of another checkout, in a process of its own, which computes only while it is asked to."""
+    """The engine of another checkout, in a process of its own, which computes only on request."""
 
     def __init__(self, folder: Path, x: np.ndarray, v: np.ndarray, side: float, gravity: float) -> None:
         with tempfile.TemporaryDirectory() as place:
@@ -72,7 +72,7 @@ class Checkout:
         return float(self.process.stdout.readline())
 
     def pace(self, collisions: int) -> float:
-        """Return collisions per CPU second of one slice."""
+        """Return the collisions per CPU second of one slice."""
         return self._ask(collisions)
 
     def close(self) -> None:
@@ -81,7 +81,7 @@ class Checkout:
 
 
 def serve(start: Path) -> None:
-    """Advance the box of a file by as many collisions as each line of the input says; answer with the pace."""
+    """Advance the box of a file by the number of collisions on each line of the input; print the pace each time."""
     with np.load(start) as told:
         ours = Ours(told["x"], told["v"], float(told["side"]), float(told["gravity"]))
     n = ours.box.number
@@ -105,14 +105,14 @@ class Theirs:
         )  # fmt: skip
 
     def pace(self, collisions: int) -> float:
-        """Return collisions per CPU second of one slice."""
+        """Return the collisions per CPU second of one slice."""
         return pace(self.advance, collisions)
 
     def close(self) -> None:
         """Do nothing: it runs in this process."""
 
     def advance(self, collisions: int) -> int:
-        """Advance by so many collisions."""
+        """Advance by a number of collisions; return how many there were."""
         before = int(self.sim.cnt[0])
         self.sim.go(nc=collisions)
         return int(self.sim.cnt[0]) - before
@@ -126,7 +126,7 @@ def pace(advance: Callable[[int], int], collisions: int) -> float:
 
 
 def start_of(n: int, phi: float, *, walled: bool) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return places, velocities and the side of the box: at random, or on a lattice where that is too dense."""
+    """Return positions, velocities and the side of the box: random positions or, in a dense gas, a lattice."""
     from atmosbox.engine import maxwell_velocities, random_positions
 
     side = (n * math.pi / 6.0 / phi) ** (1.0 / 3.0)
@@ -134,13 +134,13 @@ def start_of(n: int, phi: float, *, walled: bool) -> tuple[np.ndarray, np.ndarra
     if phi <= 0.3:
         x = random_positions((side,) * 3, np.ones(n), rng, periodic=(True, True, not walled))
     else:
-        # the face-centred cubic lattice, with holes
+        # the face-centred cubic lattice, with vacancies
         cubes = math.ceil((n / 4.0) ** (1.0 / 3.0))
         corner = np.stack(np.meshgrid(*[np.arange(cubes)] * 3, indexing="ij"), axis=-1).reshape(-1, 1, 3)
         sites = np.array([[0.25, 0.25, 0.25], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]])
         x = (corner + sites).reshape(-1, 3) * side / cubes
         x = x[np.sort(rng.permutation(len(x))[:n])]
-        if walled:  # between floor and ceiling; so little nearer to each other that none overlap
+        if walled:  # move the lattice between floor and ceiling; it is compressed so little that no molecules overlap
             low, high = x[:, 2].min(), x[:, 2].max()
             x[:, 2] = 0.501 + (x[:, 2] - low) * (side - 1.002) / (high - low)
     return x, maxwell_velocities(1.0, np.ones(n), rng, exact=True), side

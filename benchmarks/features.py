@@ -2,23 +2,26 @@
 
     python benchmarks/features.py --json benchmarks/features.json
 
-On: nanoseconds per collision, bytes per molecule and lines of code of a gas with the feature, beside the plain gas;
-and of a scene with an instrument that remembers molecules or layers, beside the scene without it.
+On: nanoseconds per collision, bytes per molecule and lines of code of a gas with the feature, compared with the plain
+gas; and of a scene with an instrument that records molecules or layers, compared with the scene without it.
 
-Off: the engine as it is, beside a copy from whose sources the feature has been struck out (every ``modes.FEATURE``
-made ``False``), both with a gas that does not have it. The row ``nothing`` is the control: a copy from which nothing
-was struck out, and which must cost the same.
+Off: the whole engine, compared with a copy from whose sources the feature has been removed (every ``modes.FEATURE``
+replaced by ``False``), both with a gas that does not have the feature. The row ``nothing`` is the control: a copy from
+which nothing was removed, and which must cost the same.
 
-Three things make such a comparison go wrong by some per cent, and are kept apart here. Where arrays happen to lie in
-memory decides which of them push each other out of the cache: so all copies of the engine work on the very same
-arrays, put back to the same state each time, and do the same events. The same machine code takes 3 % more or less if
-it has just been compiled and not been read from disk, and 2 % less if it is the first that a process loads: so the
-whole engine is a copy like the others, all are read from disk, none of them is the first, and each of many processes
-loads them in another order; the median and its standard error are over processes. And other programs can only add to
-a time: so of the same work, done several times in a process, the shortest time counts.
+Three effects can falsify such a comparison by some per cent; they are excluded here:
 
-Lines of code are those of the engine that a gas of sixty molecules goes through while time passes, counted while
-nothing is compiled.
+- The positions of arrays in memory decide which arrays displace each other from the cache. So all copies of the engine
+  work on the same arrays, reset to the same state each time, and process the same events.
+- The same machine code takes 3 % more or less time if it has just been compiled and was not read from disk, and 2 %
+  less if it is the first that a process loads. So the whole engine is a copy like the others, all copies are read from
+  disk, none of them is the first, and each of many processes loads them in another order. The median and its standard
+  error are over processes.
+- Other programs can only increase a time. So the same work is done several times in a process, and the shortest time
+  counts.
+
+Lines of code are the lines of the engine that a gas of sixty molecules executes while time passes, counted without
+compilation.
 """
 
 import argparse
@@ -64,17 +67,17 @@ GASES = {
     "lift": "ascends",
     "50 layers": "",
 }
-"""The gases that are timed, each with the mode of the engine whose price it shows; walls and layers are data."""
+"""The gases that are timed, each with the mode of the engine whose cost it shows; heat baths and layers have none."""
 SCENES = {
     "trails: discs": ("elastic-collisions", "Discs"),
     "trails: --save-molecules": ("temperature-large", "Molecules"),
     "profiles: 25 layers": ("atmosphere", "Layers"),
 }
-"""The instruments that are timed, each in a scene that may carry it."""
+"""The instruments that are timed, each with its scene."""
 
 
 class Swing:
-    """A piston that goes a little up and down, and is asked as often as that of a rising parcel."""
+    """A piston that moves a little up and down, and whose velocity is set as often as that of a rising parcel."""
 
     interval = FREE_TIME / 4.0
 
@@ -82,19 +85,19 @@ class Swing:
         self._speed = 1e-4 * height / self.interval
 
     def velocity(self, parcel: Any) -> float:
-        """Return the velocity for the next interval: up after down."""
+        """Return the velocity for the next interval, which changes its sign each time."""
         self._speed = -self._speed
         return self._speed
 
 
 def engine(root: Path) -> Any:
-    """Import the engine that stands in a folder, beside any that was imported before."""
+    """Import the engine of a folder; engines that were imported before stay usable."""
     for name in [name for name in sys.modules if name.split(".")[0] == "atmosbox"]:
         del sys.modules[name]
     sys.path.insert(0, str(root))
     try:
         module = importlib.import_module("atmosbox.engine")
-        # all of it now: later, the names of its files would lead to another tree
+        # import all of its modules now: later, their names would lead to another folder
         for name in module.__all__:
             getattr(module, name)
         module.loop = importlib.import_module("atmosbox.engine.exact.exact")
@@ -106,7 +109,7 @@ def engine(root: Path) -> Any:
 
 
 def without(feature: str, folder: Path) -> Path:
-    """Copy the engine into a folder, with one feature struck out of its sources; return the folder."""
+    """Copy the engine into a folder and remove one feature from its sources; return the folder."""
     root = folder / feature
     shutil.copytree(ENGINE, root / "atmosbox" / "engine", ignore=shutil.ignore_patterns("__pycache__"))
     (root / "atmosbox" / "__init__.py").write_text("", encoding="utf-8")
@@ -117,7 +120,7 @@ def without(feature: str, folder: Path) -> Path:
 
 
 def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
-    """Return a gas between smooth walls, plain, with one feature, or of points."""
+    """Return a gas: plain between smooth walls, with one feature, or of points."""
     rng = np.random.default_rng(seed)
     side = (n * math.pi / 6.0 / PHI) ** (1.0 / 3.0)
     length = (side,) * 3
@@ -157,7 +160,7 @@ def gas(module: Any, n: int, feature: str, seed: int = 1) -> Any:
 
 
 def leaves(parts: tuple[Any, ...]) -> Iterator[Any]:
-    """Yield what stands in tuples of tuples."""
+    """Yield the elements of nested tuples."""
     for part in parts:
         if isinstance(part, tuple):
             yield from leaves(part)
@@ -166,14 +169,14 @@ def leaves(parts: tuple[Any, ...]) -> Iterator[Any]:
 
 
 def of_another(part: Any, state: Any) -> Any:
-    """Return the same NamedTuple of NamedTuples, of the classes of another engine."""
+    """Return a copy of nested NamedTuples, made of the classes of another engine."""
     if not isinstance(part, tuple):
         return part
     return getattr(state, type(part).__name__)(*(of_another(each, state) for each in part))
 
 
 class Bench:
-    """The arrays of one box, on which the kernels of several engines do the same work again and again."""
+    """The arrays of one box, on which the kernels of several engines repeat the same work."""
 
     def __init__(self, box: Any, span: float) -> None:
         self._modes = box._modes
@@ -183,8 +186,8 @@ class Bench:
         self._before = [np.array(each) for each in self._arrays]
 
     def kernel(self, module: Any) -> Callable[[], float]:
-        """Return a function that does the work with another engine's kernel, and tells the CPU seconds it took."""
-        # numba finds machine code on disk only if the classes of its arguments are those that a name leads to
+        """Return a function that does the work with another engine's kernel and returns its CPU time [s]."""
+        # numba finds machine code on disk only if its arguments have the classes of the modules in sys.modules
         sys.modules.update(module.modules)
         state = module.types
         gas = of_another(self._gas, state)
@@ -207,7 +210,7 @@ class Bench:
 
 
 def shortest(works: dict[str, Callable[[], float]], repeats: int) -> dict[str, float]:
-    """Return the shortest time of each work, of several turns that all take in changing order."""
+    """Return the shortest time of each work over several turns, in each of which the order is random."""
     times: dict[str, list[float]] = {name: [] for name in works}
     gc.disable()
     for _ in range(repeats):
@@ -218,10 +221,10 @@ def shortest(works: dict[str, Callable[[], float]], repeats: int) -> dict[str, f
 
 
 def time_off(asked: argparse.Namespace) -> dict[str, float]:
-    """Return the time of the whole engine over that of each copy, in this process."""
+    """Return the time of the whole engine divided by that of each copy, in this process."""
     copies = [asked.only] if asked.only else [path.name for path in asked.folder.iterdir()]
     random.shuffle(copies)
-    builder = engine(ROOT)  # which is not compared: whose machine code is loaded first has an advantage of 2 %
+    builder = engine(ROOT)  # not compared: the engine whose machine code is loaded first has an advantage of 2 %
     engines = {}
     for name in copies:
         os.environ["NUMBA_CACHE_DIR"] = str(asked.folder / name / "cache")
@@ -241,7 +244,7 @@ def time_off(asked: argparse.Namespace) -> dict[str, float]:
 
 
 def time_on(asked: argparse.Namespace) -> dict[str, dict[str, Any]]:
-    """Return, by feature, nanoseconds per collision, also over those of the plain gas meanwhile, in this process."""
+    """Return, by feature, nanoseconds per collision and their ratio to those of the plain gas, in this process."""
     module = engine(ROOT)
 
     def cost(box: Any) -> float:
@@ -266,7 +269,7 @@ def time_on(asked: argparse.Namespace) -> dict[str, dict[str, Any]]:
 
 
 def scene(name: str, instrument: str, small: bool) -> tuple[Any, Callable[[bool], None]]:
-    """Return the set-up of a scene, and a function that makes one frame, with an instrument or without it."""
+    """Return the set-up of a scene, and a function that computes one frame with or without an instrument."""
     from atmosbox.scene import instruments
     from atmosbox.simulation import runner
 
@@ -291,7 +294,10 @@ def scene(name: str, instrument: str, small: bool) -> tuple[Any, Callable[[bool]
 
 
 def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
-    """Return, by instrument, the cost of a collision with it and without it, in frames that take turns."""
+    """Return, by instrument, the cost of a collision with it, the ratio to that without it, and the memory.
+
+    Frames with and without the instrument take turns.
+    """
     found = {}
     for feature, (name, instrument) in SCENES.items():
         setup, frame = scene(name, instrument, asked.trial)
@@ -311,7 +317,7 @@ def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
         filmed, turns = (1, 1) if asked.trial else (10, 5)
         tracemalloc.start()
         frame(True)
-        for watched in turns * (False, True):  # what Python keeps for itself comes and goes: the median counts
+        for watched in turns * (False, True):  # Python's own memory varies: the median counts
             gc.collect()
             held = tracemalloc.get_traced_memory()[0]
             for _ in range(filmed):
@@ -329,7 +335,7 @@ def time_instruments(asked: argparse.Namespace) -> dict[str, dict[str, float]]:
 
 
 def lines_of(work: Callable[[], None], files: tuple[str, ...]) -> set[tuple[str, int]]:
-    """Return the lines of code that a piece of work goes through in files whose paths begin so."""
+    """Return the lines of code that a piece of work executes in files whose paths begin with one of ``files``."""
     seen: set[tuple[str, int]] = set()
 
     def follow(frame: FrameType, event: str, argument: Any) -> Any:
@@ -353,7 +359,7 @@ def lines_of(work: Callable[[], None], files: tuple[str, ...]) -> set[tuple[str,
 
 
 def count_lines(molecules: int) -> dict[str, int]:
-    """Return how many lines of code each gas, and each scene with an instrument, goes through."""
+    """Return the number of lines of code that each gas, and each instrument in its scene, executes."""
     module = engine(ROOT)
     counted = {}
     for feature in (*GASES, "points"):
@@ -368,7 +374,7 @@ def count_lines(molecules: int) -> dict[str, int]:
 
 
 def child(task: str, asked: argparse.Namespace, **changed: Any) -> Any:
-    """Do a task in a process of its own and return what it found."""
+    """Do a task in a process of its own and return its result."""
     command = [sys.executable, __file__, "--task", task]
     for name, value in (vars(asked) | changed).items():
         if name == "trial":
@@ -383,7 +389,7 @@ def child(task: str, asked: argparse.Namespace, **changed: Any) -> Any:
 
 
 def middle(values: list[float]) -> tuple[float, float]:
-    """Return the median and its standard error, from the half of the values that lies about it."""
+    """Return the median and its standard error, which is computed from the quartiles."""
     quarters = np.percentile(values, [25.0, 75.0])
     spread = float(quarters[1] - quarters[0]) / 1.349
     return float(np.median(values)), 1.2533 * spread / math.sqrt(len(values))

@@ -2,10 +2,10 @@
 
     python benchmarks/live.py [--molecules 800 5000] [--scene temperature] [--seconds 10] [--pace 1] [--json live.json]
 
-For each number of molecules it starts ``atmosbox live`` as a user would, opens its socket as a browser does, lets the
-box play and counts the pictures that arrive. Besides it tells how much time of the box passes in a second, as a share
-of what the page asks for: less than all of it means that the engine is at its limit, and that the picture is slower
-but no less smooth.
+For each number of molecules it starts ``atmosbox live`` as a user does, opens its socket as a browser does, lets the
+box play and counts the pictures that arrive. It also gives the time that passes in the box in a second, as a share of
+the time that the page asks for. A share below 1 means that the engine is at its limit: the motion is then slower, but
+as smooth as before.
 """
 
 import argparse
@@ -31,7 +31,7 @@ _WARM_UP = 3.0
 
 
 def measure(scene: str, molecules: int, seconds: float, pace: float) -> dict[str, Any]:
-    """Return what a page gets of so many molecules."""
+    """Return the pictures a second, the share of the time, and the bytes per picture for a number of molecules."""
     words = ["live", scene, "--set", f"molecules={molecules}", "--no-browser", "--quiet"]
     session = Session(prepare(scene, {"molecules": molecules}))
     unit = session.picture.time
@@ -69,7 +69,7 @@ def measure(scene: str, molecules: int, seconds: float, pace: float) -> dict[str
 
 
 def listen(page: Any, seconds: float) -> tuple[list[bytes], int]:
-    """Return the pictures that arrive, and how many messages in words."""
+    """Return the pictures that arrive in a time, and the number of text messages."""
     pictures: list[bytes] = []
     words = 0
     end = time.perf_counter() + seconds

@@ -1,4 +1,4 @@
-"""Where and when numbers were measured, which stands beside them in their file."""
+"""The computer and the date of a measurement, which are written into its file."""
 
 import datetime
 import json
@@ -13,7 +13,7 @@ __all__ = ["keep", "machine"]
 
 
 def machine() -> dict[str, Any]:
-    """Return the date, the processor, how many of it there are, and the versions of Python and numba."""
+    """Return the date, the name and number of processors, and the versions of Python and numba."""
     told = Path("/proc/cpuinfo")
     found = re.search(r"model name\s*: (.+)", told.read_text(encoding="utf-8")) if told.is_file() else None
     return {
@@ -26,7 +26,7 @@ def machine() -> dict[str, Any]:
 
 
 def keep(file: Path | None, results: Any) -> None:
-    """Write results with the machine that they are of into a file, if one is named."""
+    """Write results and a description of the machine into a file, if one is named."""
     if file is not None:
         told = {"measured_on": machine(), "results": results}
         file.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")

@@ -2,13 +2,13 @@
 
     python benchmarks/precision.py --json benchmarks/precision.json
 
-The columns of places and velocities are given 32 bits a number in place of 64, nothing else is changed, and both
-kinds of box take turns.
+The columns of positions and velocities have 32 bits a number in place of 64; nothing else is changed. Both kinds of box
+run in turns.
 
-Pace: as in ``benchmarks/dsmc.py``, a gas in gravity between heat baths. Energy: of a gas in gravity between smooth
-walls, which nothing adds to or takes from; the relative error after so many steps. Gravity: by how much the velocity
-that molecules gain in one step differs from g dt, for gains that are ever smaller beside the thermal speed: a
-velocity can change only by whole units of its last digit, and is rounded to the same side each time.
+Pace: of a gas in gravity between heat baths, as in ``benchmarks/dsmc.py``. Energy: the relative error after some steps
+of a gas in gravity between smooth walls, whose energy is conserved. Gravity: the error of the velocity that molecules
+gain in one step, compared with g dt, for gains that become smaller and smaller relative to the thermal speed. A
+velocity can change only by whole units of its last digit, and is rounded in the same direction each time.
 """
 
 import argparse
@@ -38,7 +38,7 @@ GAINS = (1e-2, 1e-4, 1e-6, 1e-7, 1e-8)
 
 @contextmanager
 def columns_of(bits: int) -> Iterator[None]:
-    """Let boxes that are made meanwhile keep places and velocities in so many bits a number."""
+    """Within this context, new boxes keep positions and velocities with a number of bits each."""
     usual = dsmc_parcel.new_columns
 
     def new_columns(number: int, many: int) -> list[Any]:
@@ -64,7 +64,7 @@ def paces(n: int, repeats: int) -> dict[str, Any]:
         taken = []
         for box in boxes:
             start = time.process_time()
-            box.go(17 if turn == 0 else steps)  # the first brings molecules into the order of cells
+            box.go(17 if turn == 0 else steps)  # the first turn sorts the molecules by cells
             taken.append(time.process_time() - start)
         seconds.append(taken)
     gc.enable()
@@ -98,9 +98,9 @@ def energy_error(bits: int, n: int) -> float:
 
 
 def fall_error(bits: int, gain: float, n: int) -> float:
-    """Return by how much the mean velocity that falling gives is wrong, as a share, for a gain beside 1."""
+    """Return the relative error of the mean velocity gained by falling, for a gain in units of the thermal speed."""
     rng = np.random.default_rng(3)
-    velocity = rng.normal(size=(n, 3)).astype(np.float32).astype(np.float64)  # what both can hold
+    velocity = rng.normal(size=(n, 3)).astype(np.float32).astype(np.float64)  # numbers that both precisions can hold
     position = 40.0 + 20.0 * rng.random((n, 3))
 
     def space(gravity: float) -> DsmcParcel:

@@ -4,11 +4,11 @@
     python benchmarks/scenes.py lifting-dry temperature --against FOLDER --repeats 5
     python benchmarks/scenes.py --cold
 
-Each run is a process of its own, as a user starts it. Its processor time is that of the whole process, and is shared
-among start-up (until the scene is known), compilation (in a warm run: loading what is kept), building the box and
-measuring it, kernels (compiled code), and theory and files; what is missing is the end of Python itself. FOLDER is an
-older checkout, whose runs take turns with ours: the ratio is the median over pairs. With ``--cold`` each run has an
-empty cache.
+Each run is a process of its own, as when a user starts it. The processor time of the whole process is divided into
+start-up (until the scene is known), compilation (in a warm run, loading of stored machine code), building and measuring
+the box, kernels (compiled code), and theory and files; the rest is the end of Python itself. FOLDER is an older
+checkout, whose runs take turns with ours; the ratio is the median over pairs. With ``--cold`` each run has an empty
+cache.
 """
 
 import argparse
@@ -80,7 +80,7 @@ finally:
 
 
 def timed(root: Path, scene: str, settings: list[str], cache: str | None) -> dict[str, float]:
-    """Run a scene with a checkout in a process of its own; return CPU and wall seconds, and the parts of the former."""
+    """Run a scene with a checkout in a process of its own; return CPU and wall seconds, and the parts of CPU time."""
     environment = {**os.environ, "PYTHONPATH": str(root)} | ({"NUMBA_CACHE_DIR": cache} if cache else {})
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-c", INSIDE, "run", scene, "--out", f"{folder}/run.nc", "--quiet"]
@@ -98,10 +98,10 @@ def timed(root: Path, scene: str, settings: list[str], cache: str | None) -> dic
 def measure(
     scene: str, roots: list[Path], settings: list[str], repeats: int, cold: bool
 ) -> list[dict[str, list[float]]]:
-    """Run a scene again and again with all checkouts in turn; return their times."""
+    """Run a scene several times with all checkouts in turn; return their times."""
     found: list[dict[str, list[float]]] = [{key: [] for key in ("cpu", "wall", *PARTS)} for _ in roots]
     if not cold:
-        for root in roots:  # what is compiled now is not compiled in the runs that count
+        for root in roots:  # compile now, so that the runs that count do not compile
             timed(root, scene, settings, None)
     for _ in range(repeats):
         for k in random.sample(range(len(roots)), len(roots)):

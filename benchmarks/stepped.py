@@ -3,10 +3,10 @@
     python benchmarks/stepped.py
     python benchmarks/stepped.py --against FOLDER --repeats 9
 
-Equal spheres in gravity between two heat baths. Machines are noisy: what counts is the ratio of two engines that
-take turns, the median over many short slices. FOLDER holds a module ``stepped.py`` with ``Sim(N, phi, delta, T, par,
-mgH=..., thermal=...)``, which lays out as many equal spheres itself, for T threads (par tells whether to use threads at
-all), and advances them by ``go(steps)``. With more than one thread, wall time is measured.
+The gas is equal spheres in gravity between two heat baths. Machines are noisy: use the ratio of two engines that take
+turns, the median over many short slices. FOLDER contains a module ``stepped.py`` with ``Sim(N, phi, delta, T, par,
+mgH=..., thermal=...)``, which places N equal spheres itself, for T threads (``par`` tells whether threads are used),
+and advances them by ``go(steps)``. With more than one thread, wall time is measured.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from atmosbox.engine import CoarseStepWarning, HeatBath, Specular, maxwell_veloc
 from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 
 WARM_UP = 70
-HEIGHT = 1.0  # of the box, in scale heights
+HEIGHT = 1.0  # height of the box, in scale heights
 
 
 def column(n: int, phi: float, delta: float, threads: int) -> SteppedParcel:
@@ -47,7 +47,7 @@ def column(n: int, phi: float, delta: float, threads: int) -> SteppedParcel:
 
 
 def pace(advance: Callable[[int], Any], steps: int, n: int, clock: Callable[[], float]) -> float:
-    """Return molecule-steps per second of one slice."""
+    """Return the molecule-steps per second of one slice."""
     start = clock()
     advance(steps)
     return steps * n / (clock() - start)
