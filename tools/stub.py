@@ -1,7 +1,8 @@
 """Make atmosbox/__init__.pyi, which tells an editor the settings of every scene: `python tools/stub.py`.
 
-``atmosbox.run("lifting-dry", `` then completes to ``molecules=``, ``temperature=`` and the rest, each with its unit,
-its default and what it is. All of it is read off the scenes; a test fails when the file is not what this makes.
+After ``atmosbox.run("lifting-dry", `` an editor then offers ``molecules=``, ``temperature=`` and the other settings,
+each with its unit, its default and its description. All of this comes from the scenes; a test fails if the file differs
+from what this program makes.
 """
 
 import inspect
@@ -36,20 +37,20 @@ __all__ = ["__version__", "compare", "open", "plot", "run", "scenes", "show", "s
 
 
 def annotation(parameter: Parameter) -> str:
-    """Return the type of a setting: a number may also be a text with a unit."""
+    """Return the type annotation of a setting; a number may also be given as text with a unit."""
     if parameter.choices:
         return f"Literal[{', '.join(map(repr, parameter.choices))}]"
     return {"int": "int | str", "float": "float | str", "bool": "bool", "str": "str"}[parameter.kind]
 
 
 def common() -> list[str]:
-    """Return what `run` takes for every scene, from its own signature."""
+    """Return the arguments that `run` takes for every scene, from its signature."""
     kept = [p for p in inspect.signature(interface.run).parameters.values() if p.kind is p.KEYWORD_ONLY]
     return [f"{p.name}: {p.annotation} = {p.default!r}" for p in kept]
 
 
 def overload(name: str) -> str:
-    """Return what an editor shall know of one scene."""
+    """Return the overload of `run` for one scene."""
     declared = scenarios.load(name).Settings.describe()
     taken = [f"{p.name}: {annotation(p)} = {p.default!r}" for p in declared]
     lines = [f"{p.name}{f' [{p.unit}]' if p.unit not in ('', '1') else ''}: {p.help}; {p.allowed}" for p in declared]
@@ -59,7 +60,7 @@ def overload(name: str) -> str:
 
 
 def stub() -> str:
-    """Return the file."""
+    """Return the content of the stub file."""
     general = ",\n    ".join(["scene: str | os.PathLike[str]", "*", *common(), "**settings: Any"])
     last = (
         f"@overload\ndef run(\n    {general},\n) -> RunDataset:\n"

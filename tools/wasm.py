@@ -1,12 +1,13 @@
 """Compile the kernels of the lab to WebAssembly: one module for each set of modes that the shipped scenes need.
 
     python tools/wasm.py            # all of them, into atmosbox/lab/modules/
-    python tools/wasm.py --check    # say which are stale, and fail if any is
+    python tools/wasm.py --check    # name the stale modules, and fail if there are any
 
-numba makes LLVM code of the kernels, for the processor it runs on; here that code is taken before it is optimised,
-given the data layout of a machine of 32-bit addresses, and one more function for each kernel, which reads the
-arguments from a block in memory. LLVM then makes WebAssembly of it, and the linker of ``ziglang`` a module that imports
-memory, and nothing else. ``pip install "atmosbox[lab-build]"`` brings the linker; only this script needs it.
+numba compiles the kernels to LLVM code for the processor on which it runs. This program takes that code before it is
+optimised, gives it the data layout of a machine with 32-bit addresses, and adds a function for each kernel that reads
+the arguments from a block of memory. LLVM compiles the result to WebAssembly, and the linker of ``ziglang`` makes a
+module that imports only memory. ``pip install "atmosbox[lab-build]"`` installs the linker, which only this script
+needs.
 """
 
 import argparse
@@ -41,10 +42,10 @@ STACK = 65_536
 
 
 class Source:
-    """The LLVM code of kernels as numba writes it: in this block numba neither optimises it nor makes machine code.
+    """A context in which numba writes the LLVM code of kernels, but neither optimises it nor makes machine code.
 
-    What numba has made machine code of carries the marks of this machine, and must not be compiled for another one. So
-    boxes are built in a process of their own, and here no kernel can be called.
+    Code from which numba has made machine code is specific to this machine and must not be compiled for another one.
+    So boxes are built in another process, and no kernel can be called within this context.
     """
 
     def __init__(self) -> None:
@@ -64,7 +65,7 @@ class Source:
             (codegen.JITCodeLibrary, "get_pointer_to_function"): lambda library, name: 1,
         }
         for (owner, name), instead in nothing.items():
-            self._usual.append((owner, name, getattr(owner, name)))  # fails where numba has changed
+            self._usual.append((owner, name, getattr(owner, name)))  # fails if a new numba lacks this method
             setattr(owner, name, instead)
         return self
 
@@ -73,7 +74,7 @@ class Source:
             setattr(owner, name, usual)
 
     def of(self, kernel, types) -> tuple[str, str]:
-        """Return the code of a kernel for some types of arguments, with all that it calls, and its name there."""
+        """Return the code of a kernel for some types of arguments, with all functions that it calls, and its name."""
         flags = compiler.Flags()
         flags.no_cpython_wrapper = True
         flags.no_cfunc_wrapper = True
@@ -97,14 +98,14 @@ class Source:
 
 
 def machine() -> llvm.TargetMachine:
-    """Return what makes WebAssembly."""
+    """Return LLVM's target machine for WebAssembly."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     return llvm.Target.from_triple(TRIPLE).create_target_machine(cpu="generic", features=FEATURES, opt=3)
 
 
 def object_of(text: str, native: str, export: str, target: llvm.TargetMachine) -> bytes:
-    """Return one kernel as an object file: a function that takes the place of its arguments in memory."""
+    """Return one kernel as an object file: a function that takes the address of its arguments."""
     text = re.sub(r'target triple = ".*"', f'target triple = "{TRIPLE}"', text)
     text = re.sub(r'target datalayout = ".*"', f'target datalayout = "{target.target_data}"', text)
     text = re.sub(r'"target-(cpu|features)"="[^"]*"', "", text)
@@ -125,7 +126,7 @@ def object_of(text: str, native: str, export: str, target: llvm.TargetMachine) -
 
 
 def with_root(text: str) -> str:
-    """Return code in which the square root is the instruction that it is."""
+    """Return code in which the square root is an instruction and not a call of a function."""
     root = (
         "define internal double @sqrt(double %x) alwaysinline {\n"
         "  %r = call double @llvm.sqrt.f64(double %x)\n  ret double %r\n}"
@@ -136,12 +137,12 @@ def with_root(text: str) -> str:
 
 
 def door(text: str, native: str, export: str) -> str:
-    """Return a function that calls a kernel with the arguments that stand in a block of memory: see `memory_image`."""
+    """Return a function that calls a kernel with the arguments in a block of memory: see `memory_image`."""
     head = re.search(rf'^define [^@]*@"?{re.escape(native)}"?\((.*?)\)[^()]*\{{?$', text, re.M)
     kinds = [each.strip().split()[0] for each in re.findall(r"(?:\([^()]*\)|[^,()])+", head.group(1))]
     lines, call = [], []
     for k, kind in enumerate(kinds):
-        # the first two are where the answer goes, and a place for an exception, of which there is none
+        # the first two arguments are the address of the result, and one for an exception, which never occurs
         offset = (0, 128)[k] if k < 2 else 256 + 8 * (k - 2)
         lines.append(f"  %p{k} = getelementptr i8, ptr %block, i32 {offset}")
         if k >= 2:
@@ -152,7 +153,7 @@ def door(text: str, native: str, export: str) -> str:
 
 
 def link(objects: dict[str, bytes]) -> bytes:
-    """Return the module that exports all of these, and the end of its own memory."""
+    """Return the module that exports these functions and the address at which its own memory ends."""
     zig = Path(importlib.import_module("ziglang").__file__).parent / "zig"
     with tempfile.TemporaryDirectory() as folder:
         files = []
@@ -170,7 +171,7 @@ def link(objects: dict[str, bytes]) -> bytes:
 
 
 def needed(scenes: list[str]) -> dict[str, tuple[Modes, bool, dict[str, tuple]]]:
-    """Return what is to be compiled for some scenes: by the name of a module its modes, wells, types of arguments."""
+    """Return the modules that some scenes need, by name: the modes, whether there are wells, the types of arguments."""
     found = {}
     boxes = [(scene, SCENES[scene]) for scene in scenes]
     for scene, settings in [*boxes, *(each for each in BESIDE if each[0] in scenes)]:
@@ -189,7 +190,7 @@ def module_of(modes: Modes, wells: bool, types: dict[str, tuple]) -> bytes:
 
 
 def main() -> None:
-    """Compile what is stale, or all."""
+    """Compile the modules of some scenes, or of all; or name the stale modules."""
     asked = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     asked.add_argument("--check", action="store_true", help="only say which modules are stale")
     asked.add_argument("scenes", nargs="*", default=[*SCENES], help="only those that these scenes need")
@@ -214,7 +215,7 @@ def main() -> None:
 
 
 def stamped(stamp: str) -> bytes:
-    """Return a section of a module that says which sources it was made of."""
+    """Return a custom section of a module that holds the stamp of its sources."""
     name = b"sources"
     body = bytes([len(name)]) + name + stamp.encode()
     return bytes([0, len(body)]) + body
