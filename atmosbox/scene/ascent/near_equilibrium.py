@@ -18,7 +18,8 @@ fifth, and a deviation lasts longer by as much. Let collisions restore the Maxwe
 If hydrodynamics takes the flux s from the gas, the steady state is :math:`k v (\varphi - \psi) + \nu \varphi = -s`,
 where k v is the rate at which a molecule of speed v hits the droplets. Here :math:`\psi` and s are linear combinations
 of the quantities that collisions conserve, B = (1 for vapour, 1 for air, energy), and :math:`\varphi` is orthogonal to
-all of B. With :math:`M = \langle B B \rangle` and :math:`S = \langle B B / (k v + \nu) \rangle` the flux per force is
+all of B. With the sums over the molecules of the distribution f, :math:`M = \langle B B \rangle` and :math:`S = \langle
+B B / (k v + \nu) \rangle`, the flux per force is
 
 .. math:: L = M S^{-1} M - \nu M .
 
