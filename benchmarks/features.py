@@ -9,7 +9,7 @@ Off: the whole engine, compared with a copy from whose sources the feature has b
 replaced by ``False``), both with a gas that does not have the feature. The row ``nothing`` is the control: a copy from
 which nothing was removed, and which must cost the same.
 
-Three effects can falsify such a comparison by some per cent; they are excluded here:
+Three effects can change such a comparison by some per cent; they are excluded here:
 
 - The positions of arrays in memory decide which arrays displace each other from the cache. So all copies of the engine
   work on the same arrays, reset to the same state each time, and process the same events.

@@ -1,4 +1,4 @@
-"""What is left out of the page of a large run, so that it fits into a mail and a school's computer can draw it."""
+"""What is left out of the page of a large run, so that it can be sent by e-mail and a school's computer can draw it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 __all__ = ["MOST", "Share", "chosen", "share"]
 
 MOST = 5000
-"""Greatest number of molecules that are drawn: a computer without a graphics card can draw as many fast enough."""
+"""Greatest number of molecules that are drawn; a computer without a graphics card is fast enough for this number."""
 
 _ROOM = 850_000  # molecules times frames of a page of 10 MB
 _ENOUGH = 240  # frames; a page with fewer would rather leave out molecules

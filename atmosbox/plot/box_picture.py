@@ -36,7 +36,7 @@ __all__ = ["BoxPicture", "PlanarPicture", "box_picture", "instant", "speed_bar"]
 _MOST = 4000  # molecules that are drawn
 _UNITS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "m": 1.0, "km": 1e3}
 _NEIGHBOURS = 12.0  # upper end of the colour scale where colours show the number of neighbours
-_SMALLEST = 0.18  # least diameter of a molecule in the picture, in spacings of a lattice of as many molecules
+_SMALLEST = 0.18  # least diameter of a molecule in the picture, in spacings of a lattice of all drawn molecules
 # Ratio of the drawn diameter to that of a molecule of air: below the first, the footer says "drawn to size"; from the
 # second on, it gives the drawn diameter and not the ratio.
 _TO_SIZE, _MANY_TIMES = 1.05, 1000.0

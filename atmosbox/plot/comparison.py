@@ -101,7 +101,7 @@ def shared_panels(datasets: Sequence[xr.Dataset]) -> tuple[Panel, ...]:
     Raises
     ------
     FileError
-        If there is none.
+        If there is no such panel.
 
     Examples
     --------

@@ -19,7 +19,7 @@ _AGAIN = "run the scene again with this version of atmosbox"
 
 
 class Curve(NamedTuple):
-    """A curve in the units of its panel: x, y, and the error of the measured one of both; None without errors."""
+    """A curve in the units of its panel: x, y, and the error of the measured coordinate, None without errors."""
 
     x: NDArray[np.float64]
     y: NDArray[np.float64]
