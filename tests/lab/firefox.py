@@ -1,4 +1,4 @@
-"""Firefox without a network, driven by its own WebDriver BiDi: one page, and what it answers."""
+"""Firefox without a network, controlled by its WebDriver BiDi: one page, and its answers."""
 
 import contextlib
 import json
@@ -13,7 +13,7 @@ from websockets.sync.client import connect
 __all__ = ["Firefox", "firefox_command"]
 
 _QUIET = {
-    "network.proxy.type": 1,  # to a port where nobody is: no network
+    "network.proxy.type": 1,  # to a port where nothing listens: no network
     "network.proxy.http": "127.0.0.1",
     "network.proxy.http_port": 9,
     "network.proxy.ssl": "127.0.0.1",
@@ -27,9 +27,9 @@ _QUIET = {
 
 
 def firefox_command():
-    """Return the command that starts Firefox on a screen, None if there is none.
+    """Return the command that starts Firefox on a screen; None if there is no screen.
 
-    Without a window it has no WebGL on a machine without a graphics driver, so where there is no screen Xvfb is one.
+    A headless Firefox has no WebGL on a machine without a graphics driver, so Xvfb is used if there is no screen.
     """
     firefox = os.environ.get("ATMOSBOX_FIREFOX") or shutil.which("firefox-esr") or shutil.which("firefox")
     screen = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX"]
@@ -86,7 +86,7 @@ class Firefox:
         self._say("browsingContext.navigate", context=self._context, url=path.as_uri(), wait="complete")
 
     def evaluate(self, expression):
-        """Return what a piece of JavaScript comes to, once it is settled."""
+        """Return the value of a piece of JavaScript, after its promise is settled."""
         answer = self._say(
             "script.evaluate", expression=expression, target={"context": self._context}, awaitPromise=True
         )
@@ -95,7 +95,7 @@ class Firefox:
         return answer["result"].get("value")
 
     def close(self):
-        """End it."""
+        """Close Firefox."""
         self._open.close()
         os.killpg(self._process.pid, signal.SIGTERM)  # the screen, too
         self._process.wait(20)

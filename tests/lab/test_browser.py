@@ -18,14 +18,14 @@ from atmosbox.simulation.recording import Recording
 SMALL = {
     "temperature": ({"molecules": 150}, 60),
     "elastic-collisions": ({}, 30),
-    "atmosphere": ({"molecules": 3000}, 3),  # its layers follow the molecules: at the start, and when they fall
+    "atmosphere": ({"molecules": 3000}, 3),  # its layers are fitted to the molecules at the start, and when they fall
     "lifting-dry": ({"molecules": 300, "ascent": 100}, 40),  # its cells are laid out anew twice
     "temperature-large": ({"molecules": 300}, 20),
     "diffusion": ({"molecules": 2000}, 8),
     "attraction": ({"molecules": 300, "duration": "0.6 ns"}, 40),  # drops grow, and touch each other
     "evaporation": ({"molecules": 400, "pool": 150}, 60),
     "condensation": ({"molecules": 300, "humidity": 300}, 40),
-    "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out anew, too
+    "lifting-moist": ({"molecules": 400, "ascent": 60, "dewpoint": 23}, 60),  # its cells are laid out anew too
     "lifting-sounding": ({"molecules": 300, "ascent": 40}, 80),
     "mountains": ({"molecules": 400, "travel": 60}, 96),  # up and down again, and it rains
     "nuclei": ({}, 6),
@@ -33,7 +33,7 @@ SMALL = {
 BESIDE = {"nuclei": ({"molecules": 1000}, 12)}
 """Fewer molecules, whose rows of cells hold copies of trajectories."""
 TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat")
-"""What theory says of a parcel's way begins so."""
+"""Beginnings of the names of curves of theory for a parcel."""
 
 
 KEEPS_FRAME = """
@@ -64,7 +64,7 @@ class Lab:
         self.page.wait_for_selector("body[data-ready]", timeout=30_000)
 
     def ask(self, **message):
-        """Say something to the engine."""
+        """Send a message to the engine."""
         said = json.dumps(message)
         self.page.evaluate(f"document.dispatchEvent(new CustomEvent('ask', {{detail: {said}}}))")
 
@@ -75,11 +75,11 @@ class Lab:
         return self.page.wait_for_selector("body[data-digest]").get_attribute("data-digest")
 
     def frame(self):
-        """Return what was shown last, see `parts_of`."""
+        """Return the data of the last picture, see `parts_of`."""
         return parts_of(bytes(self.page.evaluate("Array.from(window.frame)")))
 
     def table(self):
-        """Return what the page saves: its first lines, and a column by name."""
+        """Return the file that the page saves: its first lines, and the columns by name."""
         with self.page.expect_download() as saving:
             self.page.click("#record")
         text = saving.value.path().read_text(encoding="utf-8")
@@ -88,7 +88,7 @@ class Lab:
         return about, np.genfromtxt(io.StringIO(rest), delimiter=",", names=True, deletechars="")
 
     def until(self, is_so):
-        """Wait until something is so."""
+        """Wait until a condition is true."""
         for _ in range(200):
             if is_so():
                 return
@@ -96,13 +96,13 @@ class Lab:
         raise AssertionError("it never was so")
 
     def note(self):
-        """Return the sentence of the next note."""
+        """Return the text of the next note."""
         return self.page.wait_for_selector("#notes .note").inner_text()
 
 
 @pytest.fixture
 def lab(browser, tmp_path):
-    """What opens the page of a scene."""
+    """A function that opens the page of a scene."""
     opened = []
 
     def show(scene, settings, *, others=False, **options):
@@ -127,7 +127,7 @@ def parts_of(frame):
 
 
 def advance(setup, frames, first=0):
-    """Let time pass in Python as a page does: sample by sample, up to the end of so many frames."""
+    """Advance a box in Python as a page does: sample by sample, for a number of frames."""
     for frame in range(first, frames):
         for sample in range(1, setup.samples + 1):
             setup.parcel.advance(setup.moment(frame, sample))
@@ -154,9 +154,9 @@ def state_of(parcel):
 
 
 ALIKE = ("lifting-sounding", "mountains")
-"""These have the module of lifting-moist."""
+"""These scenes use the module of lifting-moist."""
 FIXED = ("elastic-collisions",)
-"""These have the seeds that Python has placed their molecules with."""
+"""In these scenes Python places the molecules, and a page offers only the seeds for which it has done so."""
 
 
 @pytest.mark.parametrize(
@@ -186,22 +186,22 @@ def test_the_page_has_the_same_bytes_as_python_with_another_seed_and_measures_th
         assert min(setup.parcel.condensed, setup.parcel.evaporated) > 20
     assert shown.digest() == state_of(setup.parcel)
     for seen, expected in zip(shown.frame(), parts_of(picture.frame(0)), strict=True):
-        # a place is rounded to a step of its own, and where that is a half, up or down
+        # places are rounded to 16 bits; exact halves may be rounded up or down
         np.testing.assert_allclose(seen, expected, rtol=1e-6, atol=int(seen.dtype == int))
     _, table = shown.table()
     assert len(table) == frames
     found, _ = recording.dataset("lab", settle=0, judged=False)
     compared = 0
     for name in table.dtype.names:
-        if name in found and name not in ("energy_change", "momentum_residual"):  # these are rounding alone
-            # between the rows of a table the page takes the straight line, and a cloud begins with nothing
+        if name in found and name not in ("energy_change", "momentum_residual"):  # these are rounding errors only
+            # between the rows of a table the page interpolates linearly, and a cloud begins with no water
             told = name.endswith(("_theory", "_noise")) or name.startswith(TOLD)
             expected = np.asarray(found[name].values, np.float64)
             width, off = (5e-6, 5e-6 * np.nanmax(np.abs(expected))) if told else (1e-9, 0.0)
             if hasattr(setup.parcel, "drops"):  # the ledger holds 1e8 kT in nuclei, and e_s(T) magnifies its rounding
                 width = max(width, 1e-8)
             if name == "adiabat_temperature" and "rain_mixing_ratio" in found:
-                # what has rained out is here as planned, and in a file that of the pressures measured, which scatter
+                # rain is here that of the planned pressures, in a file that of the measured ones, which scatter
                 assert (np.abs(table[name] - expected) < 0.25 * found.parcel_temperature_se.values).all()
                 continue
             if name == "parcel_buoyancy":  # g (T' / T - 1), of which T is from a table
@@ -228,7 +228,7 @@ def test_lists_of_neighbours_grow_while_the_attraction_is_turned_down_and_up_aga
                 parcel.advance(setup.moment(frame, sample))
             frame += 1
         parcel.set_strength(strength)
-    assert (parcel._walls.epoch[0] > 0.0) == (frames > 134)  # where all clocks begin anew
+    assert (parcel._walls.epoch[0] > 0.0) == (frames > 134)  # after which all clocks are set back
     assert shown.digest() == state_of(parcel)
     _, table = shown.table()
     assert table["work_by_attraction"][50] > 0.0  # weaker wells
@@ -330,7 +330,7 @@ def test_walls_that_are_warmed_become_smooth_again_when_that_is_taken_back(lab):
     walls, told = table["wall_temperature[x_low]"], table["gas_temperature_theory"]
     np.testing.assert_allclose([walls[:10], told[:10]], 323.15)
     assert np.isnan(walls[10:]).all()
-    assert (told[10:] < 300.0).all()  # what a pool cools to that nobody warms
+    assert (told[10:] < 300.0).all()  # a pool that is not warmed cools below this
 
 
 def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begins_with_them(lab):
@@ -355,9 +355,9 @@ def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begin
     shown.ask(type="set", name="molecules", value="123")
     assert "10, 20, 40, 80, 160" in shown.note()
     choose("80")
-    choose("21 %")  # of both there is a start
+    choose("21 %")  # there is a start with both
     assert "molecules=80 --set filling=21" in runs_as_python_with(molecules=80, filling=21)
-    choose("5")  # of that seed there is one with the numbers of the page alone
+    choose("5")  # with that seed there is only a start with the page's own numbers
     assert runs_as_python_with(molecules=40, seed=5).endswith("molecules=40 --seed 5")
     presets = shown.page.locator("#presets")
     presets.select_option(label="Boulders among pebbles")
@@ -444,7 +444,7 @@ def test_a_value_that_is_not_possible_is_refused_in_a_sentence_and_changes_nothi
 
 def test_the_page_plays_by_keyboard_and_pauses(lab):
     shown = lab("elastic-collisions", {})
-    assert shown.page.locator("body").get_attribute("data-playing") == "false"  # motion is not wanted
+    assert shown.page.locator("body").get_attribute("data-playing") == "false"  # the reader prefers reduced motion
     shown.page.keyboard.press("Space")
     shown.page.wait_for_selector("body[data-playing=true]")
     shown.until(lambda: float(shown.page.locator("body").get_attribute("data-time")) > 0.2)
@@ -461,7 +461,7 @@ def test_a_box_that_runs_for_long_takes_no_more_memory(lab):
         shown.page.evaluate("window.gc?.()")
         sizes.append(shown.page.evaluate("performance.memory.usedJSHeapSize"))
     assert sizes[-1] < 1.5 * sizes[0] + 5e6
-    # the memory of the engine has a size of its own; what could grow are the series, of which every second point goes
+    # the memory of the engine is fixed; only the series could grow, and every second point of them is dropped
     about, table = shown.table()
     assert len(table) <= 4_000
     assert "# every 8th frame" in about

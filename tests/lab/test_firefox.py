@@ -1,4 +1,4 @@
-"""The page in Firefox: its WebAssembly is compiled by another company, and the bytes are the same."""
+"""The page in Firefox: another compiler of WebAssembly gives the same bytes."""
 
 import pytest
 

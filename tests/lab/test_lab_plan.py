@@ -1,4 +1,4 @@
-"""What a page is told: the command that it saves begins the very same run."""
+"""The plan of a page: the command that it saves starts exactly the same run."""
 
 import shlex
 

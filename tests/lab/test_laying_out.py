@@ -80,4 +80,4 @@ def test_the_cells_are_those_of_python(box, molecules, filling, stretch, lean, m
         np.testing.assert_array_equal(gas.cells.copies.centre[axis, :n], copies.centre[axis, :n])
     np.testing.assert_array_equal(gas.cells.copies.slack[:layers], copies.slack)
     np.testing.assert_array_equal(gas.cells.copies.room[:layers], copies.room)
-    assert np.isposinf(gas.cells.copies.slack[layers:]).all()  # of layers that are not there
+    assert np.isposinf(gas.cells.copies.slack[layers:]).all()  # of layers that do not exist

@@ -1,4 +1,4 @@
-"""A sum in a page rounds as that of numpy does, by which Python begins a box."""
+"""A sum in a page rounds like the sum of numpy with which Python starts a box."""
 
 import numpy as np
 

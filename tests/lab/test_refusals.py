@@ -1,4 +1,4 @@
-"""What cannot run in a page is refused in one sentence that says what to use instead."""
+"""A box that cannot run in a page is refused in one sentence that says what to use instead."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The modules in the package: of these sources, small, and in need of nothing but memory."""
+"""The modules in the package: made from the present sources, small, and importing nothing but memory."""
 
 import gzip
 import sys
@@ -15,7 +15,7 @@ MODULES = sorted(FOLDER.glob("*.wasm.gz"))
 
 
 def number_at(content, place):
-    """Return a number in LEB128, and the place after it."""
+    """Return a number in LEB128, and the index after it."""
     value = shift = 0
     while True:
         byte = content[place]

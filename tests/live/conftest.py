@@ -1,4 +1,4 @@
-"""A page's server, and browsers that are none."""
+"""The server of a page, and simulated browsers."""
 
 import asyncio
 import json
@@ -18,7 +18,7 @@ PATIENCE = 20.0
 
 
 class Visitor:
-    """A browser without eyes."""
+    """A simulated browser that draws nothing."""
 
     def __init__(self, socket):
         self.socket = socket
@@ -28,7 +28,7 @@ class Visitor:
         self.socket.send(message if isinstance(message, str | bytes) else json.dumps(message))
 
     def hear(self, kind, is_so=lambda message: True):
-        """Return the next message of a kind that is so; pictures on the way are kept."""
+        """Return the next message of a kind that meets a condition; pictures before it are kept."""
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             message = self.socket.recv(timeout=end - time.monotonic())
@@ -102,5 +102,5 @@ def site(tmp_path):
 
 @pytest.fixture
 def serve():
-    """What serves a session: a context manager."""
+    """A context manager that serves a session."""
     return Site

@@ -1,4 +1,4 @@
-"""The benchmark of the page runs; what it times is not tested."""
+"""The benchmark of the page runs; its timings are not tested."""
 
 import json
 import os

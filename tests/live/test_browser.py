@@ -1,4 +1,4 @@
-"""A real browser: a slider is moved, the air follows, and what is recorded opens in xarray."""
+"""A real browser: a slider is moved, the air follows, and the recording opens in xarray."""
 
 import re
 
@@ -71,7 +71,7 @@ def test_moving_the_slider_makes_the_measured_temperature_follow_and_the_recordi
 
 @pytest.fixture
 def visit(browser, serve, tmp_path):
-    """Return a function that opens the page of a scene as some reader would; a fault in it fails the test."""
+    """Return a function that opens the page of a scene with a reader's settings; a fault in it fails the test."""
     opened, faults = [], []
 
     def page(scene, settings, *, size=(1280, 720), **reader):

@@ -1,4 +1,4 @@
-"""Whatever a browser says: it is done, or a sentence comes back, and the box lives on."""
+"""Whatever a browser sends, it is carried out or answered with a sentence, and the box goes on."""
 
 import asyncio
 import json
@@ -38,7 +38,7 @@ def session(request, tmp_path_factory):
 @given(message=asked, place=st.integers(0, 60), odd=values)
 def test_no_request_breaks_a_box(session, message, place, odd):
     names = [each.name for each in session.controls()]
-    # whatever lets the box begin anew takes seconds with many molecules, and is a case of its own
+    # requests that restart the box take seconds with many molecules, and are a separate case
     message = {**message, "name": names[place] if place < len(names) else odd}
     quick = message["name"] not in ("molecules", "drops") or not isinstance(message.get("value"), int | float)
     said = "."
@@ -79,7 +79,7 @@ def test_no_text_breaks_the_socket(said):
         service._hear(box, said)
         return taken, box.take()
 
-    # in a thread of its own: a test in a browser may have left an event loop in this one
+    # in a separate thread: a test in a browser may have left an event loop in this one
     with fuzz_case("live messages"), ThreadPoolExecutor(1) as other:
         taken, answers = other.submit(asyncio.run, hear()).result()
     assert len(taken) + len(answers) == 1

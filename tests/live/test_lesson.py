@@ -1,4 +1,4 @@
-"""What a scene offers a class: presets, a pump, undo, challenges, gauges, a scale that follows."""
+"""What a scene offers a class: presets, a pump, undo, challenges, gauges, a scale that adapts."""
 
 import json
 import struct
@@ -12,11 +12,11 @@ from atmosbox.live import Session
 from atmosbox.live.lesson import lesson_of
 from atmosbox.simulation.preparation import build, prepare
 
-FASTEST = 28  # place of the highest speed in a frame
+FASTEST = 28  # index of the highest speed in a frame
 
 
 def scene(tmp_path, text):
-    """Return a scene of one's own with such a file beside it."""
+    """Return a user's own scene with such a file beside it."""
     module = tmp_path / "mine.py"
     module.with_suffix(".live.toml").write_text(text, encoding="utf-8")
     return type("Module", (), {"__file__": str(module)})
@@ -53,7 +53,7 @@ def test_the_pump_puts_more_molecules_into_the_same_volume():
     before = session.setup.parcel.volume
     session.obey({"type": "pump", "factor": 1.5})
     assert session.setup.parcel.number == 600
-    assert session.setup.parcel.volume == pytest.approx(before, rel=3e-3)  # what spheres exclude
+    assert session.setup.parcel.volume == pytest.approx(before, rel=3e-3)  # excluded volume
     assert any("600 molecules in the same volume" in note["text"] for note in session.notes())
     with pytest.raises(SettingError, match="nothing that this scene offers"):
         Session(prepare("lifting-dry", {"molecules": 50})).obey({"type": "pump", "factor": 1.5})
@@ -62,7 +62,7 @@ def test_the_pump_puts_more_molecules_into_the_same_volume():
 def test_undo_goes_back_through_knobs_drags_and_new_boxes():
     moment = [0.0]
     session = Session(prepare("temperature", {"molecules": 50}), clock=lambda: moment[0])
-    for value in (100.0, 150.0, 200.0):  # a slider on its way is one change
+    for value in (100.0, 150.0, 200.0):  # a slider that is moved is one change
         moment[0] += 0.2
         session.obey({"type": "set", "name": "temperature", "value": value})
     moment[0] += 5.0
@@ -94,7 +94,7 @@ def test_undo_of_the_first_turn_takes_the_heat_baths_away_again():
     session.obey({"type": "step"})
     assert session.setup.parcel.energy() == pytest.approx(before, rel=1e-12)
     assert [change.words for change in session.changes] == ["speed as at the start"]
-    # and so it does where a new box has begun between
+    # also if the box was restarted in between
     session.obey({"type": "set", "name": "speed", "value": 1.0})
     session.obey({"type": "set", "name": "molecules", "value": 30})
     for speed, molecules in ((1.0, 20), (0.5, 20)):

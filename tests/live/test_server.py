@@ -1,4 +1,4 @@
-"""The server: two browsers, lost ones, slow ones, hostile ones, ports in use, Ctrl-C."""
+"""The server: two browsers, browsers that disconnect, are slow or hostile, ports in use, Ctrl-C."""
 
 import http.client
 import json

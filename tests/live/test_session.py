@@ -1,4 +1,4 @@
-"""A session without a socket: what the page asks for, what it is told, what is recorded."""
+"""A session without a socket: requests of the page, messages to it, and recordings."""
 
 import json
 
@@ -42,7 +42,7 @@ def session(scene="temperature", folder=None, **more):
 
 
 def play_to(box, frames):
-    """Let time pass until so many frames are complete."""
+    """Advance until a number of frames are complete."""
     for _ in range(10_000):
         if box.state()["frame"] >= frames:
             return
@@ -56,7 +56,7 @@ def molecules(box):
 
 
 def series(messages):
-    """Return the last value of every series told."""
+    """Return the last value of every series that was sent."""
     found = {}
     for message in messages:
         if message["type"] == "series":
@@ -202,13 +202,13 @@ def test_warmer_walls_let_saturation_follow():
 
 
 def agrees(values, expected, frames):
-    """Tell whether the mean of the last frames is within 4 errors of 20 blocks: a false alarm once in 1 300."""
+    """Return whether the mean of the last frames is within 4 errors of 20 blocks: a false alarm once in 1 300."""
     blocks = np.array(values, float)[-frames:].reshape(20, -1).mean(axis=1)
     return abs(blocks.mean() - expected) < 4.0 * blocks.std(ddof=1) / 20**0.5
 
 
 def whole(box):
-    """Return all that has been measured since the last change, by name."""
+    """Return all measurements since the last change, by name."""
     return next(message["values"] for message in box.measured() if message["type"] == "series")
 
 

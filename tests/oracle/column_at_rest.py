@@ -1,4 +1,4 @@
-"""A closed isothermal column of gas: what the molecules of a simulated one are checked against."""
+"""A closed isothermal column of gas: reference values for a simulated one."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from atmosbox.theory.hydrostatic import _profile
 
 
 def hydrostatic_column(height, molecules_per_area, bottom, top, kT, mass, gravity, diameter, form=None, dimensions=3):
-    """Return how many molecules per volume there are at each height of a column of spheres or discs."""
+    """Return the number density at each height of a column of spheres or discs."""
     z = np.asarray(height, float)
     profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
     return np.where((z >= bottom) & (z <= top), profile(np.clip(z, bottom, top)), 0.0)

@@ -5,7 +5,7 @@ drop and v in the vapour is that of all their states,
 
     P(n) ~ e_s^v V(n)^(v + air) / v! exp(-E(n)) (n + s)! / (n! s!),
 
-with the room V(n) that the drop leaves to the centres of the others, its surface energy E(n), and the ways to arrange
+with the volume V(n) that the drop leaves to the centres of the others, its surface energy E(n), and the ways to arrange
 n molecules and s dissolved particles.
 """
 
@@ -37,7 +37,7 @@ def chances(molecules, saturated, tension, salt, core, ball, *, air=0, side=1.0,
 
 
 def vapour_over_drop(n, tension, salt, core, ball):
-    """Return the vapour pressure over that of a flat surface of pure water: n molecules lose as often as n - 1 gain."""
+    """Return the vapour pressure over that of a flat surface of pure water: n lose one as often as n - 1 gain one.""" 
     n = np.asarray(n, float)
     surface = 4.0 * np.pi * tension * (radii(n, core, ball) ** 2 - radii(n - 1.0, core, ball) ** 2)
     return n / (n + salt) * np.exp(surface)

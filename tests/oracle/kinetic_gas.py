@@ -1,4 +1,4 @@
-"""What kinetic theory says of walls, pistons and noise: what the molecules of a simulated gas are checked against."""
+"""Kinetic theory of walls, pistons and noise: reference values for a simulated gas."""
 
 import numpy as np
 from scipy import special
@@ -11,17 +11,17 @@ def constant_energy_speed_factor(dof):
 
 
 def wall_flux(number_density, kT, mass):
-    """Return how many molecules hit a wall per area and time, n sqrt(kT / 2 pi m)."""
+    """Return the number of molecules that hit a wall per area and time, n sqrt(kT / 2 pi m)."""
     return number_density * np.sqrt(kT / (2.0 * np.pi * mass))
 
 
 def heat_noise(hits, kT, rotational_dof=0):
-    """Return the scatter of the heat through a heat bath in equilibrium: each hit takes and gives (2 + z/2) (kT)^2."""
+    """Return the scatter of the heat from a heat bath in equilibrium: each hit takes and gives (2 + z/2) (kT)^2."""
     return kT * np.sqrt((4.0 + rotational_dof) * np.asarray(hits, float))
 
 
 def compressibility_noise(compressibility_factor, collisions):
-    """Return the standard error of Z from so many independent collisions, each of a Rayleigh-distributed impulse."""
+    """Return the standard error of Z from a number of independent collisions with Rayleigh-distributed impulses."""
     return (compressibility_factor - 1.0) * np.sqrt(4.0 / (np.pi * collisions))
 
 

@@ -1,4 +1,4 @@
-"""The fourth virial coefficient of the square well, by Mayer's integrals over molecules put at random."""
+"""The fourth virial coefficient of the square well, by Monte Carlo integration of Mayer's integrals."""
 
 import functools
 import math
@@ -11,7 +11,7 @@ def fourth_virial(warmth, chains=20_000_000, reach=1.5):
     r"""Return the fourth virial coefficient [diameter^9] at T*, and its standard error.
 
     :math:`B_4 = -\tfrac18 \int f_{12} f_{23} f_{34} f_{41} [3 + 3 (f_{13} + f_{24}) + f_{13} f_{24}]`: each molecule of
-    a chain of four is put at random within reach of the one before.
+    a chain of four is placed at random within the range of the one before.
     """
     random, x, parts = np.random.default_rng(4), math.expm1(1.0 / warmth), 40
     means = []

@@ -1,4 +1,4 @@
-r"""The adiabats of saturated air: what a lifted parcel and a wet bulb are checked against (Emanuel 1994, chapter 4).
+r"""The adiabats of saturated air: reference values for a lifted parcel and a wet bulb (Emanuel 1994, chapter 4).
 
 On the reversible adiabat the parcel carries all its liquid; on the pseudo-adiabat the liquid leaves as it forms.
 Units are SI; mixing ratios are kg per kg of dry air; `nuclei_heat` is a heat capacity per molecule of air, in k.
@@ -13,18 +13,18 @@ from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
 
 
 def water_latent_heat_vaporization(temperature):
-    """Return the heat that it takes to evaporate water [J/kg], by the law of Kirchhoff."""
+    """Return the latent heat of vaporisation [J/kg], by Kirchhoff's law."""
     return (BINDING - EXCESS * np.asarray(temperature)) * (GAS_CONSTANT / WATER.molar_mass)
 
 
 def moist_entropy(pressure, temperature, total_water, nuclei_heat=0.0):
-    """Return the entropy of air with its vapour and its liquid [J/(kg K)]; a lift without rain keeps it."""
+    """Return the entropy of air with its vapour and liquid [J/(kg K)]; it is conserved in an ascent without rain."""
     p, t, water = (np.asarray(each, float) for each in (pressure, temperature, total_water))
     return DRY_AIR_GAS_CONSTANT * _water.entropy(p, t, water / MASS_RATIO, np.asarray(AIR_HEAT + nuclei_heat))
 
 
 def reversible_adiabat(pressure, pressure0, temperature0, total_water, nuclei_heat=0.0):
-    """Return the temperature of air that is lifted with all its water [K]."""
+    """Return the temperature of air that is lifted and keeps all its water [K]."""
     p, p0, t0, water = (np.asarray(each, float) for each in (pressure, pressure0, temperature0, total_water))
     water, heat = water / MASS_RATIO, np.asarray(AIR_HEAT + nuclei_heat)
     return _water.temperature_of_entropy(_water.entropy(p0, t0, water, heat), p, water, heat)
@@ -38,7 +38,7 @@ def pseudoadiabat(pressure, pressure0, temperature0, nuclei_heat=0.0):
 
 
 def moist_lapse_rate(pressure, temperature, liquid=0.0):
-    """Return by how much saturated air cools with each metre that it is lifted [K/m]."""
+    """Return the lapse rate of saturated air [K/m]."""
     p, t, carried = (np.asarray(each, float) for each in (pressure, temperature, liquid))
     vapor = _water.saturated_vapor(p, t)
     weight = (1.0 + MASS_RATIO * vapor) / (1.0 + vapor)

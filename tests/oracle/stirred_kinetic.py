@@ -1,4 +1,4 @@
-r"""A stirred column by the kinetic equation, to lay beside Fourier's law: how much warmer it is, and its lapse rate.
+r"""A stirred column by the kinetic equation, to compare with Fourier's law: how much warmer it is, and its lapse rate.
 
 A model, written without the engine: air as dense everywhere as the mean of the column, in which an element that climbs
 by z cools by the factor :math:`s = e^{-2z/(f+2)}` (kT of the floor, m and g are 1). Its molecules depart by a share h
@@ -22,7 +22,7 @@ JUMP = 2.127
 
 
 class Profiles(NamedTuple):
-    """Heights of layers of equal mass; temperatures less that of the floor, by the kinetic equation and by Fourier."""
+    """Heights of layers of equal mass; temperatures minus that of the floor, by the kinetic equation and by Fourier."""
 
     height: np.ndarray
     kinetic: np.ndarray
@@ -46,7 +46,7 @@ def speeds(number):
 
 
 def rates(layers, rate, parcel, lifts):
-    """Return how often elements of equal mass change places, (layer, layer)."""
+    """Return the rates at which elements of equal mass change places : (layer, layer)."""
     share = (np.arange(layers) + 0.5) / layers
     least, most = (round(lift * layers) for lift in lifts)
     found = np.zeros((layers, layers))
@@ -59,7 +59,7 @@ def rates(layers, rate, parcel, lifts):
 
 
 def stirred_profiles(knudsen, stirring, freedom, *, top=1.305, parcel=0.05, lifts=(0.15, 0.35), layers=120, points=6):
-    """Return the temperatures of a column of a Knudsen number that is stirred so fast, both as the scene has them."""
+    """Return the temperatures of a column, for a Knudsen number and a rate of stirring as the scene defines them."""
     step = top / layers
     height = (np.arange(layers) + 0.5) * step
     path = knudsen * top / -math.expm1(-top)
@@ -125,6 +125,6 @@ def stirred_profiles(knudsen, stirring, freedom, *, top=1.305, parcel=0.05, lift
 
 
 def lapse(profiles, part=0.1):
-    """Return by how much the logarithm of both temperatures falls with height, away from floor and ceiling."""
+    """Return the decrease of the logarithm of both temperatures with height, away from floor and ceiling."""
     inner = slice(round(part * len(profiles.height)), -round(part * len(profiles.height)))
     return tuple(-np.polyfit(profiles.height[inner], np.log1p(each[inner]), 1)[0] for each in profiles[1:])

@@ -1,4 +1,4 @@
-"""A column that is hardly stirred: how its temperature falls, to first order in the rate, by quadrature."""
+"""A weakly stirred column: its temperature gradient, to first order in the rate of stirring, by quadrature."""
 
 import math
 
@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 
 def gradient_of_weak_stirring(share, depth, conductivity, *, freedom, parcel, lifts):
-    r"""Return dT/dz over the rate of exchanges by any of some lifts, where a share of the molecules is below.
+    r"""Return dT/dz over the rate of exchanges by any of the lifts, at the height with a share of the molecules below.
 
     Mass, kT, gravity and molecules per area are 1. Parcels that come to an isothermal column with the potential
     temperature of elsewhere bring the energy :math:`\tfrac f2 [(p/p')^{R/c_p} - 1]`. What is brought above a height

@@ -1,4 +1,4 @@
-"""Runs that were never computed, and their pages."""
+"""Made-up runs and their pages."""
 
 import functools
 from pathlib import Path
@@ -40,7 +40,7 @@ PANELS = (
 
 
 def made(frames=20, molecules=60, *, scene="temperature", settings=None, walls=("heat_bath",) * 6, water=0, **more):
-    """Return a run as `atmosbox run --save-molecules` would have saved it, with molecules placed by chance."""
+    """Return a run as `atmosbox run --save-molecules` would have saved it, with molecules at random places."""
     rng = np.random.default_rng(frames * molecules + 7)
     kelvin = np.linspace(150.0, 300.0, frames)
     spread = np.sqrt(BOLTZMANN * kelvin / DRY_AIR.molecule_mass)
@@ -82,7 +82,7 @@ def made(frames=20, molecules=60, *, scene="temperature", settings=None, walls=(
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory):
-    """Return a function that writes the page of some runs, once, and gives its address."""
+    """Return a function that writes the page of some runs, once, and returns its address."""
     folder = tmp_path_factory.mktemp("pages")
 
     @functools.cache
@@ -102,7 +102,7 @@ def site(tmp_path_factory):
 
 @pytest.fixture
 def opened(browser, site):
-    """Return a function that opens a page without a network; whatever goes wrong in it fails the test."""
+    """Return a function that opens a page without a network; any error in the page fails the test."""
     contexts, faults = [], []
 
     def page(name, size=(1280, 720), scheme="light", before=""):
@@ -137,5 +137,5 @@ def run():
 
 
 def is_outside(address):
-    """Tell whether an address is neither the page's own file nor something that it holds."""
+    """Return whether an address is neither the page's own file nor data inside it."""
     return not address.startswith(("file:", "blob:", "data:"))

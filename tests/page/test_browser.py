@@ -17,7 +17,7 @@ PHONE = (390, 844)
 
 
 def data(page, name):
-    """Return what the page says of its state."""
+    """Return the state that the page reports."""
     return page.evaluate(f"document.body.dataset.{name}")
 
 
@@ -26,13 +26,13 @@ def time(page):
 
 
 def picture(page):
-    """Return what the box looks like, once it has been drawn anew."""
+    """Return the picture of the box, after it has been drawn anew."""
     page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page.locator(".box canvas").first.screenshot()
 
 
 def until(page, condition):
-    """Wait for a condition; the page itself forbids what playwright would wait with."""
+    """Wait for a condition; the page forbids the script with which playwright would wait."""
     for _ in range(300):
         if page.evaluate(condition):
             return
@@ -212,7 +212,7 @@ def test_the_page_takes_the_colours_that_the_reader_prefers_and_d_turns_them(ope
 
 
 def warmth(page):
-    """Return by how much the picture is more red than blue."""
+    """Return the excess of red over blue in the picture."""
     red, _, blue = imread(io.BytesIO(picture(page)))[..., :3].mean(axis=(0, 1))
     return red - blue
 
@@ -291,7 +291,7 @@ CONTROLS = [
 
 @pytest.fixture
 def live(browser, run):
-    """Return the live page, the sockets that it opened, and what it said, fed by the frames of a made-up run."""
+    """Return the live page with frames of a made-up run, the sockets that it opened, and the messages that it sent."""
     (shown,) = pages([run()])
     context = browser.new_context(viewport={"width": 1280, "height": 720})
     page = context.new_page()

@@ -1,4 +1,4 @@
-"""The page as one document, and the file it becomes."""
+"""The page as one document, and as a file."""
 
 import hashlib
 import json
@@ -17,7 +17,7 @@ PACKAGE = resources.files("atmosbox.page")
 
 
 def told(page):
-    """Return what a page was told of its runs."""
+    """Return the data of the runs in a page."""
     _, _, rest = page.partition('<script type="application/json" id="told">')
     return json.loads(rest.partition("</script>")[0])["runs"]
 

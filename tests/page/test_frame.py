@@ -1,4 +1,4 @@
-"""Moments as bytes."""
+"""Frames as bytes."""
 
 import base64
 import struct
@@ -14,7 +14,7 @@ NO_DROPS = np.zeros((0, 4))
 
 
 def read(frame):
-    """Return what the bytes of a frame say, read by the words of its docstring."""
+    """Return the content of the bytes of a frame, decoded as its docstring describes."""
     sequence, time, x, y, z, number, highest = struct.unpack_from("<Id3fIf", frame)
     place = np.frombuffer(frame, "<u2", 3 * number, 32).reshape(-1, 3)
     speed = np.frombuffer(frame, np.uint8, number, 32 + 6 * number)

@@ -1,4 +1,4 @@
-"""The words of the pages: one table a language, complete, and nothing said beside them."""
+"""The texts of the pages: one complete table for each language, and no text outside the tables."""
 
 import functools
 import re
@@ -22,7 +22,7 @@ GAP = re.compile(r"\{\w*\}")
 
 
 def asked():
-    """Return the keys that scripts and document ask for; of a key that is put together, the pattern."""
+    """Return the keys that scripts and document use; for a key that is composed, its pattern."""
     text = "\n".join(SCRIPTS.values())
     keys = set(re.findall(r'\bword\("(\w+)"', text)) | set(re.findall(r'data-word(?:-\w+)?="(\w+)"', text))
     return keys | {name.lower() for name in re.findall(r"@@(WAIT|NO_SCRIPT|CANNOT_START)@@", text)}
@@ -30,7 +30,7 @@ def asked():
 
 @functools.cache
 def said_by_scenes():
-    """Return all that the shipped scenes say on a page with graphs: titles, curves, axes, settings."""
+    """Return all texts of the scenes of atmosbox on a page with graphs: titles, curves, axes, settings."""
     found = set()
     for name in scenarios.names():
         prepared = prepare(name, {})

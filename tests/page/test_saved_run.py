@@ -1,4 +1,4 @@
-"""What `atmosbox run --save-molecules` keeps of the box, and what a page makes of it."""
+"""The data of the box that `atmosbox run --save-molecules` saves, and how a page shows them."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ RUNS = {
 
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
-    """Return a function that runs a scene in small, once, and reads its file."""
+    """Return a function that runs a small version of a scene, once, and reads its file."""
     folder, known = tmp_path_factory.mktemp("runs"), {}
 
     def run(scene):

@@ -1,4 +1,4 @@
-"""What a page is told of a run."""
+"""The data of a run that a page gets."""
 
 import numpy as np
 import pytest

@@ -10,7 +10,7 @@ RUNNER = CliRunner()
 
 
 def view(*words):
-    """Return what the command said, and how it ended."""
+    """Return the output of the command, and its exit status."""
     return RUNNER.invoke(app, ["view", *map(str, words)])
 
 

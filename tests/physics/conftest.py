@@ -1,4 +1,4 @@
-"""What the tests of the engine share: a box of gas in one line, dry or moist, and the balance of water in it."""
+"""Shared by the tests of the engine: a box of gas in one line, dry or moist, and the equilibrium of water in it."""
 
 import faulthandler
 import math
@@ -25,7 +25,7 @@ SPECULAR = (Specular(),) * 6
 
 
 def new_gas(number, length, *, walls=SPECULAR, seed, kT=1.0, spin_kT=None, planar=False, **options):
-    """Return a gas at random places whose kinetic energy is that of kT to rounding, whatever the seed."""
+    """Return a gas at random places whose kinetic energy is exactly that of kT, for every seed."""
     rng = np.random.default_rng(seed)
     ones = np.ones(number)
     periodic = tuple(isinstance(wall, Periodic) for wall in walls[::2])
@@ -49,7 +49,7 @@ def new_gas(number, length, *, walls=SPECULAR, seed, kT=1.0, spin_kT=None, plana
 
 
 def furthest_out_of_place(box):
-    """Return how far a molecule reaches through a wall, and how deep a pair overlaps, both in mean diameters."""
+    """Return the largest reach of a molecule through a wall, and the deepest overlap of a pair, in mean diameters."""
     x, sides, diameter = box.snapshot().position, box.length, box.diameter
     radius = 0.5 * diameter[:, None]
     walled = ~np.array(box.periodic)
@@ -138,7 +138,7 @@ def microcanonical(total_energy, molecules, air, nuclei, volume, substance):
 
 
 def sampled(box, warm_up, step, samples):
-    """Return the number in the liquid and its energy at even times."""
+    """Return the number of molecules in the liquid and its energy, at equal intervals of time."""
     box.advance(warm_up)
     rows = np.empty((samples, 2))
     for k in range(samples):
@@ -156,7 +156,7 @@ def mean_where(chosen, values):
 
 
 def holds_the_balance(box, molecules, air, nuclei, substance, *, step, samples, diameter=SMALL):
-    """Hold the probability of each number in the liquid, and the mean and variance of its energy, to theory."""
+    """Check the probability of each number in the liquid, and the mean and variance of its energy, against theory."""
     total = sum(box.energy()) + box.condensed_energy
     chance, energy, variance = microcanonical(total, molecules, air, nuclei, open_volume(box, diameter), substance)
     count, liquid_energy = sampled(box, 50.0, step, samples).T
@@ -190,7 +190,7 @@ def vapour_number(saturated, molecules):
 
 @pytest.fixture(autouse=True)
 def nothing_hangs(request):
-    """End the whole run, with a traceback, if a test stops making progress: a kernel hears no Ctrl-C."""
+    """End the whole run, with a traceback, if a test makes no progress: Ctrl-C cannot stop a kernel."""
     long = request.node.get_closest_marker("validate") is not None
     faulthandler.dump_traceback_later(7200.0 if long else 900.0, exit=True, file=sys.__stderr__)
     yield
@@ -209,7 +209,7 @@ def out_of_place():
 
 @pytest.fixture(scope="session")
 def wet():
-    """Return boxes of air and water, and what statistical mechanics says of them."""
+    """Return boxes of air and water, and their results by statistical mechanics."""
     return SimpleNamespace(
         small=SMALL,
         mass=MASS,

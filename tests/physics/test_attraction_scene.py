@@ -1,4 +1,4 @@
-"""The scene of attraction: a drop out of a vapour, and a slab whose vapour pressure was not put in."""
+"""The scene of attraction: a drop that forms from vapour, and a slab whose vapour pressure is a result, no input."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ HARD = {"attraction": 0.0}
 
 
 def run(**settings):
-    """Run the scene; return what it gives and its headlines by name."""
+    """Run the scene; return its outcome and its headlines by name."""
     outcome = runner.execute(runner.prepare("attraction", settings))
     return outcome.dataset, {headline.name: headline for headline in outcome.headlines}, outcome
 
@@ -53,7 +53,7 @@ def test_a_gas_has_the_pressure_of_its_virial_coefficients():
     density = 0.06 * theory.WELL_CRITICAL_DENSITY
     ideal = density * 180.0 / theory.SIMPLE_FLUIDS["argon"].well_depth * 1.380649e-23
     ideal *= theory.SIMPLE_FLUIDS["argon"].well_depth / theory.SIMPLE_FLUIDS["argon"].well_diameter ** 3
-    assert ideal - pressure.value > 3.0 * pressure.standard_error  # attraction is seen
+    assert ideal - pressure.value > 3.0 * pressure.standard_error  # the effect of attraction is visible
 
 
 @pytest.mark.validate
@@ -66,7 +66,7 @@ def test_a_slab_has_the_vapour_pressure_of_published_simulations(kelvin):
     assert found["vapor_pressure"].standard_error < 0.15 * found["vapor_pressure"].value
     assert found["liquid_density"].value > 8.0 * found["vapor_density"].value
     assert found["mean_surface_tension"].value > 0.0
-    # the slab stands in the middle of the box wherever it drifts
+    # the slab is shown in the middle of the box wherever it drifts
     density = data.number_density.values
     assert density[len(density) // 2] > 8.0 * density[[0, -1]].max()
     assert outcome.ledger < 1e-12

@@ -1,4 +1,4 @@
-"""CAPE and CIN: exact integrals of broken lines, the conventions, MetPy's answers, and errors that propagate."""
+"""CAPE and CIN: exact integrals of piecewise linear curves, the conventions, MetPy's results, error propagation."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def sounding(*differences):
 
 
 def at(steps):
-    """Return the pressure so many steps above the ground."""
+    """Return the pressure a number of steps above the ground."""
     return 1e5 * np.exp(-0.25 * steps)
 
 
@@ -42,7 +42,7 @@ def test_of_several_crossings_the_lowest_is_the_lfc_and_the_highest_the_el():
     energy = theory.cape_cin(*sounding(-1.0, 1.0, -1.0, 1.0, -1.0))
     assert energy.lfc == pytest.approx(at(0.5), rel=1e-12)
     assert energy.el == pytest.approx(at(3.5), rel=1e-12)
-    assert energy.cape == pytest.approx(R_DRY * 0.25 * 0.5, rel=1e-12)  # two areas less the stable one between
+    assert energy.cape == pytest.approx(R_DRY * 0.25 * 0.5, rel=1e-12)  # two areas minus the stable one between them
 
 
 def test_free_convection_waits_for_the_cloud_base():

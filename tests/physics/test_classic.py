@@ -1,4 +1,4 @@
-r"""What the classic schemes get wrong follows laws, and they keep to them.
+r"""The errors of the classic schemes follow known laws.
 
 Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these). The laws
 of late and missed contacts follow from one pair that flies straight and is looked at every step: with
@@ -231,7 +231,7 @@ def test_walls_that_emit_at_the_end_of_a_step_make_the_gas_too_hot(scheme):
         box.advance(box.time + 1.0)
         kT.append(2.0 * box.energy()[0] / ((2.0 if planar else 3.0) * number))
     mean, error = block_average(kT)
-    # a flight takes 4 V / (S c) on average, pi A / (P c) in a plane, and ends half a step late; the molecule waits at
+    # a flight takes 4 V / (S c) on average, pi A / (P c) in a plane, and ends half a step late; the molecule stays at
     # the wall with the energy of those emitted, which is 2 kT, or 3/2 kT
     chord = math.pi / 4.0 * side if planar else 4.0 / 6.0 * side
     late = 0.5 * dt / (chord / float(theory.mean_speed(1.0, 1.0, 2 if planar else 3)))

@@ -1,7 +1,7 @@
-"""A column of gas under gravity: how it thins out, what it weighs, and that it is as warm above as below.
+"""A column of gas under gravity: its density profile, its weight, and that it is as warm above as below.
 
 Means allow 4 standard errors from 20 blocks: a false alarm once in 1 500 per comparison for a fresh seed (there are
-some 110 here), and never for these. In gravity nothing but mechanics is put in.
+some 110 here), and never for these. Only mechanics in gravity is put in.
 """
 
 import numpy as np
@@ -70,7 +70,7 @@ def test_the_floor_carries_the_weight_of_the_column_above_what_the_ceiling_does(
     momentum = box.snapshot().velocity[:, 2].sum()
     box.advance(1050.0)
     force = (box.wall_impulse - impulse)[4:] / (box.time - time)
-    # exact, but for the momentum that the gas happens to have at the two ends
+    # exact, apart from the momentum that the gas happens to have at the start and at the end
     left_over = (box.snapshot().velocity[:, 2].sum() - momentum) / (box.time - time)
     assert force[0] - force[1] == pytest.approx(weight + left_over, rel=1e-10)
     assert abs(left_over) < 1e-3 * weight
@@ -109,7 +109,7 @@ def test_spheres_in_gravity_stand_as_high_as_their_equation_of_state_says(gas, c
     # at contact with the floor n = p / kT is Z times that of the bulk, and it falls off within a diameter
     allowed = 4.0 * density.standard_error[0]
     assert -allowed <= off[0] <= 4.0 * filled * truth[0] + allowed
-    # points would stand closer: the difference is seen
+    # points would be closer to the floor: the difference is measurable
     points = theory.hydrostatic_layers(edges, number / side**2, 0.5, height - 0.5, kT, 1.0, gravity)
     assert np.abs((density.mean - points) / density.standard_error).max() > 10.0
     assert (np.abs(warmth.mean - kT) <= 4.0 * warmth.standard_error + 2.0 * kT / number).all()
@@ -147,7 +147,7 @@ def test_discs_in_gravity_stand_as_high_and_press_as_their_equation_of_state_say
     pressure, error = found["layer_pressure"] / BOLTZMANN, found["layer_pressure_se"] / BOLTZMANN
     expected = theory.gas_pressure_discs(truth / reached, kT, 1.0) * reached
     assert (np.abs(pressure - expected) <= 4.0 * error + 0.005 * expected).all()
-    # the contacts are seen in it, more sharply than two from three dimensions differ
+    # collisions have a visible effect, more significant than the difference of two and three dimensions
     assert error[0] < 0.05 * (expected[0] - truth[0] * kT)
     warmth, error = found["layer_temperature"], found["layer_temperature_se"]
     assert (np.abs(warmth - kT) <= 4.0 * error + 2.0 * kT / number).all()

@@ -29,7 +29,7 @@ def facts(engine=engines.EXACT, **settings):
 
 @pytest.fixture
 def ideal(monkeypatch):
-    """Return an engine that says of itself that its molecules have no excluded volume."""
+    """Return an engine that declares that its molecules have no excluded volume."""
     each = engines.Engine("roomless", "molecules without volume", lambda: ParcelSet, ideal=True)
     monkeypatch.setattr(engine_choice, "ENGINES", {**engines.ENGINES, each.name: each})
     return engines.EngineChoice(each)
@@ -62,7 +62,7 @@ def test_the_facts_of_a_plane_column_are_those_of_discs():
     assert space["gamma"].startswith("5/3:")
     assert plane["exaggeration"].startswith("discs 0.9 m wide")
     assert "slab 8.43 km thick" in plane["box"]
-    # as many molecules stand for as much air
+    # the same number of molecules represents the same amount of air
     assert plane["weight of a molecule"] == space["weight of a molecule"]
     assert plane["scale height"] == space["scale height"]
 
@@ -87,7 +87,7 @@ def test_the_barometric_law_is_that_of_the_textbook():
 )
 def test_the_mean_height_is_that_of_the_closed_form_however_high_the_column(corner, points):
     settings = {"molecules": 60, "duration": 5.0, "start": "equilibrium", **corner}
-    prepared = runner.prepare("atmosphere", settings, engine="dsmc")  # of molecules without volume
+    prepared = runner.prepare("atmosphere", settings, engine="dsmc")  # its molecules have no volume
     stated = {each.name: each for each in runner.execute(prepared).headlines}["mean_height"]
     si = prepared.settings.si
     scale_height = BOLTZMANN * si.temperature / (DRY_AIR.molecule_mass * si.gravity)
@@ -109,7 +109,7 @@ def test_the_theory_of_molecules_without_volume_is_barometric(ideal, plane):
     parameters = json.loads(hard.attrs["atmosbox_parameters"]) | {"engine": str(ideal)}
     roomless = hard.assign_attrs(atmosbox_parameters=json.dumps(parameters))
     theory = [prepared.module.theory(dataset, prepared.settings) for dataset in (hard, roomless)]
-    # layers between the walls hold what the exponential says; only centres' half a diameter at each wall is empty
+    # layers between the walls follow the exponential; only half a diameter at each wall has no centres
     scale_height = BOLTZMANN * 288.15 / (DRY_AIR.molecule_mass * 9.80665)
     radius = 0.5 * prepared.module.Column(prepared.settings).diameter * scale_height
     edges = np.clip(np.append(hard.height_bnds[:, 0], hard.height_bnds[-1, 1]), radius, 25e3 - radius)

@@ -1,4 +1,4 @@
-"""Columns in gravity: the barometric law, and spheres or discs that carry each other's weight."""
+"""Columns in gravity: the barometric law, and the density profiles of spheres and discs."""
 
 import numpy as np
 import pytest
@@ -79,7 +79,7 @@ def test_a_dense_column_is_in_hydrostatic_balance(form):
     fall = integrate.solve_ivp(
         balance, (0.5, 11.5), density[:1], t_eval=heights, method="DOP853", rtol=1e-12, atol=1e-14
     )
-    assert density[0] > 2.0 * density[-1]  # it is a column worth the name
+    assert density[0] > 2.0 * density[-1]  # the density falls clearly with height
     assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
 
 
@@ -128,7 +128,7 @@ def test_the_mean_height_of_a_column_is_that_of_its_balance_of_forces(deep, dime
     _, number, lifted = walked.y[:, -1]
     assert number == pytest.approx(held, rel=1e-9)
     assert found == pytest.approx(0.3 + lifted / number, rel=1e-9)
-    # thick layers hold what thin ones hold together, even layers of a hundred scale heights
+    # a thick layer holds as much as the thin ones in it, even one of a hundred scale heights
     thick = theory.hydrostatic_layers([0.3, 0.3 + 0.5 * deep, 0.3 + deep], *column, dimensions=dimensions)
     assert thick.sum() * 0.5 * deep == pytest.approx(held, rel=1e-10)
     edges = np.linspace(0.3, 0.3 + 0.5 * deep, 500)
@@ -197,7 +197,7 @@ def test_the_stiffness_of_discs_is_the_slope_of_their_pressure_and_of_their_pote
     assert np.allclose(pressed, stiffness, rtol=1e-8, atol=0.0)
     lifted = slope(lambda eta: np.log(eta) + theory.excess_chemical_potential_discs(eta, form))
     assert np.allclose(lifted, stiffness, rtol=1e-8, atol=0.0)
-    # it rises, on which the search for the packing fraction of a potential rests
+    # it increases, as the search for the packing fraction of a potential requires
     assert (np.diff(theory.inverse_compressibility_discs(np.linspace(0.0, 0.7, 1000), form)) > 0.0).all()
 
 

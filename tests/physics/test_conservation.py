@@ -1,4 +1,4 @@
-"""What no contact, wall or piston may change: energy, momentum, the ledger; and nothing overlaps or escapes.
+"""Conservation at contacts, walls and pistons: energy, momentum, the ledger; and no molecule overlaps or escapes.
 
 These are identities of every single run, to rounding: nothing here is statistical.
 """
@@ -13,7 +13,7 @@ S, P = Specular(), Periodic()
 
 
 def energy_error(gas, contacts):
-    """Return the greatest relative change of energy, seen at twenty times, and how many events there were."""
+    """Return the greatest relative change of energy at twenty times, and the number of events."""
     box = gas(400, (11.0, 11.0, 14.0), gravity=0.1, seed=1)
     before = sum(box.energy())
     worst = 0.0
@@ -52,7 +52,7 @@ def test_the_ledger_closes_with_heat_baths_a_piston_and_rotation(gas, gravity):
         box.advance(box.time + 10.0)
         exchanged += float(np.abs(box.wall_heat - heat).sum()) + abs(box.work - work)
         assert box.ledger() <= 1e-10
-    # much more energy than there is has gone in and out
+    # much more energy than the gas has went in and out
     assert exchanged > 5.0 * sum(box.energy())
     assert box.wall_hits[5] > 1000
     assert box.contacts > 50_000
@@ -84,7 +84,7 @@ def test_nothing_overlaps_or_escapes_at_any_time(gas, out_of_place, name):
     options = dict(BOXES[name])
     duration = options.pop("duration", 60.0)
     box = gas(options.pop("number"), options.pop("length"), seed=3, **options)
-    # at times that fall on no event: the golden ratio is the least like a fraction
+    # at times that do not coincide with events: multiples of the golden ratio
     for k in range(1, 61):
         box.advance(duration * (k - 1 + (0.6180339887498949 * k) % 1.0) / 60.0)
         outside, overlap = out_of_place(box)

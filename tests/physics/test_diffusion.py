@@ -1,4 +1,4 @@
-"""Two gases that mix: D, the slowest mode and the entropy of mixing, against theory and against counting by hand."""
+"""Two gases that mix: D, the slowest mode and the entropy of mixing, against theory and against direct counting."""
 
 import math
 
@@ -44,7 +44,7 @@ def test_gases_alike_mix_as_fast_as_chapman_and_enskog_say_and_make_k_ln_2(numbe
     stated = float(runs[0].diffusion_coefficient_se / runs[0].diffusion_coefficient_theory)
     known = float(runs[0].diffusion_coefficient_tolerance / runs[0].diffusion_coefficient_theory)
     assert known < 0.06
-    assert abs(ratio.mean() - 1.0) < 4.0 * stated / math.sqrt(number) + known  # 6e-5 of false alarms
+    assert abs(ratio.mean() - 1.0) < 4.0 * stated / math.sqrt(number) + known  # a false alarm with probability 6e-5
     end = np.mean([float(run.mixing_entropy[-1]) for run in runs])
     assert end == pytest.approx(float(runs[0].mixing_entropy_theory[-1]), abs=0.005)
     assert float(runs[0].mixing_entropy[0]) < 0.3

@@ -1,7 +1,7 @@
-"""Drops and vapour come to the balance of statistical mechanics, where every arrangement without overlaps is as likely.
+"""Drops and vapour reach statistical equilibrium, in which all arrangements without overlaps are equally likely.
 
 Means allow 4 standard errors from 40 blocks: a false alarm once in 4 000 for a fresh seed, never for these. The
-molecules are so small that they hardly ever meet each other; what they exchange they exchange through drops.
+molecules are so small that they hardly ever collide with each other; they exchange energy through drops.
 """
 
 import math
@@ -46,9 +46,9 @@ def box(drops, seed, kT=1.0, **options):
 
 
 def log_room(drops, molecules, air=AIR):
-    """Return the logarithm of the room that molecules of vapour and of air have, for n = 0, 1, ... in the liquid.
+    """Return the logarithm of the free volume of molecules of vapour and of air, for n = 0, 1, ... in the liquid.
 
-    Each of them has the box less the ball that a drop keeps its centre out of.
+    The centre of each can be anywhere in the box except in the excluded volume of the drops.
     """
     n = np.arange(molecules + 1)
     volume = np.full(molecules + 1, (1.0 - SMALL) ** 3)
@@ -59,10 +59,10 @@ def log_room(drops, molecules, air=AIR):
 
 
 def log_ways(drops, molecules):
-    """Return the logarithm of the number of ways to share n molecules out among drops: all are as likely.
+    """Return the logarithm of the number of ways to distribute n molecules over drops: all are equally likely.
 
-    A molecule leaves in proportion to the surface that it leaves behind, which is the one that it comes back to. So
-    whatever the sizes are, nothing prefers one of the ways.
+    The rate at which a molecule leaves is proportional to the surface that the drop then has, and so is the rate of
+    return. So no way is preferred, whatever the sizes are.
     """
     n, others = np.arange(molecules + 1), len(drops.position) - 1
     return np.log(special.comb(n + others, others))
@@ -98,7 +98,7 @@ def canonical(molecules, drops, e_s, air=AIR):
 
 
 def sampled(parcel, step, samples, read):
-    """Return what is read at even times."""
+    """Return the readings at equal intervals of time."""
     parcel.advance(50.0)
     rows = []
     for k in range(samples):
@@ -110,7 +110,7 @@ def sampled(parcel, step, samples, read):
 
 
 def agrees(values, exact, within):
-    """Assert that means are what they should be, and are known well enough to tell."""
+    """Check that means agree with theory, and that their errors are small enough for the check."""
     mean, error = block_average(values, BLOCKS)
     assert (error < within).all()
     assert (np.abs(mean - exact) <= 4.0 * error).all(), (mean, exact, error)
@@ -258,7 +258,7 @@ def test_a_drop_that_grows_among_many_pays_for_the_room_that_it_takes():
     [(0.5, 0.15), *(pytest.param(*case, marks=pytest.mark.validate) for case in ((0.5, 0.0), (10.0, 0.15)))],
 )
 def test_a_light_drop_that_flies_about_is_in_the_same_balance(mass, ball):
-    # it has a room of its own in the box, and hardly more mass than a molecule
+    # it moves freely in the box, and has hardly more mass than a molecule
     molecules, nucleus = 4, 0.12
     drops = Drops(
         water(2.0),
@@ -284,7 +284,7 @@ def test_a_light_drop_that_flies_about_is_in_the_same_balance(mass, ball):
 
 
 def test_a_smooth_box_with_a_light_drop_has_one_temperature():
-    # four molecules, the drop and its liquid share the energy as gamma variates of their degrees of freedom
+    # the energies of four molecules, the drop and its liquid are gamma variates of their degrees of freedom
     facts = {"nucleus": 0.15, "nucleus_mass": 1.0, "molecule_radius": 0.1, "nuclei": 10.0}
     substance = Substance(MASS, SMALL, 60.0, C_L, 1e-9, rotation=3.0)
     drops = Drops(substance, number=2, position=MIDDLE, **facts)

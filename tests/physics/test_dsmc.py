@@ -1,4 +1,4 @@
-"""Direct simulation Monte Carlo gives the dilute gas of kinetic theory, and errs as it is known to err.
+"""Direct simulation Monte Carlo gives the dilute gas of kinetic theory, with errors as known from theory.
 
 Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these).
 """
@@ -22,7 +22,7 @@ S, P = Specular(), Periodic()
 
 
 def new_gas(number, side, *, seed, kT=1.0, walls=(P,) * 6, diameter=1.0, **options):
-    """Return a gas at random places whose kinetic energy is that of kT to rounding, and its drift nothing."""
+    """Return a gas at random places whose kinetic energy is exactly that of kT, without mean motion."""
     rng = np.random.default_rng(seed)
     x = 0.5 * diameter + (side - diameter) * rng.random((number, 3))
     options.setdefault("velocity", maxwell_velocities(kT, np.ones(number), rng, exact=True))
@@ -30,7 +30,7 @@ def new_gas(number, side, *, seed, kT=1.0, walls=(P,) * 6, diameter=1.0, **optio
 
 
 def averages(box, warm_up, step, samples, measure):
-    """Return the block average of what is measured at even times after a warm-up."""
+    """Return the block average of measurements at equal intervals of time after a warm-up."""
     box.advance(warm_up)
     values = []
     for k in range(1, samples + 1):
@@ -101,7 +101,7 @@ def test_a_column_between_heat_baths_is_barometric_and_isothermal():
 
 @pytest.mark.parametrize("dt", [pytest.param(0.2, marks=pytest.mark.validate), 2.0])
 def test_walls_give_a_gas_their_temperature_however_long_the_step(dt):
-    # what is emitted flies for the rest of the step: were it not so, long steps would make the gas too hot
+    # a molecule that a wall emits flies for the rest of the step: otherwise long steps would make the gas too hot
     number, kT = 1000, 1.3
     walls = (HeatBath(kT, 0.5), *(HeatBath(kT),) * 5)
     box = new_gas(number, 10.0, walls=walls, kT=2.0, dt=dt, rotation=2, collision_number=3.0, seed=44)

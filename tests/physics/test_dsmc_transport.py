@@ -1,4 +1,4 @@
-"""What direct simulation Monte Carlo carries through a gas: momentum and heat, as Chapman and Enskog found.
+"""Transport in direct simulation Monte Carlo: viscosity and heat conduction, compared with Chapman and Enskog.
 
 Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these).
 """
@@ -19,7 +19,7 @@ P = Periodic()
 BLOCKS = 20
 VISCOSITY = 1.016034 * 5.0 / 16.0 / math.sqrt(math.pi)
 CONDUCTIVITY = 1.025218 * 75.0 / 64.0 / math.sqrt(math.pi)
-"""Of hard spheres in sqrt(m kT) / sigma^2 and k sqrt(kT / m) / sigma^2, in the fourth order of Sonine polynomials."""
+"""For hard spheres in sqrt(m kT) / sigma^2 and k sqrt(kT / m) / sigma^2, to fourth order in Sonine polynomials."""
 
 
 def diameter(number_density):
@@ -31,7 +31,7 @@ def diameter(number_density):
     "steps", [20_000, pytest.param(500_000, marks=pytest.mark.validate)], ids=["5 percent", "1 percent"]
 )
 def test_viscosity_is_that_of_chapman_and_enskog(steps):
-    # Green and Kubo: the fluctuations of the five components of the stress, over as long as they remember each other
+    # Green and Kubo: the fluctuations of the five components of the stress, over their correlation time
     number, density, lags = 1000, 80.0, 60
     volume, sigma = number / density, diameter(density)
     rng = np.random.default_rng(5)
@@ -65,7 +65,7 @@ def test_viscosity_is_that_of_chapman_and_enskog(steps):
 
 @pytest.mark.parametrize(("cell", "width"), [pytest.param(0.5, 3.0, marks=pytest.mark.validate), (1.0, 6.0)])
 def test_conductivity_is_that_of_chapman_and_enskog_and_grows_with_the_square_of_the_cell(cell, width):
-    # a slab between two walls: T^(3/2) is linear in its middle, away from where the walls are felt
+    # a slab between two walls: T^(3/2) is linear in its middle, far from the walls
     height, occupancy, layers = 25.0, 10.0, 30
     cold, hot = 0.5, 1.5
     density = occupancy / cell**3

@@ -1,8 +1,8 @@
-"""How hard spheres press and how often they meet: against published molecular dynamics, at every density of a fluid.
+"""Pressure and collision rate of hard spheres: against published molecular dynamics, at every density of a fluid.
 
-The pressure is read off twice: from the contacts (the virial theorem) and from the walls. Every statistical
+The pressure is measured twice: from the contacts (the virial theorem) and from the walls. Every statistical
 comparison allows 4 standard errors, from 20 blocks: a false alarm once in 1 500 for a fresh seed, and never for
-these. On top comes what N molecules differ from infinitely many, (Z - 1) / N times 1.5, as measured by others.
+these. The difference of N molecules from infinitely many, (Z - 1) / N times 1.5 as measured by others, is added.
 """
 
 import math
@@ -57,7 +57,7 @@ def compare(gas, row, number, contacts):
 
     # Z = 1 + W / (3 (N - 1) kT), where 3 (N - 1) kT is twice the energy, because the momentum is zero
     measured, error = block_average(1.0 + virial / (2.0 * kinetic))
-    # the scatter of counts and impulses, if molecules forgot at once what they did
+    # the scatter of counts and impulses, if they were independent
     assert error < 2.0 * kinetic_gas.compressibility_noise(z, contacts)
     assert abs(measured - z) <= 4.0 * error + FINITE * (z - 1.0) / number
 
@@ -118,7 +118,7 @@ def test_the_virial_of_contacts_and_the_impulses_on_walls_are_one_pressure(gas, 
     walls = float(np.sum(0.5 * low - (box.length - 0.5) * high))
     assert box.contacts > 1000
     assert box.wall_hits.min() > 20
-    # 2 K less the potential energy, K + potential being the energy
+    # 2 K minus the potential energy, K + potential being the energy
     surplus = 2.0 * energy * box.time - 3.0 * height + float(box.virial.sum()) + walls - (product() - before)
     assert abs(surplus) <= allowed * energy * box.time
 
@@ -166,7 +166,7 @@ def test_points_press_as_an_ideal_gas_exactly(gas):
     box.advance(time)
     pressure = box.wall_impulse / (side**2 * time)
     exact = np.repeat(np.sum(velocity**2, axis=0), 2) / side**3
-    # each molecule hits each wall once more or once less than its share
+    # each molecule hits each wall at most once more or once less than its share
     assert (np.abs(pressure - exact) <= np.repeat(2.0 * np.sum(velocity, axis=0), 2) / (side**2 * time)).all()
     assert pressure.mean() == pytest.approx(number / side**3, rel=0.01)
     assert box.contacts == 0

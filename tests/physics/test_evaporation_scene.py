@@ -1,4 +1,4 @@
-"""The scene of evaporation: where it ends, what the piston costs, who leaves, and what is refused.
+"""The scene of evaporation: its final state, the error due to the piston, which molecules leave, and refusals.
 
 Means allow 4 standard errors from 20 blocks, and what the piston may take: a false alarm once in 1 500 per
 comparison for a fresh seed (there are some 40 here), and never for these.
@@ -36,7 +36,7 @@ def test_a_large_parcel_comes_to_the_balance_of_enthalpy():
         small = isobaric_water(1e5, 303.15, 990 * size, 10 * size, 200 * size)
         gaps.append(small.temperature - float(large.temperature))
         assert small.probability.sum() == pytest.approx(1.0)
-    # what so few molecules differ by goes as one over their number
+    # the error of few molecules is proportional to one over their number
     assert gaps[0] / gaps[1] == pytest.approx(10.0, rel=0.1)
     assert gaps[1] / gaps[2] == pytest.approx(10.0, rel=0.1)
     assert 0.1 < gaps[0] < 0.2
@@ -62,7 +62,7 @@ def test_air_over_a_pool_ends_saturated_where_its_enthalpy_says(settings):
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_hardly_anything_evaporates_in_the_cold_so_nothing_cools(seed):
-    # in every other run not one molecule leaves the pool, and then there is no humidity to compare
+    # in every second run no molecule leaves the pool, and then there is no humidity to compare
     outcome = run(molecules=1000, pool=200, duration=6.0, temperature=-60.0, seed=seed)
     agree(outcome)
     ends = found(outcome)

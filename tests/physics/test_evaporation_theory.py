@@ -1,4 +1,4 @@
-"""Where evaporation ends, how fast a small liquid lets go of its molecules, and how their number scatters."""
+"""The final state of evaporation, the rate at which molecules leave a small liquid, and the scatter of their number."""
 
 from itertools import pairwise
 

@@ -1,6 +1,6 @@
-"""Hard spheres and discs: published tables, molecular dynamics, and thermodynamics that must hold together.
+"""Hard spheres and discs: published tables, molecular dynamics, and thermodynamic consistency.
 
-A number written as text is met to the last digit that is written.
+A number written as text must agree to the last digit.
 """
 
 import numpy as np

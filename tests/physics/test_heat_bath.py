@@ -1,4 +1,4 @@
-"""What heat baths do: hold a gas at their temperature, and carry heat from the warmer to the colder.
+"""Heat baths: they hold a gas at their temperature, and heat flows from the warmer to the colder one.
 
 Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these).
 """
@@ -18,7 +18,7 @@ S, P = Specular(), Periodic()
 
 
 def averages(box, warm_up, step, samples, measure):
-    """Return the block average of what is measured at even times after a warm-up."""
+    """Return the block average of measurements at equal intervals of time after a warm-up."""
     box.advance(warm_up)
     values = []
     for _ in range(samples):
@@ -71,7 +71,7 @@ def test_points_between_heat_baths_are_everywhere_alike_and_maxwells(gas):
         box.advance(box.time + 5.0)
         here = box.snapshot()
         counts.append([np.histogram(here.position[:, axis], layers, (0.0, box.length[axis]))[0] for axis in range(3)])
-        # slow molecules remember for long
+        # slow molecules have a long correlation time
         if k % 50 == 0:
             velocity.append(here.velocity)
     mean, error = block_average(np.array(counts))
@@ -95,7 +95,7 @@ def test_a_very_thin_gas_between_two_walls_carries_the_heat_that_knudsen_found(g
     truth = theory.free_molecular_slab(hot, cold, number / 1000.0, 1.0, rotation)
     # walls that take in a part a of all pass on a / (2 - a) of the heat
     passed = accommodation / (2.0 - accommodation)
-    # molecules are for most of the time with the cold ones
+    # molecules spend most of the time with speeds of the cold wall
     crossing = 10.0 / math.sqrt(cold) + 10.0 / math.sqrt(hot)
     box.advance(20.0 * crossing)
     rows = []

@@ -1,4 +1,4 @@
-"""How molecules move once they have met often enough: Maxwell's speeds, equal shares of energy, rates of meeting.
+"""The motion of molecules after many collisions: Maxwell's speeds, equipartition of energy, collision rates.
 
 Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these); tests of
 a distribution are Kolmogorov's at a level of 1e-4, from snapshots at least three contacts of each molecule apart.
@@ -20,7 +20,7 @@ LEVEL = 1e-4
 
 
 def snapshots(box, number, contacts_apart=3.0, warm_up=20.0):
-    """Return so many snapshots, each so many contacts of every molecule after the last."""
+    """Return a number of snapshots, with a number of contacts of every molecule between them."""
     half = 0.5 * box.number
     while box.contacts < warm_up * half:
         box.advance(box.time + 0.05 * box.length[2])
@@ -45,7 +45,7 @@ def maxwellian(gas, number, samples):
     def speeds(snapshot):
         return np.sqrt(np.sum(snapshot.velocity**2, axis=1))
 
-    # all start with one speed, as far from Maxwell as can be
+    # all start with the same speed, far from Maxwell's distribution
     assert distance(speeds(box.snapshot())) > 0.5
     taken = snapshots(box, samples)
     found = np.concatenate([speeds(snapshot) for snapshot in taken])
@@ -100,7 +100,7 @@ def test_heavy_and_light_molecules_have_the_same_energy(gas, ratio):
         energies.append([energy[:heavy].mean(), energy[heavy:].mean()])
     mean, error = block_average(energies)
     assert (error < 0.02).all()
-    # with walls, not momentum but only energy is shared, so each has exactly its part of it
+    # with walls only energy is conserved, not momentum, so each has exactly its share
     assert (np.abs(mean - 1.5) <= 4.0 * error).all()
 
 
@@ -121,7 +121,7 @@ def test_a_mixture_meets_as_often_as_theory_says(gas, name):
     box = gas(number, (side,) * 3, walls=(P,) * 6, seed=24, diameter=diameter, mass=mass)
     members = np.array([np.sum(~second), np.sum(second)])
     rate = theory.collision_rate_between(members / side**3, mixture["diameter"], mixture["mass"], 1.0)
-    # a molecule is no partner of its own
+    # a molecule does not collide with itself
     rate *= 1.0 - np.eye(2) / members
     expected = 0.5 * float(np.sum(members[:, None] * rate)) * math.sqrt(number / (number - 1.0))
     box.advance(30.0 * number / expected * 10.0)
@@ -159,7 +159,7 @@ def test_all_directions_after_a_contact_are_alike(gas):
 
 
 def test_free_flights_are_as_long_as_those_of_a_random_walk(gas):
-    # a thin gas forgets where it has been: the chance to fly on does not depend on the way behind
+    # in a dilute gas the probability to fly on does not depend on the path so far
     number, side = 500, 26.0
     box = gas(number, (side,) * 3, walls=(P,) * 6, seed=26)
     box.advance(200.0)

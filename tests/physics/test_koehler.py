@@ -1,7 +1,7 @@
-"""The vapour over drops that feel their curvature: the laws of Kelvin and of Koehler, by counting, and in the box.
+"""The vapour over drops with curvature: the laws of Kelvin and of Koehler, by counting states, and in the box.
 
-A drop in a closed box is stable where the vapour that it takes is missing in the air sooner than its curve falls: with
-v molecules of vapour over n of a pure drop, while v < 3 n / ln S. The boxes below keep to that, save those of drops
+A drop in a closed box is stable if its growth lowers the vapour pressure faster than the equilibrium value falls: with
+v molecules of vapour over n of a pure drop, while v < 3 n / ln S. The boxes below fulfil this, except those of drops
 that shall grow or vanish. Means allow 4 standard errors from 40 blocks: a false alarm once in 4 000 for a fresh seed,
 never for these.
 """
@@ -54,7 +54,7 @@ def box(liquid, vapour, *, walls=BATHS, seed=3, air=2):
 
 
 def sampled(parcel, samples, read, step=4.0):
-    """Return what is read at even times."""
+    """Return the readings at equal intervals of time."""
     parcel.advance(50.0)
     rows = []
     for k in range(samples):
@@ -66,7 +66,7 @@ def sampled(parcel, samples, read, step=4.0):
 
 
 def over_drop(number, vapour, salt, samples):
-    """Return the vapour over a drop over that of saturation, its error, and how many molecules are in the drop."""
+    """Return the saturation ratio over a drop, its error, and the number of molecules in the drop."""
     parcel = box(drops(number, salt=(float(salt),)), vapour)
     mean, error = block_average(sampled(parcel, samples, lambda box: (box.vapour, box.liquid)), 40)
     room = float(oracle.room(mean[1], BALL, BALL, 1.0, SMALL)) * 20.0
@@ -145,17 +145,17 @@ def test_the_measured_maximum_is_that_of_koehler():
 FINE = 0.0075
 """Radius of the ball of a molecule of drops that are small in their box."""
 TINY = 0.004
-"""Their diameter in the vapour: two and a half thousand of them must hardly be in each other's way."""
+"""Their diameter in the vapour: 2500 of them must have nearly no excluded volume."""
 STEEP = 0.041 / (8.0 / 3.0 * math.pi * FINE**3)
 
 
 def grain(salt):
-    """Return the radius of a nucleus of so many particles, each as large as a molecule."""
+    """Return the radius of a nucleus of a number of particles, each as large as a molecule."""
     return FINE * max(salt, 1.0) ** (1.0 / 3.0)
 
 
 def grown(number, humidity, salt=0.0, until=40.0, seed=3, vapour=2500):
-    """Return how many molecules a drop of so many holds after a time in air of a humidity."""
+    """Return the number of molecules of a drop after a time in air of a given humidity, from that at the start."""
     saturated = vapour / humidity
     facts = {"tension": STEEP, "ball": FINE, "diameter": TINY, "nuclei": 1e7, "nucleus": grain(salt)}
     liquid = drops(number, saturated=saturated, salt=(salt,), **facts)
@@ -198,7 +198,7 @@ def normal(logs):
 
 
 def agrees(values, exact, within):
-    """Assert that means are what they should be, and are known well enough to tell."""
+    """Check that means agree with theory, and that their errors are small enough for the check."""
     mean, error = block_average(values, 40)
     assert (error < within).all(), error
     assert (np.abs(mean - exact) <= 4.0 * error).all(), (mean, exact, error)
@@ -249,7 +249,7 @@ def test_two_unlike_drops_share_their_molecules_as_their_surfaces_and_salts_have
     agrees(np.array([(held == way).all(axis=1) for way in ways]).T, normal(np.array(logs)), 0.015)
 
 
-# ------------------------------------------------------------------ what a box with such drops tells and refuses
+# ------------------------------------------------------------------ readings and refusals of a box with such drops
 
 
 def test_the_oracle_and_the_theory_are_one_law():

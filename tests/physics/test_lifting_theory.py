@@ -1,4 +1,4 @@
-"""Adiabats, pistons and the environment of a parcel: textbook values, and the laws that tie them together."""
+"""Adiabats, pistons and the environment of a parcel: textbook values, and relations between them."""
 
 import math
 
@@ -115,9 +115,9 @@ def test_heights_above_the_atmosphere_are_refused():
 
 
 def expanding(rate, *, rotates=True):
-    """Return the entropy that a gas makes per molecule and time at a small rate of expansion along one axis.
+    """Return the entropy production of a gas per molecule and time at a small rate of expansion along one axis.
 
-    Temperatures along and across the axis and of the rotation, each of which goes towards the others: the first two
+    The model has temperatures along and across the axis and of rotation, which relax towards each other: the first two
     with the viscosity of Chapman and Enskog, the last at every contact, by Larsen and Borgnakke.
     """
     shear, turn, freedom = 1.016 * 1.25, 2.0, 5.0 if rotates else 3.0
@@ -143,12 +143,12 @@ def test_the_dissipation_of_an_expanding_gas_is_that_of_kinetic_theory():
     derived = expanding(rate) / rate**2
     assert derived == pytest.approx(5.0 / 3.0 * 1.016 + 8.0 / 25.0, rel=1e-3)
     assert expanding(rate, rotates=False) / rate**2 == pytest.approx(5.0 / 3.0 * 1.016, rel=1e-3)
-    # the constant in use is rounded, and lies within its measured spread of 0.06
+    # the constant in use is rounded, and lies within its measured uncertainty of 0.06
     assert pytest.approx(derived, rel=0.015) == theory.DISSIPATION
 
 
 def uniform(length, freedom=5, closing=20.0, top=3e4):
-    """Return how much too warm a uniform gas ends that is lifted from 1000 hPa under a piston, as a share of T.
+    """Return the finite-rate error of the temperature of a uniform gas lifted from 1000 hPa under a piston, over T.
 
     Temperatures along and across the axis and of the rotation, as in `expanding`, and the logarithm of the volume.
     """
@@ -179,7 +179,7 @@ EVEN = tuple(np.geomspace(1e5, 3e4, 400))
 
 @pytest.mark.parametrize(("length", "within"), [(50.0, 0.02), (100.0, 0.015), (400.0, 0.01), (1600.0, 0.01)])
 def test_a_finite_rate_warms_a_uniform_gas_as_kinetic_theory_demands_to_second_order(length, within):
-    # the first order alone is 7 % too much at 50 mean free times, 3 % at 100
+    # the first order alone is 7 % too large at 50 mean free times, 3 % at 100
     found = theory.Ascent(EVEN, length, 0.0).finite_speed(3e4)
     assert found == pytest.approx(uniform(length), rel=within)
 
@@ -191,5 +191,5 @@ def test_the_flow_in_a_box_that_is_stretched_counts_as_the_warmth_of_its_energy(
     high, cold = height * (1e5 / 3e4) ** (1.0 / 1.4), (3e4 / 1e5) ** (2.0 / 7.0)
     z = (np.arange(1000) + 0.5) / 1000.0 * high
     energy = np.mean(0.5 * (rate * z) ** 2)  # of a molecule of mass 1, in kT at the start
-    # the gas is warmer by 2/f of it at its volume, and by f/(f + 2) of that at the pressure that it then has
+    # the gas is warmer by 2/f of this at its volume, and by f/(f + 2) of that at the pressure that it then has
     assert more == pytest.approx(energy / cold * 2.0 / freedom * freedom / (freedom + 2.0), rel=1e-3)

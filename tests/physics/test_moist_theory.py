@@ -1,4 +1,4 @@
-"""Moist air: its saturation, cloud base and adiabats beside MetPy and textbook tables, and the laws that tie them."""
+"""Moist air: saturation, cloud base and adiabats against MetPy and textbook tables, and relations between them."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_the_vapour_pressure_that_is_put_in_is_up_to_half_a_percent_below_that_o
 
 
 def test_metpy_writes_the_same_formula_with_nearly_the_same_numbers():
-    """No check of either: both are Ambaum (2020), and differ in the heat capacity of vapour, 4.03 k and 4 k."""
+    """No independent check: both use Ambaum (2020), and differ in the heat capacity of vapour, 4.03 k and 4 k."""
     calc, units = metpy()
     expected = calc.saturation_vapor_pressure(WEATHER * units.kelvin).m_as("Pa")
     ratio = theory.saturation_vapor_pressure(WEATHER) / expected
@@ -181,7 +181,7 @@ def test_a_reversible_lift_keeps_its_entropy_and_comes_back(temperature, water, 
 
 
 def test_entropy_is_the_integral_of_the_heat_that_was_given():
-    # Warmed at constant pressure: dS = dH / T, over the point at which the last of the liquid goes.
+    # Warmed at constant pressure: dS = dH / T, across the point at which the last liquid evaporates.
     def enthalpy(t):
         vapor = min(float(theory.saturation_mixing_ratio(8e4, t)), 0.012)
         dry = (3.5 * R_DRY + 0.012 * 9.14 * R_VAPOR) * t
@@ -198,7 +198,7 @@ def test_entropy_is_the_integral_of_the_heat_that_was_given():
     [(293.15, 1e5, 2e4, 0.0), (303.15, 1e5, 3e4, 0.3), (213.15, 5e4, 1e4, 0.0), (280.0, 5e4, 1e5, 0.0)],
 )
 def test_the_pseudoadiabat_obeys_its_law_to_one_part_in_a_thousand_million(start, p0, p1, nuclei):
-    # What the leaving liquid carries off, c_l times the integral of v d ln T, by spectral quadrature of the curve.
+    # The entropy that the leaving liquid takes along, c_l times the integral of v d ln T, by spectral quadrature.
     nodes, weights = np.polynomial.legendre.leggauss(60)
     middle, half = 0.5 * np.log(p0 * p1), 0.5 * np.log(p1 / p0)
     x = middle + half * nodes
@@ -217,7 +217,7 @@ def test_the_pseudoadiabat_obeys_its_law_to_one_part_in_a_thousand_million(start
 
 
 def test_the_saturated_adiabats_stand_beside_metpys():
-    # MetPy leaves out the heat of the vapour and lets L stay: the differences are those, and have a sign.
+    # MetPy neglects the heat capacity of the vapour and keeps L constant: this explains the differences and their sign.
     calc, units = metpy()
     levels = np.array([850.0, 700.0, 500.0, 300.0])
     theirs = calc.moist_lapse(levels * units.hPa, 293.15 * units.K, 1000.0 * units.hPa).m_as("K")
@@ -230,7 +230,7 @@ def test_the_saturated_adiabats_stand_beside_metpys():
 
 
 def test_without_the_heat_of_vapour_and_with_constant_latent_heat_metpys_curve_comes_out():
-    # The same law of lapse with what MetPy leaves out taken out, and its e_s: this is all that separates the two.
+    # The same lapse rate with MetPy's approximations and its e_s agrees with MetPy: there are no other differences.
     calc, units = metpy()
     latent = 2.50084e6
 
@@ -253,7 +253,7 @@ TABLE = {
 
 def test_the_saturated_lapse_rate_is_that_of_tables_but_for_the_heat_of_the_vapour():
     for level in TABLE:
-        # The tables, in K/km from -40 to 30 degC, are of the form that leaves out the heat and weight of the vapour.
+        # The tables, in K/km from -40 to 30 degC, neglect the heat capacity and the weight of the vapour.
         t, p = ZERO_CELSIUS + np.array([-40.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0]), 100.0 * level
         r, latent = theory.saturation_mixing_ratio(p, t), moist_adiabat.water_latent_heat_vaporization(t)
         dry, condensing = latent * r / (R_DRY * t), latent**2 * r / (R_DRY * t * t)

@@ -1,4 +1,4 @@
-r"""Two spheres in a periodic cube, the smallest gas there is, meet as often as geometry says, exactly.
+r"""Two spheres in a periodic cube, the smallest gas, collide exactly as often as geometry predicts.
 
 Seen from one of them, the other is a point that flies among the images of a sphere of radius sigma. In a space of
 volume V bounded by a surface of area S the mean chord is 4 V / S (Santalo 1976, doi:10.1017/CBO9780511617331), so

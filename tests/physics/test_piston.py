@@ -1,7 +1,7 @@
 """A ceiling that moves: adiabats, the work it does, and a gas that follows a given pressure.
 
 Where runs are repeated with other seeds, their mean is allowed 4 standard errors from their own scatter (a false
-alarm once in 1 500 for fresh seeds, and never for these), plus what the piston's speed costs, stated with each test.
+alarm once in 1 500 for fresh seeds, and never for these), plus the error due to the piston's speed, as stated there.
 """
 
 import math
@@ -73,7 +73,7 @@ def test_a_slow_piston_warms_a_plane_gas_as_gamma_2_says(gas):
 
 
 def test_points_below_a_piston_keep_their_sideways_motion_and_follow_the_adiabat_of_one_dimension(gas):
-    # they never meet, so nothing mixes the axes
+    # they never collide, so the axes do not exchange energy
     number, height = 2000, 10.0
     box = gas(number, (5.0, 5.0, height), walls=(S,) * 5 + (Piston(-0.01),), diameter=0.0, seed=51)
     before = box.snapshot().velocity
@@ -120,7 +120,7 @@ def test_the_slow_work_at_constant_temperature_is_that_of_the_logarithm(gas):
     assert error / exact < 0.01
     # at this speed the gas is warmer by the work of the few crossings between two hits on a bath
     assert abs(mean / exact - 1.0) <= 4.0 * error / exact + 0.01
-    # all of it goes out as heat, but for what the energy of so few molecules happens to be at the start and at the end
+    # all of it goes out as heat, apart from the fluctuating energy of so few molecules at the start and at the end
     heat, heat_error = mean_and_error(heats)
     assert heat_error / exact < 0.06
     assert abs(heat / exact + 1.0) <= 4.0 * heat_error / exact + 0.01
@@ -133,7 +133,7 @@ def test_a_fast_piston_feels_the_pressure_of_those_that_catch_up_with_it(gas, sp
     for seed in range(20):
         walls = (S,) * 5 + (Piston(speed),)
         box = gas(number, (10.0, 10.0, height), walls=walls, diameter=0.0, seed=seed)
-        # so short that nobody hits it twice
+        # so short that no molecule hits it twice
         box.advance(time)
         impulses.append(box.wall_impulse[5])
     mean, error = mean_and_error(impulses)
@@ -176,7 +176,7 @@ def test_air_whose_piston_follows_a_falling_pressure_cools_along_the_dry_adiabat
         added = share * (float(theory.compressibility_factor(filled[1])) - 1.0)
         pressed = thick * before / (2.5 * number) * (1.0 + added)
         dry.append(ratio / float(theory.dry_adiabat_temperature(driver.pressure(box), 1.0, pressed, 5)))
-        # the floor feels the pressure to be followed
+        # the pressure on the floor is the pressure to be followed
         floor = (box.wall_impulse[4] - impulse) / (box.time - time)
         pressures.append(floor / (side - (0.0 if periodic else diameter)) ** 2)
         expected.append(driver.pressure(box))
@@ -260,7 +260,7 @@ def test_discs_below_a_piston_press_as_hard_as_they_are_told(gas):
             box.advance(time + 50.0)
             values.append((box.wall_impulse[4] - impulse) / (box.time - time) / (side - 1.0))
         found.append(np.mean(values))
-        # contacts make up a third of it
+        # contacts contribute a third of it
         assert driver.pressure(box) * (side - 1.0) * (box.ceiling - 1.0) > 1.3 * box.internal_energy()
     mean, error = mean_and_error(found)
     assert error < 0.01 * pressure
@@ -269,13 +269,13 @@ def test_discs_below_a_piston_press_as_hard_as_they_are_told(gas):
 
 def test_an_approaching_piston_meets_a_molecule_at_the_right_time_and_doubles_its_own_speed_on_it(gas):
     walls = (S,) * 5 + (Piston(),)
-    # another rests far below: one alone needs kernels of its own
+    # another one rests far below: a single molecule needs further kernels
     where, velocity = [[5, 5, 5], [1, 1, 1]], [[0, 0, 1.0], [0, 0, 0]]
     box = gas(2, (10.0,) * 3, walls=walls, diameter=0.0, seed=53, position=where, velocity=velocity)
     box.set_piston_velocity(-1.0)
     box.advance(2.4)
     assert box.snapshot().velocity[0, 2] == 1.0
-    # they meet at z = 7.5 after 2.5, and the molecule goes down at 3
+    # they collide at z = 7.5 after 2.5, and the molecule moves down at 3
     box.advance(4.0)
     assert box.snapshot().velocity[0, 2] == pytest.approx(-3.0, rel=1e-14)
     assert box.snapshot().position[0, 2] == pytest.approx(3.0, rel=1e-14)

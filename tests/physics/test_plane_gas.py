@@ -63,7 +63,7 @@ def test_discs_press_and_meet_to_a_part_in_a_thousand(gas, row):
 def test_the_speeds_of_discs_are_rayleighs(gas):
     number = 1000
     angle = 2.0 * math.pi * np.random.default_rng(72).random(number)
-    # all start with one speed
+    # all start with the same speed
     velocity = math.sqrt(2.0) * np.stack([np.cos(angle), 0.0 * angle, np.sin(angle)], axis=1)
     box = gas(number, (60.0, 1.0, 60.0), planar=True, seed=72, velocity=velocity)
     assert temperature(box, box.snapshot()) == pytest.approx(1.0, rel=1e-12)
@@ -136,6 +136,6 @@ def test_discs_of_no_size_press_as_points(gas):
     speed = np.abs(box.snapshot().velocity[:, [0, 0, 2, 2]])
     box.advance(time)
     force = box.wall_impulse[[0, 1, 4, 5]] / time
-    # each hits each wall once more or once less than its share
+    # each hits each wall at most once more or once less than its share
     assert (np.abs(force - np.sum(speed**2, axis=0) / side) <= np.sum(2.0 * speed, axis=0) / time).all()
     assert box.contacts == 0

@@ -1,4 +1,4 @@
-"""Molecules that rotate, so that air has the 5 degrees of freedom that it has: energy shared by Larsen and Borgnakke.
+"""Molecules that rotate, so that air has 5 degrees of freedom: exchange of energy by Larsen and Borgnakke's method.
 
 Means allow 4 standard errors from 20 blocks (a false alarm once in 1 500 for a fresh seed, never for these); tests of
 a distribution are Kolmogorov's at a level of 1e-4.
@@ -32,7 +32,7 @@ def shares(box, warm_up, step, samples):
 )
 def test_motion_and_rotation_share_the_energy_by_their_degrees_of_freedom(gas, rotation, collision_number):
     number, freedom = 400, 3.0 + rotation
-    # all of it starts as motion
+    # all energy starts as translation
     box = gas(
         number,
         (12.0,) * 3,
@@ -90,7 +90,7 @@ def test_rotation_warms_at_the_rate_that_the_collision_number_sets(gas, collisio
     number, runs, length = 2000, 20, (25.0,) * 3
     gained = []
     for seed in range(runs):
-        # random places pushed apart leave pairs that nearly touch, and those must part first
+        # random places that are pushed apart leave pairs that nearly touch, and these must separate first
         settled = gas(number, length, seed=seed)
         settled.advance(5.0)
         _, position, velocity, _ = settled.snapshot()
@@ -106,7 +106,7 @@ def test_rotation_warms_at_the_rate_that_the_collision_number_sets(gas, collisio
         )
         while box.contacts < 60:
             box.advance(box.time + 0.01)
-        # so few that hardly any molecule has met twice
+        # so few that hardly any molecule has collided twice
         gained.append(box.energy()[1] / box.contacts)
     mean, error = np.mean(gained), np.std(gained, ddof=1) / math.sqrt(runs)
     # contacts are proportional to relative speed, which makes their mean relative energy 2 kT

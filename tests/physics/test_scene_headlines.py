@@ -1,4 +1,4 @@
-"""Scenes beside the theory of what they cannot show exactly: a parcel that rises at a finite speed, a tiny box of gas.
+"""Scenes against the theory of their known errors: a parcel that rises at a finite speed, a small box of gas.
 
 Each bound is stated with its test: 4 standard errors (a false alarm once in 1 500 for fresh seeds, and never for
 these), plus what the theory itself leaves out.
@@ -77,7 +77,7 @@ def test_a_fast_parcel_is_as_much_too_warm_as_the_viscosity_of_its_gas_demands(s
 
 @pytest.mark.parametrize(("molecules", "seeds"), [(500, 48), (4000, 16)])
 def test_the_energy_of_the_flow_makes_a_larger_parcel_warmer(molecules, seeds):
-    # a uniform gas and the flow: 3.02 K at 300 hPa for 500 molecules, 3.61 K for 4000; without it 2.94 K both
+    # a uniform gas and the flow: 3.02 K at 300 hPa for 500 molecules, 3.61 K for 4000; without the flow 2.94 K for both
     length = 50
     misfits, _, found = ascents(range(seeds), molecules=molecules, ascent=length)
     scene = scenarios.load("lifting-dry")
@@ -94,7 +94,7 @@ def test_a_parcel_has_the_pressure_of_its_surroundings_and_its_lapse_rate():
     outcome = run("lifting-dry", molecules=1000, seed=3)
     found = outcome.dataset
     gap = np.log(found.parcel_pressure.values / found.environment_pressure.values)
-    # 20 mean free times of the noise of Z: 1 in 10 000; a piston that took its gas for points had 7 of them throughout
+    # 20 mean free times of the noise of Z: 1 in 10 000; a piston that ignored excluded volume was 7 of them off
     assert abs(gap.mean()) < 1e-4
     assert np.abs(gap).max() < 5e-4
     assert len(outcome.headlines) == 3
@@ -109,6 +109,6 @@ def test_two_hundred_molecules_press_and_meet_as_theory_says_at_any_density(pres
     assert set(found) == {"mean_temperature", "mean_pressure", "mean_speed", "collision_rate"}
     assert all(headline.agrees for headline in found.values())
     assert found["mean_pressure"].theory == pytest.approx(100.0 * pressure, rel=1e-12)
-    # what is allowed is a small part of what spheres add
+    # the allowed difference is a small part of the effect of excluded volume
     rate = found["collision_rate"]
     assert rate.tolerance / rate.theory < 0.03 * pressure / 100_000 * 1.001 + 1e-4

@@ -35,7 +35,7 @@ def headline(found, name):
 
 
 def test_the_built_in_sounding_is_weisman_and_klemps_and_passes_its_own_check():
-    # a thousand molecules hold nineteen of water, too few for theories that take them for many
+    # of a thousand molecules nineteen are water, too few for theories that assume many
     found = outcome(molecules=4000, ascent=100)
     assert all(check.passed for check in verify(found.dataset))
     air = sounding.weisman_klemp()
@@ -49,7 +49,7 @@ def test_the_buoyancy_is_that_of_the_weight_of_all_that_the_parcel_holds():
     data = outcome().dataset
     warmer = data.parcel_virtual_temperature.values - data.parcel_temperature.values
     vapour, liquid = data.humidity_mixing_ratio.values, data.cloud_liquid_water_mixing_ratio.values
-    # T_v is T (1 + 0.608 r) to a percent of the difference, and each gram of liquid weighs as much as a thousandth of T
+    # T_v is T (1 + 0.608 r) to a percent of the difference, and each gram of liquid counts as a thousandth of T
     assert warmer == pytest.approx(0.608 * vapour * data.parcel_temperature.values, rel=0.02)
     loaded = data.parcel_virtual_temperature.values / data.parcel_density_temperature.values - 1.0
     assert loaded == pytest.approx(liquid, rel=0.03)
@@ -88,7 +88,7 @@ def test_a_cloud_that_carries_its_water_has_half_the_energy_of_one_that_does_not
     module = scenarios.load(SCENE)
     settings = runner.prepare(SCENE, {"molecules": 1_000_000}).settings
     loaded, light = (module._convection(settings, weight=weight).cape for weight in (True, False))
-    # independently, at 14 g/kg: 1253 J/kg with the weight of the water, 2212 without
+    # computed independently, at 14 g/kg: 1253 J/kg with the weight of the water, 2212 without
     assert loaded == pytest.approx(1253.0, abs=15.0)
     assert light == pytest.approx(2212.0, abs=15.0)
 

@@ -1,4 +1,4 @@
-"""Molecules that attract each other by a square well: the gas that theory knows, and the liquid that forms in it."""
+"""Molecules that attract each other by a square well: the gas, compared with theory, and the liquid that forms."""
 
 import itertools
 import math
@@ -61,7 +61,7 @@ def test_virial_coefficients_are_the_integrals_of_mayer(range_):
     ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.validate) for kT in (1.0, 1.5, 2.0, 3.0))]
 )
 def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
-    """Z - 1 and u at phi = .01, from the momentum that pairs hand on: B2 and B3 together, in 4 standard errors.
+    """Z - 1 and u at phi = .01, from the momentum that pairs transfer: B2 and B3 together, in 4 standard errors.
 
     Four terms of the series would differ from three by up to 4e-5 here; B3 makes 5e-4 to 1.3e-3 of Z.
     """
@@ -156,7 +156,7 @@ def test_liquid_and_vapour_without_a_surface_are_those_of_a_slab(kelvin):
     bar = fluid.well_depth / fluid.well_diameter**3
     pressure, pressure_se = (getattr(slab["vapor_pressure"], each) / bar for each in ("value", "standard_error"))
     press, press_se, energy, energy_se = still(thin)
-    # what the density of the vapour is off, the pressure is off by half of that and less
+    # the relative error of the pressure is at most half of that of the vapour density
     by_density = press / thin * slab["vapor_density"].standard_error / unit
     assert abs(press - pressure) < 4.0 * math.hypot(press_se, pressure_se, by_density)
     assert math.hypot(press_se, pressure_se, by_density) < 0.06 * pressure
@@ -199,7 +199,7 @@ def test_air_that_does_not_attract_keeps_out_of_the_wells():
 
 
 def test_an_unstable_vapour_condenses_and_warms_itself():
-    """Alone, without a bath: 3/2 N dT is what the wells gave, to rounding."""
+    """Without a bath: 3/2 N dT is the energy released by the wells, to rounding."""
     number = 300
     random = np.random.default_rng(5)
     length = ((number / 0.08) ** (1.0 / 3.0),) * 3
@@ -237,7 +237,7 @@ def test_extreme_wells_keep_their_energy(well, kT, density):
     assert len(position) == number
     velocity = np.random.default_rng(2).normal(size=(number, 3)) * math.sqrt(kT)
     box = AttractingParcelSet(position, velocity, length=(side,) * 3, walls=ROUND, well=well)
-    # where wells are so deep, all that fall into them are a thousand times as fast
+    # molecules that fall into such deep wells become a thousand times as fast
     box.advance(10.0 / math.sqrt(max(kT, 1e-4 * well.depth)))
     assert box.contacts > 20
     assert box.ledger() < 1e-12

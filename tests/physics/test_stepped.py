@@ -1,4 +1,4 @@
-r"""What time steps cost: the laws by which the stepped engine is wrong.
+r"""The errors due to time steps: the laws of the errors of the stepped engine.
 
 In a dilute gas they follow from one pair. It enters with relative speed g and goes half a chord, of length l, to where
 it is nearest; what is seen of it are points a distance x = g dt apart, the first at random. It collides at the first
@@ -62,7 +62,7 @@ def dilute(delta, dimensions):
 
 
 def scattered(delta, dimensions, pairs, seed, steps=1, **options):
-    """Let pairs meet, each alone; return the shares of collisions missed, of virial missing, of pairs seen to part."""
+    """Collide isolated pairs; return the shares of missed collisions, missing virial, and pairs found while separating."""
     rng = np.random.default_rng(seed)
     g = 2.0 * np.sqrt(rng.standard_gamma(0.5 * (dimensions + 1), pairs))
     b = np.sqrt(rng.random(pairs)) if dimensions == 3 else rng.uniform(-1.0, 1.0, pairs)
@@ -95,7 +95,7 @@ def test_pairs_that_meet_are_missed_and_late_as_the_laws_say(dimensions):
     for k, delta in enumerate(STEPS):
         blocks = np.array([scattered(delta, dimensions, 20_000, 100 * k + block) for block in range(20)])
         mean, error = block_average(blocks)
-        # of the missed ones three in four are seen when they part: the later half of their chord is as long
+        # three in four of the missed pairs are found when they separate: the later half of their chord is as long
         traces, scatter = block_average(blocks[:, 2] - 0.75 * blocks[:, 0])
         assert abs(traces) <= 4.0 * scatter + delta**3
         rate, virial = dilute(delta, dimensions)
@@ -122,7 +122,7 @@ EXCESS = {(3, 0.01): 0.041019, (3, 0.1): 0.521647, (2, 0.01): (1.0 + 0.01**2 / 8
 
 
 def crowding(dimensions, phi, delta):
-    """Return by which factor rate and Z - 1 are low because molecules that overlap leave each other room."""
+    """Return the factor by which rate and Z - 1 are too low because overlaps reduce the excluded volume."""
     if dimensions == 3:
         slope = 3.0 * phi * (3.0 / (1.0 - phi) - 0.5 / (1.0 - 0.5 * phi))
     else:
@@ -192,7 +192,7 @@ def test_without_the_test_for_approach_pairs_cling_to_each_other_and_energy_does
 
 
 def forces(rule, d, seed, number=500):
-    """Return the force of points on walls that turn them by a rule, and if crossings took 0, 1, 1/2 step longer.
+    """Return the force of points on walls with a rule of reflection, and if crossings took 0, 1, 1/2 step longer.
 
     All as shares of the exact one.
     """
@@ -233,7 +233,7 @@ def test_walls_are_pressed_less_by_what_a_crossing_takes_longer(rule, lost):
 
 
 def fallen(motion, rule, dt, gravity=1.5, number=400):
-    """Return energy made per molecule and unit time, in points that fall between smooth walls."""
+    """Return the energy made per molecule and unit time, for points that fall between smooth walls."""
     rng = np.random.default_rng(31)
     x = rng.random((number, 3)) * [1.0, 1.0, 4.0]
     v = rng.normal(size=(number, 3))
@@ -289,14 +289,14 @@ def test_heat_baths_give_their_temperature_however_long_the_step(dt):
     mean, error = block_average(rows)
     a = 1.5
     expected = np.array([1.0, 1.0, 1.0, 1.0, 1.0 / a - 1.0 / math.expm1(a)])
-    # x and y velocities, too, come from the baths
+    # x and y velocities come from the baths too
     assert (np.abs(mean - expected) <= 4.0 * error).all()
     assert (error < 0.005).all()
 
 
 @pytest.mark.parametrize("delta", [0.4, 1.6])
 def test_rotation_and_translation_come_to_one_temperature_however_long_the_step(delta):
-    """Fast pairs are seen too seldom, but so are the outcomes of their contacts made: detailed balance holds.
+    """Fast pairs are found too rarely, but such pairs are also produced too rarely: detailed balance holds.
 
     Without that, translation is warmer than rotation by 22 % at the first of these steps, and by 36 % at the second.
     """

@@ -87,7 +87,7 @@ def test_rotation_makes_spheres_conduct_five_quarters():
 
 @pytest.mark.parametrize("freedom", [3, 5])
 def test_what_the_headline_allows_is_what_the_kinetic_equation_says_fouriers_law_leaves_out(freedom):
-    """Molecules that have not met for long carry less heat: the column comes nearer to the adiabat than by Fourier."""
+    """Molecules with a long mean free path carry less heat: the column is nearer to the adiabat than by Fourier."""
     allowed = scenarios.load("atmosphere").FOURIER
     shares = []
     for knudsen in (0.02, 0.05, 0.33):
@@ -116,7 +116,7 @@ def test_air_that_is_stirred_fast_has_the_lapse_rate_of_the_adiabat(rotation, he
     assert abs(value - theory) <= 4.0 * error + known
     assert outcome.ledger < 1e-12
     found = outcome.dataset
-    # what the stirrer gives leaves by the floor, but for what the column holds more or less
+    # the work of stirring leaves through the floor, apart from the change of energy of the column
     work, heat_in = (found[name].values for name in ("work_by_stirring", "heat_from_wall"))
     assert work[-1] > 0.0 > heat_in[-1, 4]
     stored = found.kinetic_energy + found.rotational_energy + found.potential_energy
@@ -201,7 +201,7 @@ def test_the_curve_of_the_lapse_rate_is_that_of_theory(stirring, rotation):
 @pytest.mark.validate
 @pytest.mark.parametrize("rotation", [True, False])
 def test_stirred_air_is_warmer_than_by_fouriers_law_as_the_kinetic_equation_says(rotation):
-    """At all heights alike, once what parcels of few molecules add, which goes as 1 / N, is taken away."""
+    """The same at all heights, after the effect of parcels of few molecules, proportional to 1 / N, is subtracted."""
     warmer = []
     for molecules in (4000, 16000):
         found = run(stirring=100, rotation=rotation, molecules=molecules, duration=300).dataset
@@ -216,7 +216,7 @@ def test_stirred_air_is_warmer_than_by_fouriers_law_as_the_kinetic_equation_says
 
 @pytest.mark.validate
 def test_no_flow_is_left_behind():
-    """The mean square of the momentum is that of molecules that know nothing of each other."""
+    """The mean square of the momentum is that of independent molecules."""
     prepared = runner.prepare("atmosphere", {"stirring": 50, "molecules": 1500, "duration": 400})
     setup = runner.build(prepared)
     box = setup.parcel

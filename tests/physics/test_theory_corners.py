@@ -1,8 +1,8 @@
-"""The theory of every scene at the corners of what a user may set: finite, within physical bounds, and right.
+"""The theory of every scene at the extreme values of its settings: finite, within physical bounds, and right.
 
 Each setting is at its lowest, its default or its highest value, in combinations that hypothesis chooses; the run is
-as short as the scene allows, since only its theory is asked for. A combination that the scene refuses, in a sentence,
-is as good as one that runs.
+as short as the scene allows, since only its theory is tested. A combination that the scene refuses, in a sentence,
+passes too.
 """
 
 import math
@@ -22,13 +22,13 @@ from tests.few_frames import cut
 SHORT = ("duration", "ascent", "travel")
 FEW = 300
 LEAST = {"diffusion": 3000}
-"""Molecules below which a box is too narrow."""
+"""Number of molecules below which a box is too narrow."""
 THINNEST = 0.01
-"""Density of attracting molecules below which the air beside them, as dense as at the critical point, is a million."""
+"""Density of attracting molecules below which more than a million molecules of air would be needed in the box."""
 BUSY = {("diffusion", "length"), ("diffusion", "pressure"), ("diffusion", "diameter")}
-"""Settings whose highest values mean hundreds of collisions of each molecule before anything has mixed: minutes."""
+"""Settings whose highest values need minutes, since each molecule has hundreds of collisions before the gases mix."""
 OWN_KERNELS = {("condensation", "drops")}
-"""Settings whose highest values need kernels that no other test needs; drops are tried by the scene nuclei, too."""
+"""Settings whose highest values need kernels that no other test needs; the scene nuclei tests drops too."""
 SCENES = scenarios.names()
 FRAMES = {
     "atmosphere": (60, 12),
@@ -43,11 +43,11 @@ FRAMES = {
     "nuclei": (60, 12),
     "temperature": (60, 12),  # and temperature-large, which is built there
 }
-"""Into how many frames a run is cut, and how many of them settle: no fewer than a scene wants for its headlines."""
+"""Number of frames of a run, and how many of them are for settling: at least as many as the headlines need."""
 ENERGIES = {"cape_theory", "cin_theory"}
-"""Theory that may be below zero: energies of a parcel."""
+"""Results of theory that may be negative: energies of a parcel."""
 SILENT = {"virial_pressure_theory"}
-"""Theory that has no value where its series does not hold."""
+"""Results of theory that are NaN where the series does not converge."""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -59,7 +59,7 @@ def fewer_frames():
 
 
 def values(scene, parameter):
-    """Return the values to try: few molecules, a short run, and of all else the ends and the default."""
+    """Return the values to test: few molecules, a short run, and for all other settings the ends and the default."""
     if parameter.name in ("seed", "sounding"):
         return [parameter.default]
     if parameter.name in SHORT:
@@ -79,13 +79,13 @@ def values(scene, parameter):
 
 
 def corner(scene, without=frozenset()):
-    """Return a strategy for the settings of a scene; those without which it does are as they come."""
+    """Return a strategy for the settings of a scene; optional settings keep their defaults."""
     parameters = [each for each in scenarios.load(scene).Settings.describe() if (scene, each.name) not in without]
     return st.fixed_dictionaries({each.name: st.sampled_from(values(scene, each)) for each in parameters})
 
 
 def atmosphere(data, stated, prepared):
-    """Layers hold all the molecules, and these are as high as points would be, or higher for their size."""
+    """The layers hold all molecules, whose mean height is that of points, or larger because of their size."""
     si = prepared.settings.si
     thick = np.diff(data.height_bnds.values, axis=1)[:, 0]
     held = float(data.air_density_theory.values @ thick) * si.gravity
@@ -108,7 +108,7 @@ def atmosphere(data, stated, prepared):
 
 
 def temperature(data, stated, prepared):
-    """The walls have the say, and the pressure of points at that temperature is that of the gas or a little less."""
+    """The walls set the temperature, and the pressure of points at it is that of the gas or a little less."""
     si = prepared.settings.si
     assert stated["mean_temperature"].theory == pytest.approx(si.temperature, rel=0.02)
     assert stated["mean_pressure"].theory == pytest.approx(si.pressure, rel=0.02)
@@ -136,7 +136,7 @@ def evaporated(data, stated, prepared):
 
 
 def lifted(data, stated, prepared):
-    """A parcel that rises is nowhere warmer than at its start, and no colder than along the dry adiabat of argon."""
+    """A rising parcel is never warmer than at its start, and not colder than on the dry adiabat of argon."""
     pressure = data.parcel_pressure.values
     warm = data.adiabat_temperature.values
     share = pressure / pressure.max()
@@ -169,13 +169,13 @@ BOUNDS = {
 
 
 def examined(scene, given_settings):
-    """Run a scene as shortly as it goes; assert what holds for all, then what holds for this one."""
+    """Make the shortest run of a scene; check what holds for all scenes, then what holds for this one."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # what is doubtful is told, and may be run
+            warnings.simplefilter("ignore", UserWarning)  # doubtful settings give a warning, and can be run
             prepared = runner.prepare(scene, given_settings)
             outcome = runner.execute(prepared)
-    except AtmosboxError:  # a sentence, as the tests of refusals hold
+    except AtmosboxError:  # a sentence, as the tests of refusals check
         return False
     data = outcome.dataset
     for name, found in data.variables.items():
@@ -196,7 +196,7 @@ def examined(scene, given_settings):
 def test_the_theory_of_a_scene_holds_at_the_corners_of_its_settings(scene):
     described = scenarios.load(scene).Settings.describe()
     least = {each.name: values(scene, each)[0] for each in described if each.name in (*SHORT, "molecules")}
-    assert examined(scene, least)  # as it comes, in little
+    assert examined(scene, least)  # with its defaults and few molecules
 
     @settings(max_examples=6, suppress_health_check=list(HealthCheck), database=None)
     @given(corner(scene, OWN_KERNELS))

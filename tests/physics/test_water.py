@@ -1,7 +1,7 @@
-"""Vapour and liquid come to the balance of statistical mechanics, for any number of molecules, one even.
+"""Vapour and liquid reach the equilibrium of statistical mechanics, for any number of molecules, even one.
 
 Means allow 4 standard errors from 40 blocks: a false alarm once in 4 000 for a fresh seed, never for these. The
-molecules are so small that they hardly ever meet each other or take room; what they exchange they exchange through
+molecules are so small that they hardly ever collide and have almost no excluded volume; they exchange energy through
 the liquid.
 """
 
@@ -54,7 +54,7 @@ def test_an_isolated_box_visits_all_states_alike_for_very_long(wet, name, air):
     wet.holds_the_balance(box, 3, air, options["nuclei"], substance, step=step, samples=250_000)
 
 
-# no scene has a pool without air, and its kernels are its own
+# no scene has a pool without air, so it needs further kernels
 @pytest.mark.parametrize("name", ["mist without nuclei", pytest.param("pool", marks=pytest.mark.validate)])
 def test_an_isolated_box_without_air_visits_all_states_alike(wet, name):
     kind, options = CASES[name]
@@ -177,7 +177,7 @@ def test_a_liquid_between_heat_baths_has_their_temperature(wet):
     assert (np.abs(mean - kT) <= 4.0 * error).all()
 
 
-# ------------------------------------------------------------------ where molecules take room
+# ------------------------------------------------------------------ with excluded volume
 
 
 def carnahan_starling(filled):
@@ -192,7 +192,7 @@ SIDES = np.array([9.0, 9.0, 8.0])
 
 
 def dense_vapour(kind, walls, options, seed):
-    """Return packing fraction, n kT Z of the vapour over e_s, and the error of this, where a seventh is filled."""
+    """Return packing fraction, n kT Z of the vapour over e_s, and its error, for a packing fraction of a seventh."""
     saturation, margin = 0.12, 2.0
     substance = Substance(MASS, 1.0, PHI, C_L, saturation * math.exp(PHI))
     liquid = kind(substance, number=120, **options)
@@ -212,7 +212,7 @@ def dense_vapour(kind, walls, options, seed):
         liquid=liquid,
         seed=seed,
     )
-    # at a wall they crowd: count where none is near
+    # density is higher at a wall: count far from walls
     low = np.where(periodic, 0.0, margin)
     high = SIDES - low
     room = np.prod(high - low)
@@ -229,7 +229,7 @@ def dense_vapour(kind, walls, options, seed):
 
 
 def thinned_by_edges(filled):
-    """Return how much thinner vapour is over a pool between walls: 1 / (1 - 4 gamma / p L).
+    """Return the factor by which vapour is thinner over a pool between walls: 1 / (1 - 4 gamma / p L).
 
     The molecules that hit the floor are those of the bulk, n Z, and besides those that crowd where the floor meets
     a wall. Their force on it is what a longer box would gain: p for each area that centres can reach, minus gamma for
@@ -245,7 +245,7 @@ def thinned_by_edges(filled):
 @pytest.mark.parametrize(
     ("kind", "walls", "options"),
     [
-        # kernels of its own
+        # needs further kernels
         pytest.param(Mist, (Periodic(),) * 6, {"nuclei": 1e5, "area": 400.0}, marks=pytest.mark.validate),
         (Mist, BATHS, {"nuclei": 500.0, "area": 400.0}),
         POOL,

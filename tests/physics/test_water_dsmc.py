@@ -1,4 +1,4 @@
-"""In time steps, too, vapour and liquid come to the balance of statistical mechanics, for any number of molecules.
+"""With time steps too, vapour and liquid reach the equilibrium of statistical mechanics, for any number of molecules.
 
 Means allow 4 standard errors from 40 blocks: a false alarm once in 4 000 for a fresh seed, never for these. A step of
 free flight, the liquid's turn and the collisions each leave that balance as it is, so no length of step changes it.
@@ -40,8 +40,8 @@ SHORT_STEPS = [
 
 @pytest.mark.parametrize(("name", "dt", "samples"), [*((name, 2.0, FULL) for name in CASES), *SHORT_STEPS])
 def test_an_isolated_box_visits_all_states_alike(wet, name, dt, samples):
-    # 10 numbers a case: a false alarm once in 30 for twelve fresh seeds; more often over a pool, for whoever leaves it
-    # slowly is away for long
+    # 10 numbers a case: a false alarm once in 30 for twelve fresh seeds; more often over a pool, for slow
+    # molecules that leave it stay away for long
     kind, options = CASES[name]
     substance = wet.water(2.0 * math.exp(PHI))
     liquid = kind(substance, number=3, kT=1.4, **options)
@@ -166,7 +166,7 @@ def test_many_that_collide_have_one_temperature_and_the_saturation_pressure(kind
 
 
 def test_a_pool_in_an_isolated_box_stays_as_warm_as_its_air():
-    # what left the pool at the end of a step, not in it, would make the air too hot by some parts in a thousand
+    # if molecules left the pool only at the end of a step, the air would be too hot by some parts in a thousand
     box, _ = many(Pool, walls=(*(Periodic(),) * 4, Specular(), Specular()))
     box.advance(300.0)
     rows = []

@@ -1,6 +1,6 @@
-"""The scenes condensation, lifting-moist and mountains: their numbers, their ends of the scale, and what they refuse.
+"""The scenes condensation, lifting-moist and mountains: their results, extreme settings, and refusals.
 
-Headlines allow 4 standard errors and what the model itself costs: a false alarm once in 1 500 per number for a
+Headlines allow 4 standard errors and the known error of the model: a false alarm once in 1 500 per number for a
 fresh seed, and never for these. Runs are short and of few molecules, so their errors are large; docs/jobs measures
 the same more finely.
 """
@@ -46,7 +46,7 @@ FEW = {
 
 
 LONG = pytest.param("mountains", marks=pytest.mark.validate)
-"""A run of the mountains takes two seconds; that its books balance is asserted of those that rain or save molecules."""
+"""A run of the mountains takes two seconds; its balances are checked in the runs with rain or saved molecules."""
 
 
 def run(scene, save_molecules=False, **settings):
@@ -55,7 +55,7 @@ def run(scene, save_molecules=False, **settings):
 
 @cache
 def usual(scene):
-    """Return the run of a scene that several tests look at."""
+    """Return the run of a scene that several tests use."""
     return run(scene)
 
 
@@ -64,7 +64,7 @@ def found(outcome):
 
 
 def is_sound(outcome):
-    """Hold the books of a run to rounding, and every number of them to being one."""
+    """Check the balances of a run to rounding, and that no value is NaN."""
     assert outcome.ledger < 1e-11
     assert outcome.escaped == 0
     data = outcome.dataset
@@ -120,7 +120,7 @@ def test_vapour_condenses_until_its_pressure_is_that_of_saturation_or_it_is_used
     assert all(each.agrees for each in outcome.headlines)
     share = found(outcome)["mean_relative_humidity"]
     assert share.theory == pytest.approx(0.01 * min(humidity, 100.0), abs=0.1)
-    # so few are vapour that saturated air has some clusters, and less vapour
+    # there are so few molecules of vapour that saturated air has some clusters, and less vapour
     assert bool(outcome.dataset.liquid_molecule_count.any()) is liquid
 
 
@@ -284,7 +284,7 @@ def test_molecules_that_are_saved_keep_their_place_and_those_in_the_liquid_are_n
 
 
 def test_a_molecule_of_air_is_the_same_molecule_from_frame_to_frame():
-    # 2 ps a frame: at thermal speed it flies a nanometre, in a box of thirty
+    # 2 ps a frame: at thermal speed a molecule flies a nanometre, in a box of thirty
     outcome = runner.execute(
         runner.prepare("condensation", {"molecules": 500, "humidity": 300.0, "duration": 0.48}, save_molecules=True)
     )
@@ -313,12 +313,12 @@ def test_the_pushes_of_molecules_on_droplets_that_flow_with_the_air_are_those_of
     # those that hit have the energy Gamma(2) kT before and after, and come from anywhere
     before, after = (np.sqrt(2.0 * rng.gamma(2.0, size=400_000)) * rng.uniform(-1.0, 1.0, 400_000) for _ in range(2))
     work = cloud.expansion[30] * cloud.height[30] * rng.uniform(size=400_000) * (after - before)
-    # the piston's answer to fluctuations adds a hundredth; the mean square is known to 0.3 %
+    # the piston's reaction to fluctuations adds one per cent; the mean square is known to 0.3 %
     assert pushes == pytest.approx(np.mean(work**2) * cloud.hits[30], rel=0.03)
 
 
 def over_mountains(**settings):
-    """Return the way of the mountains, and its parcel at 8 samples in each of 96 frames."""
+    """Return the course over the mountains, and its parcel at 8 samples in each of 96 frames."""
     ascent = scenarios.load("mountains")._ascent(runner.prepare("mountains", settings).settings)
     shares = np.linspace(0.0, 1.0, len(ascent.route))
     outside = np.exp(np.interp((np.arange(96) + 0.5) / 96, shares, np.log(ascent.route)))
@@ -329,7 +329,7 @@ def over_mountains(**settings):
 def test_rain_scatters_as_molecules_that_fall_one_by_one_out_of_a_cloud_that_scatters(molecules, keeps):
     ascent, cloud = over_mountains(molecules=molecules, cloud_water=keeps)
     found = walk(cloud)
-    # the process itself, 1500 times: liquid is driven to its equilibrium, and each molecule that is too many may fall
+    # the process itself, 1500 times: liquid relaxes to its equilibrium, and each excess molecule may fall
     inverse = np.linalg.inv(cloud.resists)
     scatter = np.sqrt(inverse[:, 0, 0])
     memory = (inverse @ np.linalg.inv(cloud.yields) @ inverse)[:, 0, 0] / scatter**2

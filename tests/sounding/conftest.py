@@ -22,7 +22,7 @@ def csv_lines(levels):
 
 @pytest.fixture
 def wyoming_lines(levels):
-    """The same as the University of Wyoming prints it, above a level that lies below the ground."""
+    """The same in the format of the University of Wyoming, with a level below the ground in front."""
 
     def line(cells):
         return "".join(f"{cell:>7}" for cell in cells)
@@ -66,7 +66,7 @@ def written(tmp_path):
 
 @pytest.fixture
 def same_as(levels):
-    """Return a function that asserts that a sounding is the made-up air."""
+    """Return a function that checks that a sounding is the made-up air."""
 
     def check(sounding, height=True):
         pressure, above, temperature, dewpoint = np.array(levels).T

@@ -15,7 +15,7 @@ def saturation_pressure(temperature):
 
 
 def by_iteration(height, cap):
-    """Pressure and temperature by repeated integration with the trapezoid, as cloud models set up this air."""
+    """Pressure and temperature by repeated integration with the trapezoidal rule, as cloud models set up this air."""
     share = np.minimum(height / 12e3, 1.0) ** 1.25
     theta = 300.0 + 43.0 * share
     theta = np.where(height > 12e3, 343.0 * np.exp(GRAVITY / (HEAT * 213.0) * (height - 12e3)), theta)
@@ -66,7 +66,7 @@ def test_the_mixing_ratio_is_constant_near_the_ground(cap):
 
 def test_energy_grows_with_the_moisture_near_the_ground_and_inhibition_shrinks():
     found = [indices(weisman_klemp(cap)) for cap in (0.011, 0.014, 0.016)]
-    # MetPy's measure of the air of which the paper gives 2200 J/kg by its own.
+    # CAPE by MetPy's definition; the paper gives 2200 J/kg by its own.
     assert found[1].cape == pytest.approx(1880.0, abs=20.0)
     assert found[1].cin == pytest.approx(-48.0, abs=3.0)
     assert found[0].cape < 600.0 < 3000.0 < found[2].cape

@@ -1,4 +1,4 @@
-"""The forecasts that BUFKIT draws."""
+"""Forecasts in the format of BUFKIT."""
 
 import pytest
 
@@ -18,7 +18,7 @@ LEVELS = [  # PRES, TMPC, DWPC, HGHT
 
 
 def block(time, levels=LEVELS):
-    """Return the forecast of one hour as NAMSND writes it: eight values a line, then the others of the level."""
+    """Return the forecast of one hour as NAMSND writes it: eight values in a line, then the others of the level."""
     lines = [
         f"STID = KOUN STNM = 723570 TIME = {time}",
         "SLAT = 35.23 SLON = -97.47 SELV = 357.0",
@@ -61,7 +61,7 @@ def test_the_first_hour_of_a_forecast_is_read(written, lines):
 
 
 def test_a_forecast_as_a_service_issued_it_is_read(written):
-    """The first levels for Missoula, Montana, by the model GFS: a station without letters, nine values a level."""
+    """The first levels for Missoula, Montana, by the model GFS: a station without letters, nine values in a level."""
     text = """
 SNPARM = PRES;TMPC;TMWC;DWPC;THTE;DRCT;SKNT;OMEG;HGHT
 STNPRM = SHOW;LIFT;SWET;KINX;LCLP;PWAT;TOTL;CAPE;LCLT;CINS;EQLV;LFCT;BRCH

@@ -1,4 +1,4 @@
-"""Soundings that could be, but hardly are: a warning on stderr and in the file, or a refusal."""
+"""Soundings that are possible but unlikely: a warning on stderr and in the file, or a refusal."""
 
 import numpy as np
 import pytest

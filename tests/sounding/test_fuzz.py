@@ -1,4 +1,4 @@
-"""Whatever stands in a file: a sounding that is one, or one sentence, and never a traceback."""
+"""Whatever is in a file, the result is a valid sounding or one sentence, and never a traceback."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def path(tmp_path_factory):
 
 
 def outcome(path, content, **options):
-    """Return the sounding in a file, or None after making sure that it was refused decently."""
+    """Return the sounding in a file, or None after checking that it was refused with one sentence."""
     path.write_bytes(content)
     try:
         with fuzz_case("soundings"):

@@ -11,7 +11,7 @@ STABLE = Sounding(PRESSURE, 288.0 - np.linspace(0, 30, 10), 270.0 - np.linspace(
 
 
 def straight(sounding):
-    """What a user of MetPy types."""
+    """Return pressure, temperature and dewpoint as a user of MetPy would write them."""
     return sounding.pressure * units.Pa, sounding.temperature * units.K, sounding.dewpoint * units.K
 
 
@@ -56,7 +56,7 @@ def test_a_sounding_that_ends_below_the_el_has_none_but_energy():
 
 
 def two_caps():
-    """Air in which a parcel is free twice: below a warm layer, and above it."""
+    """Air in which a parcel is buoyant twice: below a warm layer, and above it."""
     air = weisman_klemp(0.016)
     warm = np.where((air.height > 3000.0) & (air.height < 3400.0), 8.0, 0.0)
     return Sounding(air.pressure, air.temperature + warm, air.dewpoint)

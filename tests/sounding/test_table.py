@@ -103,7 +103,7 @@ def test_four_levels_are_too_few(written, csv_lines):
 def test_a_wrong_unit_is_recognised(written, csv_lines):
     cases = [
         ("T [K]", r"line 2: a temperature of 25\.\d K is not one of the atmosphere and looks like degC: write"),
-        ("T [degF]", None),  # -55 degF and 77 degF are temperatures of the atmosphere, too
+        ("T [degF]", None),  # -55 degF and 77 degF occur in the atmosphere too
         ("Td [K]", r"line 2: a dewpoint of 23\.\d K is not one of the atmosphere and looks like degC: write"),
         (
             "p [Pa]",
