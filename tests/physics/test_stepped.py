@@ -62,7 +62,7 @@ def dilute(delta, dimensions):
 
 
 def scattered(delta, dimensions, pairs, seed, steps=1, **options):
-    """Collide isolated pairs; return the shares of missed collisions, missing virial, and pairs found while separating."""
+    """Collide isolated pairs; return the shares of missed collisions, missing virial, pairs found while separating."""
     rng = np.random.default_rng(seed)
     g = 2.0 * np.sqrt(rng.standard_gamma(0.5 * (dimensions + 1), pairs))
     b = np.sqrt(rng.random(pairs)) if dimensions == 3 else rng.uniform(-1.0, 1.0, pairs)
