@@ -21,6 +21,7 @@ import gc
 import json
 import os
 import shutil
+import signal
 import sys
 import time
 
@@ -103,6 +104,16 @@ def name_of_browser():
     """Return the browser that `ATMOSBOX_BROWSER` names, else one of this computer; None if there is none."""
     wanted = os.environ.get("ATMOSBOX_BROWSER")
     return wanted or next((found for name in BROWSERS if (found := shutil.which(name))), None)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def interruptible():
+    """Let SIGINT interrupt this process and those it starts, also if whoever started the suite has it ignored.
+
+    A shell without job control starts what it leaves in the background so.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,21 @@
 
 from atmosbox import scenarios
 
-__all__ = ["cut"]
+__all__ = ["FRAMES", "cut"]
+
+FRAMES = {
+    "atmosphere": (80, 14),
+    "attraction": (75, 25),
+    "condensation": (80, 14),
+    "diffusion": (60, None),
+    "elastic-collisions": (240, 80),
+    "evaporation": (200, None),
+    "temperature": (200, 10),  # and temperature-large, which is built there
+}
+"""Into how many frames a run is cut whose errors are to be right, and how many of them settle.
+
+The run is as long as before, and so are the blocks that its errors are read from.
+"""
 
 
 def cut(patch, frames):

@@ -62,7 +62,8 @@ IN_GRAVITY = {
 
 SECONDS = {
     *("drop-of-pure-water", "drop-of-salt", "drop-in-tenfold-vapour"),
-    *("wells-of-no-depth", "narrow-wells", "wide-wells", "hot-wells"),
+    *("wells-of-no-depth", "narrow-wells", "wide-wells", "hot-wells", "wells-of-a-million", "orbit-in-a-well"),
+    "supersaturation-10",
 }
 """Cases that take the exact engine seconds; tests/physics tests wells and curved drops in smaller boxes."""
 

@@ -25,21 +25,7 @@ from atmosbox import scenarios
 from atmosbox.simulation import accuracy, runner
 from atmosbox.theory.constants import BOLTZMANN
 from atmosbox.trade.tradeoff.timed_run import PROFILES
-from tests.few_frames import cut
-
-FRAMES = {
-    "atmosphere": (80, 14),
-    "attraction": (75, 25),
-    "condensation": (80, 14),
-    "diffusion": (60, None),
-    "elastic-collisions": (240, 80),
-    "evaporation": (200, None),
-    "temperature": (200, 10),  # and temperature-large, which is built there
-}
-"""Number of frames of a run in the cheap tier, and how many of them are for settling.
-
-The run is as long as before, and so are the blocks that its errors are read from.
-"""
+from tests.few_frames import FRAMES, cut
 
 
 def runs(scene, number, **settings):
@@ -59,7 +45,7 @@ def range_of_ratio(number):
 
 
 def ratio_of(misfit, stated, known):
-    """Return the mean square of misfits over the stated one, after at most the known error is subtracted.""" 
+    """Return the mean square of misfits over the stated one, after at most the known error is subtracted."""
     apart = misfit - np.clip(misfit.mean(axis=0), -known, known)
     return apart**2 / np.mean(stated**2, axis=0)
 

@@ -27,6 +27,7 @@ from atmosbox.sheet.sheet_run import Trial, execute, trials
 from atmosbox.sheet.sums import Measured, filled
 from atmosbox.sheet.text import SECTIONS, read, text_of
 from atmosbox.simulation import runner
+from tests.few_frames import FRAMES, cut
 from tests.oracle import moist_adiabat
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -139,7 +140,8 @@ def test_the_commands_of_a_sheet_are_the_runs_that_it_means(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_rows_of_a_table_are_headlines_of_the_scene(name):
+def test_the_rows_of_a_table_are_headlines_of_the_scene(name, monkeypatch):
+    cut(monkeypatch, FRAMES)
     first = runner.prepare(name, SMALL[name])
     words = read(text_of(first.module))
     (made,) = execute([Trial("A", "", first)])

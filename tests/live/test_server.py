@@ -253,7 +253,9 @@ def test_an_engine_that_stalls_pauses_and_says_why(site, monkeypatch):
 
 
 @posix
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.validate)]
+)
 def test_ctrl_c_saves_the_recording_and_says_so(tmp_path, number, status):
     words = ["live", "elastic-collisions", "--set", "molecules=10", "--no-browser", "--out", "mine.nc"]
     with subprocess.Popen(

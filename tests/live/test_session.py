@@ -212,7 +212,7 @@ def whole(box):
     return next(message["values"] for message in box.measured() if message["type"] == "series")
 
 
-@pytest.mark.parametrize("engine", ["exact", "dsmc"])
+@pytest.mark.parametrize("engine", ["exact", pytest.param("dsmc", marks=pytest.mark.validate)])
 def test_the_walls_cool_the_air_over_a_pool_and_a_cover_slows_both_rates_alike(engine):
     large = {"molecules": 3000, "pool": 600, "duration": "20 ns"}
     box = session("evaporation", settings=large, engine=engine)

@@ -198,7 +198,7 @@ def test_the_theory_of_a_scene_holds_at_the_corners_of_its_settings(scene):
     least = {each.name: values(scene, each)[0] for each in described if each.name in (*SHORT, "molecules")}
     assert examined(scene, least)  # with its defaults and few molecules
 
-    @settings(max_examples=6, suppress_health_check=list(HealthCheck), database=None)
+    @settings(max_examples=4, suppress_health_check=list(HealthCheck), database=None)
     @given(corner(scene, OWN_KERNELS))
     def at(given_settings):
         examined(scene, given_settings)

@@ -165,7 +165,7 @@ def _place(seed, start):
 
 @kernel
 def _number(seed, start):
-    """Number the molecules."""
+    """Assign a number to each molecule."""
     key, rank = start.key, start.rank
     for i in range(rank.size):
         rank[i] = i
