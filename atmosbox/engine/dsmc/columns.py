@@ -57,7 +57,6 @@ class Columns(NamedTuple):
     energy [energy] where molecules rotate, ``identity : (slot,)`` index of the molecule in a slot.
     ``cell : (slot,)`` its cell, ``order : (slot,)`` slots in the order of cells, ``kind : (slot,)`` the
     kind of the molecule, if there are several.
-    kind of molecule stands there, if there are several.
     """
 
     x: Any
