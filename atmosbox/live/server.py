@@ -219,7 +219,7 @@ def run(
     token: str | None = None,
     opened: Callable[[str, int], None],
 ) -> tuple[int, list[str]]:
-    """Serve a session until Ctrl-C or a request to end, and save what is recorded.
+    """Serve a session until Ctrl-C or a request to end, and save the recording.
 
     Parameters
     ----------

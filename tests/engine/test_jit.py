@@ -223,7 +223,7 @@ NO_MODES = Modes(*[False] * 7)
 
 
 class Inner(NamedTuple):
-    """Two values that kernels hand on."""
+    """Two values that kernels pass on."""
 
     number: float
     values: Any

@@ -93,7 +93,7 @@ def test_a_very_thin_gas_between_two_walls_carries_the_heat_that_knudsen_found(g
     walls = (HeatBath(hot, accommodation), HeatBath(cold, accommodation), P, P, P, P)
     box = gas(number, (10.0,) * 3, walls=walls, diameter=0.0, kT=math.sqrt(hot * cold), rotation=rotation, seed=34)
     truth = theory.free_molecular_slab(hot, cold, number / 1000.0, 1.0, rotation)
-    # walls that take in a part a of all pass on a / (2 - a) of the heat
+    # walls that accommodate a share a of all molecules pass on a / (2 - a) of the heat
     passed = accommodation / (2.0 - accommodation)
     # molecules spend most of the time with speeds of the cold wall
     crossing = 10.0 / math.sqrt(cold) + 10.0 / math.sqrt(hot)

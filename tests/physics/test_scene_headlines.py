@@ -50,7 +50,7 @@ def test_the_error_that_a_rising_parcel_states_is_the_scatter_from_run_to_run():
     scatter = misfits.std(axis=0, ddof=1)
     stated = np.sqrt(np.mean(errors**2, axis=0))
     for frame in (8, 14, 20, 26, 32, 39):
-        # 96 runs know their scatter by 7.3 %, and the error stated by each by 2 %
+        # 96 runs know their scatter by 7.3 %, and the error stated by each to 2 %
         ratio = stated[frame] / scatter[frame]
         assert abs(math.log(ratio)) <= 4.0 * 0.076, (float(found.parcel_pressure[frame]), ratio)
 

@@ -145,7 +145,7 @@ def test_a_parcel_too_dry_for_a_cloud_follows_the_dry_adiabat_and_states_no_base
 
 
 def allowed_at(settings, level):
-    """Return what a run of lifting-moist allows at a level [K]: four standard errors, and what is known to be off."""
+    """Return the allowed deviation of lifting-moist at a level [K]: four standard errors, and the known error."""
     ascent = scenarios.load("lifting-moist")._ascent(settings)
     outside = np.exp(np.interp((np.arange(60) + 0.5) / 60, np.linspace(0.0, 1.0, 400), np.log(ascent.route)))
     cloud = along_frames(ascent, outside, 60, 10, ideal=False)
@@ -202,7 +202,7 @@ def test_rain_takes_what_the_cloud_may_not_hold_and_no_rain_takes_nothing():
 
 
 def test_air_that_rained_on_the_mountains_arrives_warmer_than_air_that_did_not():
-    # 3.6 K are expected, and with so many the error of the difference is .5 K
+    # 3.6 K are expected, and with this many molecules the error of the difference is 0.5 K
     more = {"molecules": 12_000, "cloud_water": 2.0}
     outcomes = {rain: run("mountains", rain=rain, **more) for rain in (True, False)}
     for outcome in outcomes.values():
