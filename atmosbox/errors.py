@@ -12,7 +12,7 @@ Python programmer would catch, and has the status with which the command line en
     |-- UnknownSceneError (LookupError)  2   there is no scene of that name
     |-- ConfigError (ValueError)         2   a settings file holds something that is not allowed there
     |-- SoundingError (ValueError)       2   a sounding cannot be understood, or cannot be true
-    |-- FileError (OSError)              2   a file is unreadable, foreign, in the way or unwritable
+    |-- FileError (OSError)              2   a file cannot be read or written, exists already, or is not from atmosbox
     |   `-- DiskFullError                1   the disk filled up while a run was saved
     |-- EngineError (RuntimeError)       1   the engine stopped: its state is no longer valid
     `-- PhysicsError (ArithmeticError)   3   a physics check failed: the run disagrees with the textbook
@@ -187,7 +187,7 @@ class SoundingError(AtmosboxError, ValueError):
 
 
 class FileError(AtmosboxError, OSError):
-    """A file is unreadable, not written by atmosbox, in the way of a new one, or cannot be written."""
+    """A file cannot be read, was not written by atmosbox, exists already, or cannot be written."""
 
     exit_code = 2
 
