@@ -129,7 +129,7 @@ class Settings(SceneSettings):
     floor: str = setting(
         "heat-bath",
         "",
-        "what the floor is: warm, or smooth so that no heat passes",
+        "kind of floor: heat bath, or smooth so that no heat passes",
         choices=("heat-bath", "isolated"),
     )
     start: str = setting(
@@ -149,7 +149,7 @@ class Settings(SceneSettings):
     exchange: str = setting(
         "parcels",
         "",
-        "what changes places when stirred: parcels that do work as they expand, or molecules one by one, which do none",
+        "what is exchanged when stirred: parcels that do work as they expand, or molecules one by one, which do none",
         choices=("parcels", "molecules"),
     )
     plane: bool = setting(False, "", "whether the air is a plane of discs")

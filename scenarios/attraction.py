@@ -84,11 +84,14 @@ class Settings(SceneSettings):
     temperature: float = setting(105.0, "K", "temperature of the bath and at the start", low=10.0, high=20_000.0)
     density: float = setting(0.26, "1", "density of these molecules, over the critical one", low=1e-4, high=2.3)
     attraction: float = setting(1.0, "1", "strength of the attraction; at 0 nothing condenses", low=0.0, high=1.0)
-    start: str = setting("vapour", "", "what is there first", choices=("vapour", "slab", "drop", "pool"))
-    bath: str = setting("random", "", "what keeps it at its temperature", choices=("random", "walls", "none"))
+    start: str = setting("vapour", "", "state at the start", choices=("vapour", "slab", "drop", "pool"))
+    bath: str = setting("random", "", "what keeps the temperature", choices=("random", "walls", "none"))
     air: float = setting(0.0, "1", "density of molecules that attract none, over the critical one", low=0.0, high=1.0)
     substance: str = setting(
-        "argon", "", "whose size and attraction the molecules have", choices=("argon", "nitrogen", "methane")
+        "argon",
+        "",
+        "substance that sets the size and attraction of the molecules",
+        choices=("argon", "nitrogen", "methane"),
     )
     duration: float = setting(1.6, "ns", "how long to watch", low=1e-4, high=1e4)
 
@@ -242,7 +245,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
             "units": f"of time {scale.time * 1e12:.2f} ps, of pressure {scale.pressure / 1e5:.0f} bar",
-            "not water": "it sticks four times as strongly, by hydrogen bonds that this model has not",
+            "not water": "water attracts four times as strongly, by hydrogen bonds, which this model lacks",
         },
         knobs=tuple(knobs),
         doubts=cold,

@@ -240,7 +240,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     expected = _diffusivity(settings, ideal=ideal)
     known = _known(settings, ideal=ideal)
     reason = (
-        "the gas is not thin, the mode not endlessly slow, and D of unlike gases depends on how much there is of each"
+        "the gas is not thin, the mode not infinitely slow, and D of unlike gases depends on how much there is of each"
     )
     unit = scale.length**2 / scale.time
     amplitude = _amplitude(passed, settings, ideal=ideal)

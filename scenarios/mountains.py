@@ -161,7 +161,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
             arrival * math.sqrt(chance.mean()),
             arrival if finite_size.comparable(ascent) else None,
             max(warmer, float(known.colder[-1])),
-            "the way is not infinitely slow, some molecules are clustered in clear air, and a cloud that scatters "
+            "the way is not infinitely slow, some molecules are clustered in clear air, and a cloud that fluctuates "
             "rains more",
             "K",
             "degC",

@@ -327,7 +327,7 @@ def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
         error,
         float(radius[1:][late].mean()),
         float(off[1:][late].mean()),
-        "chance makes drops unlike, and theory is that of drops alike",
+        "by chance the drops differ, and theory is that of equal drops",
         "m",
         "nm",
         "radius of the drops with salt",

@@ -305,7 +305,7 @@ def test_a_run_says_what_it_expected_and_found_in_its_table(tmp_path, hand_made)
     words = ("--accuracy", "0.1K", "--set", "molecules=20", "--set", "duration=2ns", "--out", str(tmp_path / "warm.nc"))
     shown = " ".join(command("run", "temperature", *words).stdout.split())
     assert "accuracy 0.1K: exact, at the cost of the default run; its errors were measured in 8 runs" in shown
-    assert "expected of a single run error of it bias and noise found temperature 0.1 K" in shown
+    assert "expected of a single run error bias noise found temperature 0.1 K" in shown
     assert "measured at other settings, with the default of duration, the default of molecules;" in shown
 
 
@@ -363,7 +363,7 @@ def test_a_known_bias_excuses_a_misfit_to_its_side_alone():
 def test_a_misfit_that_only_a_known_bias_excuses_is_told():
     lines = headline_lines([headline(302.5, bias=2.0)], 200)
     assert lines[1].endswith("as stated")
-    assert lines[-1] == "temperature: up to 2.20 K off, for so far off was this engine measured to be."
+    assert lines[-1] == "temperature: up to 2.20 K off, for the measured error of this engine is that large."
     assert headline_lines([headline(300.3, bias=2.0)], 200)[1].endswith("yes")
 
 

@@ -212,7 +212,7 @@ def test_a_broken_engine_is_wrong():
         (Breeds, "velocity is not finite"),
         (Heats, "ledger is off"),
         (Sinks, "overlap"),
-        (Dawdles, "asked to advance to t = 900, it stands at 450"),
+        (Dawdles, "asked to advance to t = 900, it is at 450"),
         (Miscounts, "it was 0.0556"),
         (Trips, "IndexError: 7 is out of bounds"),
         (Refuses, "refused, but the stored outcome is right: not today"),

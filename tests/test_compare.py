@@ -93,7 +93,7 @@ def test_equal_settings_with_other_numbers_are_not_the_same_run(files):
     other["air_temperature"] = other["air_temperature"] + 1.0
     named = naming([one, other], ["one", "other"])
     assert not named.same
-    assert named.title == "the same settings, other numbers"
+    assert named.title == "the same settings, different results"
     assert named.labels == ("one", "other")
 
 

@@ -52,7 +52,7 @@ def animate(
     quiet: Annotated[bool, quiet_option("Show no progress.")] = False,
     verbose: Verbose = False,
 ) -> None:
-    """Film a run: the molecules in their box, and the graphs that they draw.
+    """Film a run: the molecules in their box, and the graphs of the scene.
 
     The molecules are in the file if it was run with --save-molecules.
     """

@@ -41,14 +41,14 @@ def check(
         str | None, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.", show_default=False)
     ] = None,
     extremes: Annotated[
-        bool, typer.Option("--extremes", help="Put the engines through boxes that break simulations.")
+        bool, typer.Option("--extremes", help="Test the engines in boxes that break simulations.")
     ] = False,
     engine: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="With --extremes: an engine, with its options; any number of them."),
+        typer.Option(metavar="NAME", help="With --extremes: an engine, with its options; may be repeated."),
     ] = None,
     only: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="With --extremes: one of them; any number.")
+        list[str] | None, typer.Option(metavar="NAME", help="With --extremes: the name of one case; may be repeated.")
     ] = None,
     every: Annotated[bool, typer.Option("--all", help="With --extremes: also those that take minutes.")] = False,
     as_json: Json = False,
@@ -57,8 +57,8 @@ def check(
     """Verify the physics in a file, or the engines in extreme cases.
 
     Of a file: does the energy ledger close, does the run agree with theory, does the file keep to the CF
-    conventions? With --extremes: what becomes of each engine where others hang, leak or lie? The exit status
-    is 3 if anything fails.
+    conventions? With --extremes: is each engine right where simulations hang, lose molecules or give wrong
+    results? The exit status is 3 if anything fails.
     """
     if extremes:
         _check_extremes(file, engine, only, every=every, as_json=as_json)

@@ -54,9 +54,9 @@ def compare(
     quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
-    """Lay runs over each other: one figure, and by how much their numbers differ.
+    """Compare runs: one figure, and by how much their numbers differ.
 
-    What is not the same in all of them is named, and nothing else.
+    Settings in which they differ are listed.
     """
     if len(files) < 2:
         raise SettingError("FILE", None, "is given once", f"give a second run to compare {files[0]} with")

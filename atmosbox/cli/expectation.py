@@ -50,13 +50,15 @@ def expectation_lines(
         ]
         for name, error in way.errors.items()
     ]
-    header = ["expected of a single run", "error", "of it bias", "and noise", "found"]
+    header = ["expected of a single run", "error", "bias", "noise", "found"]
     if not headlines:
         header, rows = header[:-1], [row[:-1] for row in rows]
     lines += table(header, rows, width)
     if expectation.differs:
         where = ", ".join(_setting(way.settings, name) for name in expectation.differs)
-        lines += wrapped(f"These errors were measured at other settings, with {where}; here they may be others.", width)
+        lines += wrapped(
+            f"These errors were measured at other settings, with {where}; here they may be different.", width
+        )
     return lines
 
 

@@ -46,7 +46,7 @@ def export(
     """Write a run for OVITO, VMD or a spreadsheet.
 
     Molecules are there if the run kept them: atmosbox run SCENE --save-molecules. CSV is written as one file for each
-    thing that the numbers run along: NAME-elapsed_time.csv, NAME-height.csv, and NAME-headlines.csv.
+    dimension: NAME-elapsed_time.csv, NAME-height.csv, and NAME-headlines.csv.
     """
     from atmosbox.file.netcdf import read
     from atmosbox.file.output_path import check_writable, named, write_whole

@@ -52,8 +52,8 @@ def lab(
     """Write a page in which a scene runs: the engine itself, in the browser.
 
     The page is one HTML file, which needs neither Python nor a network. It begins with the settings and the seed that
-    it was written with, and gives the same numbers as run. Some knobs of live act in it; what else is to be changed is
-    set when the page is written.
+    it was written with, and gives the same numbers as run. Some knobs of live act in it; all other
+    settings are fixed when the page is written.
     """
     from atmosbox.simulation import runner
 

@@ -67,7 +67,10 @@ def live(
         str | None, typer.Option(metavar="N", help="Port of the page.  [default: the first free one from 8642 on]")
     ] = None,
     no_token: Annotated[
-        bool, typer.Option("--no-token", help="Let in whoever reaches the port, also without the token of the address.")
+        bool,
+        typer.Option(
+            "--no-token", help="Let in anybody who can reach the port, also without the token of the address."
+        ),
     ] = False,
     language: Language = Tongue.auto,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
@@ -77,7 +80,7 @@ def live(
     """Play with a scene on a local page: change one thing at a time, and see what follows.
 
     The page shows molecules and graphs while the engine runs. Its record button writes the same netCDF file as
-    run. While no browser looks, the box rests, unless it is being recorded.
+    run. While no page is open, the box is paused, unless it is being recorded.
 
     The address has a token that is new each time, so that another account of this computer cannot steer the box.
     """

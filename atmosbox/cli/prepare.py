@@ -35,7 +35,7 @@ def prepare(
 ) -> None:
     """Compile the engine for all scenes, on all cores.
 
-    No command needs this: each compiles what it lacks, once. Before a class it saves all that waiting.
+    Each command compiles what it needs, once; before a class this saves the wait.
     """
     from atmosbox import scenarios
     from atmosbox.simulation.compilation import cache_home, compiled_here

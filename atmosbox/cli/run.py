@@ -84,7 +84,7 @@ def run(
 
     If a setting is given more than once, --seed counts before --set, --set before --config, and --config
     before --from. Ctrl-C stops a run and keeps what is complete in NAME.part.nc, from which --resume goes on, bit for
-    bit as if the run had never been stopped; so it does after a crash.
+    bit as if the run had never been stopped; also after a crash.
     """
     from atmosbox.file.checkpoint import Checkpoint
     from atmosbox.simulation import runner

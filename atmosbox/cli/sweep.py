@@ -79,8 +79,8 @@ def sweep(
 ) -> None:
     """Run a scene with many settings: how its numbers depend on them.
 
-    Every run is saved as it ends, and its state before that. What was stopped, by Ctrl-C or by anything else, goes on
-    where it was when the same is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws
+    Every run is saved as it ends, and its state before that. A stopped sweep continues where it was when the same
+    command is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws
     it.
     """
     from atmosbox.scene.spelling import assignments

@@ -115,7 +115,7 @@ def tour(
 ) -> None:
     """Go through the program in ten minutes, on a few hundred molecules, each step with its command.
 
-    Enter goes on; Ctrl-C leaves, and what has been made stays. The files stand in a folder of their own.
+    Enter goes on; Ctrl-C leaves, and what has been made stays. The files are in a separate folder.
     """
     if not yes and not sys.stdin.isatty():
         raise SettingError("tour", None, "waits for Enter, and there is no terminal", "give --yes")

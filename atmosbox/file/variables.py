@@ -69,7 +69,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(_TIME, ("work_by_piston", "J", "work done on the molecules by the piston"),
                 ("work_by_gravity", "J", "energy given to the molecules by changes of gravity"),
-                ("work_by_stirring", "J", "work done on the molecules by what stirs them"),
+                ("work_by_stirring", "J", "work done on the molecules by stirring"),
                 cell_methods=_POINT, comment=_SUM, ledger=True),
     **_declared(_TIME, ("gravity", "m s-2", "acceleration of gravity, which was changed by hand"),
                 ("pool_open_share", "1", "share of the pool that is open, which was changed by hand"),
@@ -148,7 +148,7 @@ VARIABLES: dict[str, Variable] = {
          "cloud_liquid_water_mixing_ratio"),
         ("rain_mixing_ratio", "kg kg-1", "mass of water that has rained out so far per mass of dry air"),
         ("liquid_temperature", "K", "temperature of the liquid water"),
-        ("drop_area", "m2", "area of all drops on which molecules hit them"),
+        ("drop_area", "m2", "area of all drops at which molecules hit them"),
         ("condensation_rate", "s-1", "number of molecules that condense per time"),
         ("evaporation_rate", "s-1", "number of molecules that evaporate per time"),
         cell_methods=_MEAN,
@@ -176,7 +176,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     **_declared(
         _TIME,
-        ("condensed_energy", "J", "energy of liquid and rain, and of what the vapour is above the liquid"),
+        ("condensed_energy", "J", "energy of liquid and rain, and the binding energy of the vapour"),
         cell_methods=_POINT, ledger=True,
     ),
     **_declared(

@@ -207,7 +207,7 @@ def _offer(prepared: Prepared, made: list[Start], presets: list[str]) -> None:
                         "choices": sorted(values, key=lambda each: float(each.split()[0])),
                         "value": value,
                         "restarts": True,
-                        "help": f"{particles if name == 'molecules' else name}: the box begins anew with it",
+                        "help": f"{particles if name == 'molecules' else name}: changing it restarts the box",
                     }
                 )
 

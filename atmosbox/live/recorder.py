@@ -127,7 +127,7 @@ class Recorder:
                 self._tape = None
             else:
                 if self._tape.frames >= longest(box):
-                    self.stop(f"The recording holds {self._tape.frames} frames, which is all it can.")
+                    self.stop(f"The recording holds {self._tape.frames} frames, the largest number possible.")
 
     def stop(self, why: str | None = None) -> Path | None:
         """End the recording, if there is one, and return its file.

@@ -183,11 +183,11 @@ class Session:
             self.playing = False
             names = [name for name in self._hand.names if name in ("altitude", "way")]
             lead = f"; move the parcel on with {names[0]}" if names else ""
-            self.note("info", f"The parcel has come to the end of its way{lead}, or begin anew.")
+            self.note("info", f"The parcel has reached the end of its path{lead}, or begin anew.")
             return False
         if frame >= longest(self.experiment):
             self.playing = False
-            self.note("warning", f"This way is {frame} frames long, which is all that is kept: begin anew.")
+            self.note("warning", f"This path is {frame} frames long, which is all that is kept: begin anew.")
             return False
         return True
 
@@ -238,7 +238,7 @@ class Session:
             self.stop_recording()
         else:
             known = "play, pause, step, reset, pace, set, preset, pump, undo, record or stop_record"
-            raise SettingError("type", in_words(kind), "is nothing that this page can ask for", f"give {known}")
+            raise SettingError("type", in_words(kind), "cannot be asked for by this page", f"give {known}")
 
     def _reset(self, seed: object) -> None:
         values: dict[str, Any] = self._hand.settings(self.prepared)
@@ -266,7 +266,7 @@ class Session:
     def _pump(self, factor: object) -> None:
         """Restart the box with more or fewer molecules in the same volume."""
         if not self.lesson.pump:
-            raise SettingError("type", "pump", "is nothing that this scene offers", "change the number of molecules")
+            raise SettingError("type", "pump", "is not offered by this scene", "change the number of molecules")
         by = number_between(factor, "factor", 1.0 / _PUMP, _PUMP)
         values = self._hand.settings(self.prepared)
         declared = {parameter.name: parameter for parameter in self.prepared.settings.describe()}
@@ -307,7 +307,7 @@ class Session:
         control = next((each for each in self.controls() if each.name == name), None)
         if control is None:
             known = ", ".join(each.name for each in self.controls())
-            raise SettingError("name", in_words(name), "is nothing that can be changed here", f"give one of {known}")
+            raise SettingError("name", in_words(name), "cannot be changed here", f"give one of {known}")
         wanted = control.parse(value)
         if not control.restarts:
             first = control.name not in self._hand.turned
@@ -335,7 +335,7 @@ class Session:
         if self.finished:  # the box was paused only because its ascent had ended
             self.playing, self.finished = True, False
         if self._hand.overflows:
-            self._recorder.stop(f"The recording tells of {hand.MOST_CHANGES} changes, which is all it can.")
+            self._recorder.stop(f"The recording tells of {hand.MOST_CHANGES} changes, the largest number possible.")
             del self.changes[0]
 
     def stop_recording(self) -> Path | None:

@@ -9,7 +9,7 @@ __all__ = ["AS_STATED", "CHANCE_ALONE", "CHANCE_LIMIT", "ENGINE_IS_OFF", "NO", "
 
 CHANCE_ALONE = "none: the model has no other error than chance"
 """Reason of a tolerance of zero."""
-ENGINE_IS_OFF = "so far off was this engine measured to be"
+ENGINE_IS_OFF = "the measured error of this engine is that large"
 """Reason of a bias of the engine."""
 CHANCE_LIMIT = 4.0
 """Largest misfit, in standard errors, that counts as chance: chance exceeds it once in 16,000 times."""

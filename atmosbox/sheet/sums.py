@@ -66,7 +66,7 @@ def _part(number: Any, name: str) -> Any:
     """Return a part of a number: value, error, theory, misfit, or sigmas (the misfit in standard errors)."""
     theory = getattr(number, "theory", None)
     if name in ("theory", "misfit", "sigmas") and theory is None:
-        raise ConfigError(f"theory says nothing of a number whose {name} is asked for: leave it out")
+        raise ConfigError(f"there is no theory of a number whose {name} is asked for: leave it out")
     match name:
         case "value":
             return float(nominal_value(number))
@@ -135,7 +135,7 @@ class _Sandbox(SandboxedEnvironment):
     def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:
         """Work out a sum of numbers; powers in floating point, so that no power of integers fills the memory."""
         if not (isinstance(left, _NUMBERS) and isinstance(right, _NUMBERS)):
-            raise SecurityError(f"{operator} stands between things that are no numbers")
+            raise SecurityError(f"{operator} stands between things that are not numbers")
         return super().call_binop(context, operator, left * 1.0 if operator == "**" else left, right)
 
     def getattr(self, obj: Any, attribute: str) -> Any:
@@ -162,7 +162,7 @@ def _printed(result: Any) -> str:
         case int() | float():
             whole = abs(result) < 1e6 and result == int(result) if math.isfinite(result) else False
             return str(int(result)).replace("-", "−") if whole else bare(float(result))
-    raise ConfigError("a sum comes to something that is no number: name a number of the run")
+    raise ConfigError("the result of a sum is not a number: name a number of the run")
 
 
 def _typed(result: Any) -> str:

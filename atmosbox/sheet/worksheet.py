@@ -33,7 +33,7 @@ _KNOBS = {
     "answer": "",
     "lines": 4,
 }
-_NOT_HERE = "*Written for the scene as it comes; with these settings its numbers are not there.*"
+_NOT_HERE = "*Written for the scene as it comes; with these settings its numbers are not available.*"
 _WITH_CARE = (
     "The numbers are of these runs, but the words of the answers are for the scene as it comes: read them with care."
 )

@@ -196,7 +196,7 @@ def _execute(
         except UnkeptError as error:
             if not warned:
                 warned = True
-                warnings.warn(f"this run cannot be resumed, for {error} is nothing that a file can hold", stacklevel=2)
+                warnings.warn(f"this run cannot be resumed, for {error} cannot be stored in a file", stacklevel=2)
             return dataset
 
     try:

@@ -224,7 +224,7 @@ def _about_members(plan: Plan, records: Sequence[Record], dims: tuple[str, ...])
     both = (*dims, "member")
     declared = {
         Variable("member_seed", both, "1", "seed of the run", dtype="i8", ledger=True): seed,
-        Variable("member_status", both, "", "what became of the run", dtype="i1", ledger=True, flags=_STATES): status,
+        Variable("member_status", both, "", "status of the run", dtype="i1", ledger=True, flags=_STATES): status,
         Variable("member_ledger", both, "1", "residual of the energy ledger of the run"): ledger,
     }
     if any(reason.ravel()):

@@ -282,7 +282,7 @@ def test_what_no_box_with_liquid_can_have_is_refused():
         ({"centres": near}, "overlap at the start"),
         ({"centres": near, "position": [], "velocity": []}, "overlap at the start"),
         ({"centres": ((6.5, 7.0, 7.0),)}, "overlap at the start"),
-        ({"centres": ((4.0, 4.0, 4.0), (4.0, 9.0, 4.0))}, "drop 1 stands outside"),
+        ({"centres": ((4.0, 4.0, 4.0), (4.0, 9.0, 4.0))}, "drop 1 lies outside"),
         ({"centres": ((4.0, 4.0, NAN),)}, "three finite numbers"),
         (
             {"centres": ((0.6, 0.6, 0.6),), "length": (1.2, 9, 9), "position": [[0.6, 7, 7], [0.6, 7, 5]]},

@@ -254,7 +254,7 @@ def test_rows_of_names_grow_when_molecules_are_placed_and_on_the_way(lab, monkey
 def test_a_parcel_comes_to_its_end_and_goes_back_to_where_the_knob_leads_it(lab):
     shown = lab("lifting-dry", {"molecules": 200, "ascent": 40})
     shown.ask(type="frames", value=40)
-    assert "end of its way" in shown.note()
+    assert "end of its path" in shown.note()
     shown.ask(type="set", name="altitude", value=1.0)
     shown.ask(type="frames", value=80)
     _, table = shown.table()

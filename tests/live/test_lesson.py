@@ -55,7 +55,7 @@ def test_the_pump_puts_more_molecules_into_the_same_volume():
     assert session.setup.parcel.number == 600
     assert session.setup.parcel.volume == pytest.approx(before, rel=3e-3)  # excluded volume
     assert any("600 molecules in the same volume" in note["text"] for note in session.notes())
-    with pytest.raises(SettingError, match="nothing that this scene offers"):
+    with pytest.raises(SettingError, match="not offered by this scene"):
         Session(prepare("lifting-dry", {"molecules": 50})).obey({"type": "pump", "factor": 1.5})
 
 

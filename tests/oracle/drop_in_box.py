@@ -37,7 +37,7 @@ def chances(molecules, saturated, tension, salt, core, ball, *, air=0, side=1.0,
 
 
 def vapour_over_drop(n, tension, salt, core, ball):
-    """Return the vapour pressure over that of a flat surface of pure water: n lose one as often as n - 1 gain one.""" 
+    """Return the vapour pressure over that of a flat surface of pure water: n lose one as often as n - 1 gain one."""
     n = np.asarray(n, float)
     surface = 4.0 * np.pi * tension * (radii(n, core, ball) ** 2 - radii(n - 1.0, core, ball) ** 2)
     return n / (n + salt) * np.exp(surface)

@@ -89,10 +89,10 @@ def test_a_wrong_unit_is_told_by_what_would_be_right():
 
 
 def test_a_value_that_no_unit_makes_plausible_is_refused_with_the_limits():
-    with pytest.raises(SoundingError, match=r"level 1: a pressure of -5 hPa is not .* \(0.001 to 1100 hPa\)"):
+    with pytest.raises(SoundingError, match=r"level 1: a pressure of -5 hPa does not .* \(0.001 to 1100 hPa\)"):
         check_plausible("pressure", np.array([1000.0, -5.0]), "hPa", place)
     with pytest.raises(
-        SoundingError, match=r"level 0: a pressure of 300 hPa at the ground is not .* \(450 to 1100 hPa\)"
+        SoundingError, match=r"level 0: a pressure of 300 hPa at the ground does not .* \(450 to 1100 hPa\)"
     ):
         check_plausible("pressure", np.array([300.0, 200.0]), "hPa", place)
 

@@ -78,7 +78,7 @@ def test_of_a_file_of_years_the_first_sounding_is_taken(written, lines):
 
 def test_a_file_that_is_cut_off_is_refused(written, lines):
     for cut in [1, 3, 8]:
-        with pytest.raises(SoundingError, match=f"the header tells of 9 levels, and {9 - cut} are there"):
+        with pytest.raises(SoundingError, match=f"the header announces 9 levels, and {9 - cut} are there"):
             read(written(lines[:-cut]))
 
 

@@ -46,7 +46,7 @@ def test_what_is_no_ascent_is_refused():
         (([], [], []), "Oslo: the pressure is not a row of numbers"),
         ((PRESSURE, [np.nan, *TEMPERATURE[1:]], DEWPOINT), "Oslo, level 1: the temperature nan is not finite"),
         ((PRESSURE, TEMPERATURE, [*DEWPOINT[:4], -np.inf]), "Oslo, level 5: the dewpoint -inf is not finite"),
-        ((PRESSURE, [25.0] * 5, DEWPOINT), "Oslo, level 1: a temperature of 25 K is not .* looks like degC"),
+        ((PRESSURE, [25.0] * 5, DEWPOINT), "Oslo, level 1: a temperature of 25 K does not .* looks like degC"),
         ((PRESSURE[::-1], TEMPERATURE, DEWPOINT), "Oslo, level 2: the pressure of 500 hPa is not below"),
         ((PRESSURE, DEWPOINT, TEMPERATURE), "Oslo, level 1: the dewpoint of 24.85 degC is above the temperature"),
         ((PRESSURE, TEMPERATURE, DEWPOINT, [0.0] * 5), "Oslo, level 2: the height of 0 m is not above the 0 m"),

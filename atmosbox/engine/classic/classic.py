@@ -192,7 +192,7 @@ class ClassicParcel(MarchingParcel):
             raise RefusedError("the classic schemes have no piston, wall z_high: give that box to the exact engine")
         if self._rotates:
             raise RefusedError(
-                "the classic schemes know no rotation: make the rotational degrees of freedom 0, or give that box to "
+                "the classic schemes have no rotation: make the rotational degrees of freedom 0, or give that box to "
                 "the exact engine"
             )
         alike = not self._number or all(np.ptp(a) == 0.0 for a in (self._mass, self._diameter))

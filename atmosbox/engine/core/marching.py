@@ -103,8 +103,8 @@ class MarchingParcel(Parcel):
         speed = math.sqrt(2.0 * self.energy()[0] / (3.0 * mass)) if mass else math.inf
         if gravity * self._time_step > speed:
             raise RefusedError(
-                f"gravity = {gravity:.6g} would turn molecules round within a step of {self._time_step:.3g}: give "
-                f"{0.5 * speed / self._time_step:.3g} or less, or begin with it"
+                f"gravity = {gravity:.6g} would reverse the motion of molecules within a step of "
+                f"{self._time_step:.3g}: give {0.5 * speed / self._time_step:.3g} or less, or start the run with it"
             )
         self._gravity = gravity
         self._renew()
@@ -113,7 +113,7 @@ class MarchingParcel(Parcel):
         if kT > _HOTTER * self._usual_kT > 0.0:
             raise RefusedError(
                 f"kT of a wall = {kT:.6g} is too hot for the step, which was chosen for {self._usual_kT:.6g}: give "
-                f"{_HOTTER * self._usual_kT:.6g} or less, or begin with it"
+                f"{_HOTTER * self._usual_kT:.6g} or less, or start the run with it"
             )
 
     def _thermal_speeds(self, velocity: Array) -> Array:

@@ -50,7 +50,7 @@ class DropParcelSet(MoistParcelSet):
         if not (self._diameter > 0.0).all() or not liquid.substance.diameter > 0.0:
             raise RefusedError("drops cannot be hit by molecules without a diameter: give all of them one")
         if not self._collisions:
-            raise RefusedError("drops are there to be hit: leave collisions on")
+            raise RefusedError("drops need collisions: leave collisions on")
         substance, more = liquid.substance, int(liquid.number)
         number = len(liquid.position)
         held = np.full(number, more // number, np.int64)
@@ -122,7 +122,7 @@ class DropParcelSet(MoistParcelSet):
                 )
             outside = (where[:, axis] < radius) | (where[:, axis] > side - radius)
             if not self._periodic[axis] and outside.any():
-                raise RefusedError(f"drop {int(np.argmax(outside))} stands outside the box: move it inside")
+                raise RefusedError(f"drop {int(np.argmax(outside))} lies outside the box: move it inside")
         return where
 
     @property

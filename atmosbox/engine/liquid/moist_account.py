@@ -110,7 +110,7 @@ class MoistAccount(Parcel):
         (0, 5)
         """
         if not isinstance(self._liquid, Pool):
-            raise RefusedError("the liquid of this box is no pool that could be covered: make it a Pool")
+            raise RefusedError("the liquid of this box is not a pool, and only a pool can be covered: make it a Pool")
         cover(self._reservoir, number(share, "open share of the pool", least=0.0, most=1.0))
         self._reservoir_changes()
 

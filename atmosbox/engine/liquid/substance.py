@@ -111,7 +111,9 @@ class Liquid:
         number(self.rain, "rain", least=0.0)
         whole(self.keeps, "number of molecules that the liquid keeps", least=0)
         if not 0.0 < number(self.sticking, "sticking") <= 1.0:
-            raise RefusedError(f"sticking = {self.sticking} is no part above 0 and up to 1: give 1 for all that meet")
+            raise RefusedError(
+                f"sticking = {self.sticking} is no fraction above 0 and up to 1: give 1 if all that hit the liquid stay"
+            )
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ def choose_cells(
         crowd = diameter.size * float(sides[2]) / depth / math.prod(number)
         if crowd > _CROWD and not equal:
             raise RefusedError(
-                f"the largest molecule, of diameter {biggest:.4g}, is so large that {crowd:.0f} molecules stand in "
+                f"the largest molecule, of diameter {biggest:.4g}, is so large that {crowd:.0f} molecules are in "
                 f"each cell of its size, more than {_CROWD:.0f}: make it smaller, or use the exact engine"
             )
     wraps = [periodic[axis] and number[axis] >= 3 for axis in range(3)]

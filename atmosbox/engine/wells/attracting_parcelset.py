@@ -133,8 +133,9 @@ class AttractingParcelSet(ParcelSet):
         for axis in range(3):
             if self._periodic[axis] and self._sides[axis] < 2.0 * _TIGHT * reach:
                 raise RefusedError(
-                    f"length = {self._sides[axis]:.6g} along {'xyz'[axis]} is too short for molecules that feel each "
-                    f"other over {reach:.6g} on a periodic axis: make it {2.0 * _TIGHT * reach:.6g} or more"
+                    f"length = {self._sides[axis]:.6g} along {'xyz'[axis]} is too short for molecules that attract "
+                    f"each other up to a distance of {reach:.6g} on a periodic axis: make it "
+                    f"{2.0 * _TIGHT * reach:.6g} or more"
                 )
         self._modes = Modes(
             contacts=True,

@@ -145,7 +145,7 @@ class Box {
     this.trace.add(row);
     if (!plan.ends || this.frame !== plan.frames) return true;
     Object.assign(this, { playing: false, finished: true });
-    say({ type: "note", level: "info", text: "The parcel has come to the end of its way, or begin anew." });
+    say({ type: "note", level: "info", text: "The parcel has reached the end of its path: begin anew." });
     return false;
   }
 
@@ -284,7 +284,7 @@ class Box {
     const value = typeof asked === "string" && asked.trim() === "" ? NaN : Number(asked);
     if (!control || !(value >= control.low && value <= control.high)) {
       refuse(control ? `${name} = ${asked} is no number from ${control.low} to ${control.high} ${control.unit}: give one of these.`
-        : `${name} is nothing that can be changed here.`);
+        : `${name} cannot be changed here.`);
       return;
     }
     const last = this.past.at(-1), now = performance.now();
@@ -327,7 +327,7 @@ class Box {
 
   save() {
     const { rows, every } = this.trace, command = this.command(), names = Object.keys(rows[0] ?? {});
-    const about = this.turned.length ? [`# ${command}`, "# begins like this run, in which then by hand", ...this.turned]
+    const about = this.turned.length ? [`# ${command}`, "# begins like this run; then these changes by hand", ...this.turned]
       : [`# ${command}`, "# repeats this run"];
     if (every > 1) about.push(`# every ${every}th frame`);
     const lines = [...about, "# all in SI units; elapsed_time in the unit of the page", names.join(","),

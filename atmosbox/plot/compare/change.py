@@ -81,7 +81,7 @@ class Naming:
         said = ", ".join(str(change) for change in self.changes if change.name != "scene")
         if self.changes:
             return said or "with the same settings"
-        return "the same run" if self.same else "the same settings, other numbers"
+        return "the same run" if self.same else "the same settings, different results"
 
 
 def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:

@@ -99,7 +99,10 @@ def convection_headlines(
         shift, scatter = float(np.mean(others)) - answer, float(np.std(others, ddof=1))
         if unit == "J kg-1" and abs(shift) > 0.5 * abs(answer) > 0.0:  # the clusters hide the energy
             continue
-        reason = "the ascent is not infinitely slow, vapour must find liquid, and curves are smoothed before they cross"
+        reason = (
+            "the ascent is not infinitely slow, vapour needs time to reach the liquid, and curves are smoothed before "
+            "they cross"
+        )
         found.append(Headline(name, value, scatter, answer, abs(shift), reason, unit, shown, label))
     return tuple(found)
 

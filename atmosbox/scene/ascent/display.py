@@ -27,7 +27,7 @@ LEAST, CLUSTERED = 0.1, 3.0
 """Least liquid that counts as a cloud: as a share of all water, and in standard deviations of the liquid."""
 _DRAWN = 1000
 _SEED = 21
-REASON = "the ascent is not infinitely slow, spheres have volume, and vapour must find liquid"
+REASON = "the ascent is not infinitely slow, spheres have volume, and vapour needs time to reach the liquid"
 
 
 def lifted_panels(ascent: MoistAscent, adiabat: str) -> tuple[Panel, ...]:
@@ -235,7 +235,7 @@ def _cloud_base(
             error,
             ascent.base,
             abs(shift),
-            "vapour must find liquid, spheres have volume, noise bends the curve: "
+            "vapour needs time to reach the liquid, spheres have volume, noise bends the curve: "
             f"{abs(shift) / 100.0:.1f} hPa too far {where} on average",
             "Pa",
             "hPa",

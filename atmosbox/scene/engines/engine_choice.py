@@ -87,18 +87,18 @@ class EngineChoice:
         if "liquid" in box:
             if self.engine.moist is None:
                 able = " or ".join(f"--engine {engine.name}" for engine in ENGINES.values() if engine.moist is not None)
-                raise SettingError("engine", str(self), "knows no liquid water", f"give {able}")
+                raise SettingError("engine", str(self), "cannot simulate liquid water", f"give {able}")
             kind = partial(self.engine.moist, box["liquid"])
         if "well" in box:
             if self.engine.attracting is None:
-                raise SettingError("engine", str(self), "knows no attraction", "give --engine exact")
+                raise SettingError("engine", str(self), "cannot simulate attraction", "give --engine exact")
             kind = self.engine.attracting
         if "stirring" in box:
             if self.engine.stirred is None:
                 raise SettingError(
                     "engine",
                     str(self),
-                    "cannot stir, for spheres that are put where others were would overlap",
+                    "cannot stir, for spheres that change places would overlap",
                     "give --engine dsmc",
                 )
             kind = self.engine.stirred

@@ -71,7 +71,7 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
         where = f"{file}, line {i + 1}"
         line = lines[i].rstrip() if i < len(lines) else ""
         if not line or line.startswith("#"):
-            raise SoundingError(f"{where}: the header tells of {levels} levels, and {i - 1} are there: save it again.")
+            raise SoundingError(f"{where}: the header announces {levels} levels, and {i - 1} are there: save it again.")
         rows.append([_number(line, quantity, where) for quantity in _FIELDS])
     pressure, height, temperature, depression = np.array(rows, dtype=np.float64).reshape(-1, len(_FIELDS)).T
     others = sum(line.startswith("#") for line in lines) - 1

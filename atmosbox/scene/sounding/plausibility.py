@@ -107,7 +107,7 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
     --------
     >>> check_plausible("temperature", np.array([298.0, 290.0]), "degC", lambda level: f"a.csv, line {level + 2}")
     Traceback (most recent call last):
-    atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC is not one of the atmosphere and looks
+    atmosbox.errors.SoundingError: a.csv, line 2: a temperature of 298 degC does not occur in the atmosphere and looks
     like K: write "temperature [K]" or give units={"temperature": "K"}.
     """
     measure = QUANTITIES[quantity]
@@ -117,7 +117,8 @@ def check_plausible(quantity: str, values: Floats, unit: str, place: Place) -> N
         return
     high_up = quantity == "pressure" and measure.low <= in_si(values, known)[wrong] < _HIGHEST_GROUND
     ground = " at the ground" if high_up else ""
-    what = f"{place(wrong)}: a {quantity} of {values[wrong]:.10g} {shown(unit)}{ground} is not one of the atmosphere"
+    found = f"{values[wrong]:.10g} {shown(unit)}"
+    what = f"{place(wrong)}: a {quantity} of {found}{ground} does not occur in the atmosphere"
     for other in measure.units:
         candidate = known_unit(other)
         if candidate and candidate != known and _first_implausible(quantity, values, candidate) is None:

@@ -92,7 +92,7 @@ class GuardedRun:
         step = step_of(parcel)
         slack = 1e-9 * max(abs(until), step)
         if not -step - slack <= parcel.time - until <= slack:
-            raise UnlawfulError(f"asked to advance to t = {until:.9g}, it stands at {parcel.time:.9g}")
+            raise UnlawfulError(f"asked to advance to t = {until:.9g}, it is at {parcel.time:.9g}")
         return parcel
 
     def _check(self, parcel: Parcel) -> None:

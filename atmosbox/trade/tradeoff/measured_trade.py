@@ -246,7 +246,7 @@ def _dataset(
         coords={
             "rung": ("rung", [way.label for way in ways], {"long_name": "engine and settings"}),
             "quantity": ("quantity", names, {"long_name": "what is measured"}),
-            "label": ("quantity", [q.label for q in quantities.values()], {"long_name": "what a table calls it"}),
+            "label": ("quantity", [q.label for q in quantities.values()], {"long_name": "name in a table"}),
             "unit": (
                 "quantity",
                 [q.unit for q in quantities.values()],
@@ -255,7 +255,7 @@ def _dataset(
             "theory": (
                 "quantity",
                 [q.theory for q in quantities.values()],
-                {"long_name": "what theory says, in SI units; of a curve the mean of its size"},
+                {"long_name": "value of theory, in SI units; for a curve the mean of its absolute value"},
             ),
         },
         attrs=global_attributes(parameters, title=title, command=command, status=status),
