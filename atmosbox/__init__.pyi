@@ -48,11 +48,11 @@ def run(
     gravity [m s-2]: acceleration of gravity; 0.1 m s-2 to 100 m s-2
     height [km]: height of the ceiling; 0.1 km to 1000 km
     knudsen: mean free path at the floor in scale heights; 0.02 to 10
-    floor: what the floor is: warm, or smooth so that no heat passes; heat-bath or isolated
+    floor: kind of floor: heat bath, or smooth so that no heat passes; heat-bath or isolated
     start: where the molecules start: spread evenly, in the profile of equilibrium, or near the floor; uniform or equilibrium or bottom
     rotation: whether molecules rotate, as those of air do; on or off
     stirring: how many times as much heat stirring carries as molecules conduct; 0 for air at rest; 0 to 1000
-    exchange: what changes places when stirred: parcels that do work as they expand, or molecules one by one, which do none; parcels or molecules
+    exchange: what is exchanged when stirred: parcels that do work as they expand, or molecules one by one, which do none; parcels or molecules
     plane: whether the air is a plane of discs; on or off
     duration: how long to watch, in times that sound takes to climb a scale height; 1 to 100000
     seed: seed of the random numbers; 0 to 9223372036854775807
@@ -85,10 +85,10 @@ def run(
     temperature [K]: temperature of the bath and at the start; 10 K to 20000 K
     density: density of these molecules, over the critical one; 0.0001 to 2.3
     attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
-    start: what is there first; vapour or slab or drop or pool
-    bath: what keeps it at its temperature; random or walls or none
+    start: state at the start; vapour or slab or drop or pool
+    bath: what keeps the temperature; random or walls or none
     air: density of molecules that attract none, over the critical one; 0 to 1
-    substance: whose size and attraction the molecules have; argon or nitrogen or methane
+    substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
     duration [ns]: how long to watch; 0.0001 ns to 10000 ns
     seed: seed of the random numbers; 0 to 9223372036854775807
     """

@@ -230,7 +230,7 @@ def test_a_wall_that_cannot_become_another_is_refused_and_stays():
 
 
 def test_only_a_pool_is_covered_and_by_no_more_than_all_of_it():
-    with pytest.raises(RefusedError, match="no pool that could be covered"):
+    with pytest.raises(RefusedError, match="only a pool can be covered"):
         damp(Mist(WATER, number=2, kT=1.0)).set_open_pool(0.5)
     with pytest.raises(RefusedError, match=r"open share of the pool = 1\.5"):
         damp(Pool(WATER, number=2, kT=1.0)).set_open_pool(1.5)
