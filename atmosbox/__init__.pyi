@@ -149,7 +149,7 @@ def run(
 
     molecules: number of molecules of both gases together; 100 to 1000000
     length [nm]: length of the box; 10 nm to 10000 nm
-    mass_ratio: mass of a molecule on the right, in that of one on the left; 0.01 to 100
+    mass_ratio: mass of a molecule on the right, divided by that of one on the left; 0.01 to 100
     temperature [degC]: temperature of both gases; -200 degC to 1000 degC
     pressure [hPa]: pressure that both would have if molecules were points; 1 hPa to 20000 hPa
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 3 nm
@@ -178,7 +178,7 @@ def run(
     r"""Discs of unlike mass collide in a plane, and share their energy.
 
     molecules: number of discs; 2 to 5000
-    mass_ratio: mass of the heaviest disc in that of the lightest; 1 to 1000000
+    mass_ratio: largest possible ratio of two masses; 1 to 1000000
     filling [%]: share of the table that the discs cover; 0.01 % to 70 %
     side [m]: side of the table; 0.01 m to 100 m
     speed [m s-1]: speed of every disc at the start; 0.001 m s-1 to 1000 m s-1
@@ -211,7 +211,7 @@ def run(
     pool: number of molecules in the pool at the start; 1 to 1000000
     temperature [degC]: temperature of the air and of the pool at the start; -60 degC to 95 degC
     humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
-    pressure [hPa]: pressure of the air, which stays; 1 hPa to 20000 hPa
+    pressure [hPa]: pressure of the air, kept constant; 1 hPa to 20000 hPa
     duration [ns]: how long to watch; 0.01 ns to 10000 ns
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
@@ -245,7 +245,7 @@ def run(
     top_pressure [hPa]: pressure at which the ascent ends; 50 hPa to 1000 hPa
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
     rotation: whether molecules rotate; without it gamma is 5/3; on or off
-    ascent: length of the ascent in mean free times at its start; 5 to 1000000
+    ascent: duration of the ascent, in mean free times at its start; 5 to 1000000
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
@@ -283,7 +283,7 @@ def run(
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
-    ascent: length of the ascent in mean free times at its start; 20 to 1000000
+    ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
     area: area of all droplets, in floors of the box; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
@@ -316,7 +316,7 @@ def run(
     top_pressure [hPa]: pressure at which the ascent ends; 50 hPa to 900 hPa
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
-    ascent: length of the ascent in mean free times at its start; 20 to 1000000
+    ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
     area: area of all droplets, in floors of the box; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
@@ -359,7 +359,7 @@ def run(
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
-    travel: length of the way in mean free times at its start; 20 to 1000000
+    travel: duration of the way, in mean free times at its start; 20 to 1000000
     area: area of all droplets, in floors of the box; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
@@ -398,7 +398,7 @@ def run(
     pure: number of drops of pure water; 0 to 20
     salt: pairs of ions in each grain of salt; 1 to 1000
     water: molecules of water in each drop at the start; 0 to 5000
-    tension: surface tension, in that of water; 0 to 2
+    tension: surface tension, divided by that of water; 0 to 2
     drop_size: how many times wider the drops are than real ones; 1 to 10
     duration [ns]: how long to watch; 0.1 ns to 100000 ns
     seed: seed of the random numbers; 0 to 9223372036854775807

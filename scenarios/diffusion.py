@@ -73,7 +73,7 @@ class Settings(SceneSettings):
     molecules: int = setting(12_000, "1", "number of molecules of both gases together", low=100, high=1_000_000)
     length: float = setting(150.0, "nm", "length of the box", low=10.0, high=10_000.0)
     mass_ratio: float = setting(
-        1.0, "1", "mass of a molecule on the right, in that of one on the left", low=0.01, high=100.0
+        1.0, "1", "mass of a molecule on the right, divided by that of one on the left", low=0.01, high=100.0
     )
     temperature: float = setting(15.0, "degC", "temperature of both gases", low=-200.0, high=1000.0)
     pressure: float = setting(

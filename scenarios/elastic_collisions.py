@@ -54,7 +54,7 @@ class Settings(SceneSettings):
     """What a user may set."""
 
     molecules: int = setting(60, "1", "number of discs", low=2, high=5000)
-    mass_ratio: float = setting(20.0, "1", "mass of the heaviest disc in that of the lightest", low=1.0, high=1e6)
+    mass_ratio: float = setting(20.0, "1", "largest possible ratio of two masses", low=1.0, high=1e6)
     filling: float = setting(15.0, "%", "share of the table that the discs cover", low=0.01, high=70.0)
     side: float = setting(1.0, "m", "side of the table", low=0.01, high=100.0)
     speed: float = setting(0.5, "m s-1", "speed of every disc at the start", low=1e-3, high=1e3)

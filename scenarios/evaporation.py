@@ -79,7 +79,7 @@ class Settings(SceneSettings):
         30.0, "degC", "temperature of the air and of the pool at the start", low=-60.0, high=95.0
     )
     humidity: float = setting(20.0, "percent", "relative humidity at the start", low=0.0, high=1000.0)
-    pressure: float = setting(1000.0, "hPa", "pressure of the air, which stays", low=1.0, high=20_000.0)
+    pressure: float = setting(1000.0, "hPa", "pressure of the air, kept constant", low=1.0, high=20_000.0)
     duration: float = setting(20.0, "ns", "how long to watch", low=0.01, high=1e4)
     diameter: float = setting(0.37, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.0)
 

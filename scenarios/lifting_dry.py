@@ -69,7 +69,7 @@ class Settings(SceneSettings):
     top_pressure: float = setting(300.0, "hPa", "pressure at which the ascent ends", low=50.0, high=1000.0)
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rotation: bool = setting(True, "", "whether molecules rotate; without it gamma is 5/3")
-    ascent: float = setting(1600.0, "1", "length of the ascent in mean free times at its start", low=5.0, high=1e6)
+    ascent: float = setting(1600.0, "1", "duration of the ascent, in mean free times at its start", low=5.0, high=1e6)
     diameter: float = setting(1.0, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:
