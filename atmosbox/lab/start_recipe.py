@@ -190,7 +190,10 @@ def _as_cleared(seen: Watched, position: Array) -> int | None:
 
 
 def no_start(setup: Setup) -> Start | None:
-    """Return a placeholder start for a box with a fixed seed; None if its module needs no start."""
+    """Return what a module needs to be loaded where the seed is fixed, so that the page never draws another start.
+
+    None if its module has no kernels for a start.
+    """
     parcel: Any = setup.parcel
     if not can_start(parcel._modes):
         return None

@@ -134,7 +134,7 @@ def warmed_walls(
 ) -> Knob:
     """Return the knob that turns smooth walls into heat baths at its first turn, and sets their temperature.
 
-    Until then the walls are those of the scene, so that a box that nobody touches is the one of ``atmosbox run``.
+    Until then the walls are those of the scene, so that a run in which no knob is turned is that of ``atmosbox run``.
 
     Parameters
     ----------
