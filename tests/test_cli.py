@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import get_args
 
 import pytest
 import typer
@@ -814,9 +815,9 @@ def test_plot_puts_the_figure_beside_the_run_and_prints_its_path(folder, finishe
 def test_the_formats_and_themes_are_those_of_the_figures():
     from atmosbox import plot
 
-    assert tuple(Format) == plot.FORMATS
+    assert get_args(Format) == plot.FORMATS
     assert tuple(f".{name}" for name in plot.FORMATS) == FIGURES
-    assert set(Theme) == set(plot.THEMES)
+    assert set(get_args(get_args(Theme)[0])) == set(plot.THEMES)
 
 
 # Checks

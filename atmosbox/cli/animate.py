@@ -2,39 +2,28 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Force, RunFile, Theme, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.terminal import guarded, say
+from atmosbox.cli.terminal import say
 from atmosbox.text.progress import progress
 
 
-class Film(StrEnum):
-    """The formats of a film."""
-
-    gif = "gif"
-    mp4 = "mp4"
-
-
-@app.command(
-    epilog=examples(
-        "atmosbox animate temperature.nc",
-        "atmosbox animate lifting-dry.nc --format mp4 --theme slides --seconds 8",
-        "atmosbox animate lifting-dry.nc --graphs --out lift.gif --force",
-    )
+@command(
+    "atmosbox animate temperature.nc",
+    "atmosbox animate lifting-dry.nc --format mp4 --theme slides --seconds 8",
+    "atmosbox animate lifting-dry.nc --graphs --out lift.gif --force",
 )
-@guarded
 def animate(
     file: RunFile,
     out: Annotated[str | None, out_option("The film.  [default: beside FILE, by its name]")] = None,
     format: Annotated[
-        Film | None,
+        Literal["gif", "mp4"] | None,
         typer.Option(help="The format, where the name of the film does not say it; mp4 needs atmosbox[movie]."),
     ] = None,
     seconds: Annotated[
@@ -47,7 +36,7 @@ def animate(
         ),
     ] = None,
     graphs: Annotated[bool, typer.Option("--graphs", help="Film the graphs alone, without the molecules.")] = False,
-    theme: Annotated[Theme, typer.Option(help="For a page or for a screen.")] = Theme.notes,
+    theme: Theme = "notes",
     force: Force = False,
     quiet: Annotated[bool, quiet_option("Show no progress.")] = False,
     verbose: Verbose = False,
@@ -59,7 +48,7 @@ def animate(
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
-    path = beside([file], "gif" if format is None else format.value) if out is None else Path(out)
+    path = beside([file], format or "gif") if out is None else Path(out)
 
     from atmosbox.film import save
 
@@ -67,8 +56,8 @@ def animate(
         path, _ = save(
             dataset,
             path,
-            format and format.value,
-            theme=theme.value,
+            format,
+            theme=theme,
             seconds=seconds,
             fps=fps,
             graphs=graphs,

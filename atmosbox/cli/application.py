@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import shlex
 import sys
-from typing import Annotated, Any
+from collections.abc import Callable
+from typing import Annotated, Any, ParamSpec, TypeVar
 
 import typer
 from typer.core import TyperGroup
 
-from atmosbox.cli.terminal import say
+from atmosbox.cli.terminal import guarded, say
 
-__all__ = ["app", "examples", "typed"]
+__all__ = ["app", "command", "typed"]
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
@@ -42,7 +46,7 @@ def typed(ctx: typer.Context) -> str:
     return shlex.join(words).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-def examples(*lines: str) -> str:
+def _examples(*lines: str) -> str:
     """Return the examples to print below a help text, one in each line."""
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
@@ -60,7 +64,7 @@ app = typer.Typer(
     name="atmosbox",
     cls=_Group,
     help="An atmosphere in a box: textbook meteorology that emerges from colliding molecules.",
-    epilog=examples(
+    epilog=_examples(
         "atmosbox list                    the scenes",
         "atmosbox info lifting-dry        what a scene shows, and what may be set",
         "atmosbox run lifting-dry         run it",
@@ -80,3 +84,20 @@ def _atmosbox(
     ] = False,
 ) -> None:
     """Take the options that stand before a command."""
+
+
+def command(*examples: str, name: str | None = None) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Return a decorator that makes a function a command whose errors end it as `guarded` says.
+
+    Parameters
+    ----------
+    examples
+        Lines to print below its help.
+    name
+        Its name; that of the function if none is given.
+    """
+
+    def added(function: Callable[P, R]) -> Callable[P, R]:
+        return app.command(name, epilog=_examples(*examples))(guarded(function))
+
+    return added

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, Verbose
-from atmosbox.cli.terminal import guarded, say, say_json, width
+from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.errors import PhysicsError, SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
@@ -27,15 +27,12 @@ CONVENTION = "cf:1.11"
 CHECKER = "compliance-checker"
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox check lifting-dry.nc",
-        "atmosbox check lifting-dry.nc --json",
-        "atmosbox check --extremes",
-        "atmosbox check --extremes --engine exact --only cradle",
-    )
+@command(
+    "atmosbox check lifting-dry.nc",
+    "atmosbox check lifting-dry.nc --json",
+    "atmosbox check --extremes",
+    "atmosbox check --extremes --engine exact --only cradle",
 )
-@guarded
 def check(
     file: Annotated[
         str | None, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.", show_default=False)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Force, Json, Theme, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.terminal import guarded, say, say_json, tell, width
+from atmosbox.cli.terminal import say, say_json, tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.comparison_table import comparison_lines
 
@@ -22,33 +21,21 @@ if TYPE_CHECKING:
     from atmosbox.plot.compare import Compared, Naming
 
 
-class Comparison(StrEnum):
-    """The formats of a comparison."""
-
-    png = "png"
-    svg = "svg"
-    pdf = "pdf"
-    html = "html"
-
-
-@app.command(
-    epilog=examples(
-        "atmosbox compare cold.nc warm.nc",
-        "atmosbox compare cold.nc mild.nc warm.nc --format pdf --theme slides",
-        "atmosbox compare dry.nc moist.nc --out both.html",
-    )
+@command(
+    "atmosbox compare cold.nc warm.nc",
+    "atmosbox compare cold.nc mild.nc warm.nc --format pdf --theme slides",
+    "atmosbox compare dry.nc moist.nc --out both.html",
 )
-@guarded
 def compare(
     files: Annotated[list[str], typer.Argument(metavar="FILE FILE...", help="Two to six runs.")],
     out: Annotated[str | None, out_option("The figure.  [default: beside FILE, named after all files]")] = None,
     format: Annotated[
-        Comparison | None,
+        Literal["png", "svg", "pdf", "html"] | None,
         typer.Option(
             help="The format, where the name of the figure does not say it; html is a page of two boxes with one clock."
         ),
     ] = None,
-    theme: Annotated[Theme, typer.Option(help="For a page or for a screen.")] = Theme.notes,
+    theme: Theme = "notes",
     force: Force = False,
     as_json: Json = False,
     quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
@@ -63,7 +50,7 @@ def compare(
     from atmosbox.file.netcdf import read
     from atmosbox.file.output_path import check_writable
 
-    kind = Path(out or "").suffix[1:].lower() if format is None else format.value
+    kind = format or Path(out or "").suffix[1:].lower()
     path = beside(files, kind or "png") if out is None else Path(out)
     datasets = [read(file) for file in files]
 
@@ -80,7 +67,7 @@ def compare(
         check_writable(path, force)
         path = save_page(datasets, path, force=force)
     else:
-        path = save(datasets, names, path, format and format.value, theme=theme.value, force=force)
+        path = save(datasets, names, path, format, theme=theme, force=force)
     if names.same:
         tell(f"note: {' and '.join(files)} hold the same run")
     if as_json:

@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Force, RunFile, Verbose, out_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.terminal import guarded, say
+from atmosbox.cli.terminal import say
 from atmosbox.text.progress import progress
 
-
-class Exported(StrEnum):
-    """The formats of other programs."""
-
-    extxyz = "extxyz"
-    gsd = "gsd"
-    csv = "csv"
+Exported = Literal["extxyz", "gsd", "csv"]
+"""The formats of other programs."""
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox export temperature.nc --format extxyz",
-        "atmosbox export temperature.nc -o box.gsd",
-        "atmosbox export lifting-dry.nc --format csv",
-    )
+@command(
+    "atmosbox export temperature.nc --format extxyz",
+    "atmosbox export temperature.nc -o box.gsd",
+    "atmosbox export lifting-dry.nc --format csv",
 )
-@guarded
 def export(
     file: RunFile,
     out: Annotated[str | None, out_option("The file.  [default: beside FILE, by its name]")] = None,
@@ -52,10 +43,8 @@ def export(
     from atmosbox.file.output_path import check_writable, named, write_whole
 
     dataset = read(file)
-    wanted = None if format is None else format.value
-    path = beside([file], wanted or "extxyz") if out is None else Path(out)
-    kinds = tuple(each.value for each in Exported)
-    if wanted == "csv" or (wanted is None and path.suffix.lower() == ".csv"):
+    path = beside([file], format or "extxyz") if out is None else Path(out)
+    if format == "csv" or (format is None and path.suffix.lower() == ".csv"):
         from atmosbox.file.spreadsheet import tables
 
         stem = path.with_suffix("") if path.suffix.lower() == ".csv" else path
@@ -65,7 +54,7 @@ def export(
             write_whole(place, content)
         say("\n".join(map(str, paths)))
         return
-    place, kind = named(path, wanted, kinds, force=force, what="box")
+    place, kind = named(path, format, get_args(Exported), force=force, what="box")
     with progress("export", quiet=False) as show:
         show(0.0, "writing the molecules")
         from atmosbox.file.trajectory import extended_xyz, gsd_file

@@ -5,14 +5,13 @@ from __future__ import annotations
 import shlex
 from typing import Annotated
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, SceneName, Verbose
-from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, width
+from atmosbox.cli.terminal import prints_to_stderr, say, say_json, width
 from atmosbox.text.table import story, table
 
 
-@app.command(epilog=examples("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json"))
-@guarded
+@command("atmosbox info lifting-dry", "atmosbox info ./my_scene.py --json")
 def info(scene: Annotated[str, SceneName], as_json: Json = False, verbose: Verbose = False) -> None:
     """Show what a scene is about and what may be set."""
     from atmosbox.simulation import runner

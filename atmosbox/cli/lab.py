@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import (
     Accuracy,
-    Colours,
     Config,
     Engine,
     Force,
@@ -17,24 +16,20 @@ from atmosbox.cli.option import (
     SceneName,
     Seed,
     Source,
-    Tongue,
     Values,
     Verbose,
     out_option,
 )
 from atmosbox.cli.output_name import for_scene
 from atmosbox.cli.request import gather
-from atmosbox.cli.terminal import guarded, prints_to_stderr, say
+from atmosbox.cli.terminal import prints_to_stderr, say
 from atmosbox.text.progress import progress
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox lab temperature",
-        "atmosbox lab temperature --set molecules=800 --out warm.html",
-    )
+@command(
+    "atmosbox lab temperature",
+    "atmosbox lab temperature --set molecules=800 --out warm.html",
 )
-@guarded
 def lab(
     scene: Annotated[str | None, SceneName] = None,
     values: Values = None,
@@ -44,8 +39,8 @@ def lab(
     engine: Engine = None,
     accuracy: Accuracy = None,
     out: Annotated[str | None, out_option("The page.  [default: SCENE-lab.html in this folder]")] = None,
-    theme: PageTheme = Colours.auto,
-    language: Language = Tongue.auto,
+    theme: PageTheme = "auto",
+    language: Language = "auto",
     force: Force = False,
     verbose: Verbose = False,
 ) -> None:
@@ -69,5 +64,5 @@ def lab(
         from atmosbox.lab import save_lab
 
         with prints_to_stderr():
-            written = save_lab(prepared, path, theme=theme.value, language=language.value, force=force, progress=show)
+            written = save_lab(prepared, path, theme=theme, language=language, force=force, progress=show)
     say(str(written))

@@ -6,14 +6,13 @@ from typing import Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, Verbose
-from atmosbox.cli.terminal import guarded, say, say_json, width
+from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.text.table import table
 
 
-@app.command("list", epilog=examples("atmosbox list", "atmosbox list --names", "atmosbox list --json"))
-@guarded
+@command("atmosbox list", "atmosbox list --names", "atmosbox list --json", name="list")
 def list_scenes(
     names: Annotated[bool, typer.Option("--names", help="Print the names alone, one in a line.")] = False,
     as_json: Json = False,

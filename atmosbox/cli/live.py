@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import (
     Accuracy,
     Config,
@@ -23,7 +23,6 @@ from atmosbox.cli.option import (
     SceneName,
     Seed,
     Source,
-    Tongue,
     Values,
     Verbose,
     out_option,
@@ -31,19 +30,16 @@ from atmosbox.cli.option import (
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.request import gather
-from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, guarded, prints_to_stderr, say, tell
+from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
 from atmosbox.errors import SettingError
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox live temperature",
-        "atmosbox live lifting-dry --set molecules=2000 --no-browser",
-        "atmosbox live temperature --language de",
-        "atmosbox live atmosphere --port 9000 --out column.nc",
-    )
+@command(
+    "atmosbox live temperature",
+    "atmosbox live lifting-dry --set molecules=2000 --no-browser",
+    "atmosbox live temperature --language de",
+    "atmosbox live atmosphere --port 9000 --out column.nc",
 )
-@guarded
 def live(
     ctx: typer.Context,
     scene: Annotated[str | None, SceneName] = None,
@@ -72,7 +68,7 @@ def live(
             "--no-token", help="Let in anybody who can reach the port, also without the token of the address."
         ),
     ] = False,
-    language: Language = Tongue.auto,
+    language: Language = "auto",
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only say where the page is.")] = False,
     quiet: Annotated[bool, quiet_option("Print the address, no more.")] = False,
     verbose: Verbose = False,
@@ -119,7 +115,7 @@ def live(
             tell("Ctrl-C ends it; what is being recorded is saved")
 
     token = None if no_token else secrets.token_urlsafe(16)
-    ended, left = run(session, live_page(language=language.value), host=host, port=number, token=token, opened=opened)
+    ended, left = run(session, live_page(language=language), host=host, port=number, token=token, opened=opened)
     for sentence in left:
         tell(sentence)
     raise typer.Exit(TERMINATED if ended == signal.SIGTERM else INTERRUPTED)

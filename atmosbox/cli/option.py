@@ -1,7 +1,6 @@
 """The options and arguments that several commands share."""
 
-from enum import StrEnum
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -13,12 +12,12 @@ __all__ = [
     "Format",
     "Json",
     "Language",
+    "PageTheme",
     "RunFile",
     "SceneName",
     "Seed",
     "Source",
     "Theme",
-    "Tongue",
     "Values",
     "ValuesOfAll",
     "Verbose",
@@ -27,36 +26,10 @@ __all__ = [
 ]
 
 
-class Tongue(StrEnum):
-    """The languages of a page."""
-
-    auto = "auto"
-    en = "en"
-    de = "de"
-    es = "es"
-
-
-class Format(StrEnum):
-    """The formats of a figure."""
-
-    png = "png"
-    svg = "svg"
-    pdf = "pdf"
-
-
-class Theme(StrEnum):
-    """What a figure is for: a page, or a screen."""
-
-    notes = "notes"
-    slides = "slides"
-
-
-class Colours(StrEnum):
-    """The colours of a page."""
-
-    auto = "auto"
-    light = "light"
-    dark = "dark"
+Format = Literal["png", "svg", "pdf"]
+"""The formats of a figure."""
+Theme = Annotated[Literal["notes", "slides"], typer.Option(help="For a page or for a screen.")]
+"""What a figure is for."""
 
 
 def _completed(incomplete: str) -> list[str]:
@@ -114,9 +87,12 @@ Accuracy = Annotated[
     ),
 ]
 Language = Annotated[
-    Tongue, typer.Option("--language", help="Words of the page; auto takes the reader's browser's language.")
+    Literal["auto", "en", "de", "es"],
+    typer.Option("--language", help="Words of the page; auto takes the reader's browser's language."),
 ]
-PageTheme = Annotated[Colours, typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")]
+PageTheme = Annotated[
+    Literal["auto", "light", "dark"], typer.Option(help="Light or dark; auto takes what the reader's computer prefers.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Verbose = Annotated[bool, typer.Option("--verbose", help="Say more, with the traceback of a bug.")]
 AllPanels = Annotated[

@@ -7,28 +7,25 @@ from typing import Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import AllPanels, Force, Format, RunFile, Theme, Verbose, out_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.terminal import guarded, say
+from atmosbox.cli.terminal import say
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox plot lifting-dry.nc",
-        "atmosbox plot lifting-dry.nc --format pdf --theme slides",
-        "atmosbox plot lifting-dry.nc --out figures/lift.svg --force",
-        "atmosbox plot lifting-dry.nc --with-box",
-    )
+@command(
+    "atmosbox plot lifting-dry.nc",
+    "atmosbox plot lifting-dry.nc --format pdf --theme slides",
+    "atmosbox plot lifting-dry.nc --out figures/lift.svg --force",
+    "atmosbox plot lifting-dry.nc --with-box",
 )
-@guarded
 def plot(
     file: RunFile,
     out: Annotated[str | None, out_option("The figure.  [default: beside FILE, by its name]")] = None,
     format: Annotated[
         Format | None, typer.Option(help="The format, where the name of the figure does not say it.")
     ] = None,
-    theme: Annotated[Theme, typer.Option(help="For a page or for a screen.")] = Theme.notes,
+    theme: Theme = "notes",
     with_box: Annotated[
         bool,
         typer.Option(
@@ -47,9 +44,8 @@ def plot(
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
-    path = beside([file], "png" if format is None else format.value) if out is None else Path(out)
+    path = beside([file], format or "png") if out is None else Path(out)
 
     from atmosbox.plot import save
 
-    kind = format and format.value
-    say(str(save(dataset, path, kind, theme=theme.value, force=force, with_box=with_box, all_panels=all_panels)))
+    say(str(save(dataset, path, format, theme=theme, force=force, with_box=with_box, all_panels=all_panels)))

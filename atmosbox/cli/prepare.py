@@ -9,9 +9,9 @@ from typing import Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, Verbose, quiet_option
-from atmosbox.cli.terminal import guarded, say, say_json, width
+from atmosbox.cli.terminal import say, say_json, width
 from atmosbox.errors import AtmosboxError, EngineError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
@@ -19,8 +19,7 @@ from atmosbox.text.table import table
 Work = tuple[str, str]
 
 
-@app.command("prepare", epilog=examples("atmosbox prepare", "atmosbox prepare lifting-dry", "atmosbox prepare --all"))
-@guarded
+@command("atmosbox prepare", "atmosbox prepare lifting-dry", "atmosbox prepare --all")
 def prepare(
     scenes: Annotated[
         list[str] | None,

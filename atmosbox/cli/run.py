@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import (
     Accuracy,
     Config,
@@ -24,7 +24,7 @@ from atmosbox.cli.option import (
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
 from atmosbox.cli.request import gather
-from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, tell, width
+from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import table
@@ -34,17 +34,14 @@ if TYPE_CHECKING:
     from atmosbox.simulation.runner import Interrupted, Outcome, Prepared
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox run lifting-dry",
-        "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
-        "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
-        "atmosbox run --config lift.toml --dry-run",
-        "atmosbox run temperature --accuracy sketch",
-        "atmosbox run --resume lifting-dry.part.nc",
-    )
+@command(
+    "atmosbox run lifting-dry",
+    "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
+    "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
+    "atmosbox run --config lift.toml --dry-run",
+    "atmosbox run temperature --accuracy sketch",
+    "atmosbox run --resume lifting-dry.part.nc",
 )
-@guarded
 def run(
     ctx: typer.Context,
     scene: Annotated[str | None, SceneName] = None,

@@ -2,47 +2,29 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Engine, Force, SceneName, Seed, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import for_scene
 from atmosbox.cli.request import gather
-from atmosbox.cli.terminal import guarded, prints_to_stderr, say, tell
+from atmosbox.cli.terminal import prints_to_stderr, say, tell
 from atmosbox.text.progress import progress
 
 if TYPE_CHECKING:
     from atmosbox.sheet.worksheet import Worksheet
 
 
-class SheetFormat(StrEnum):
-    """The formats of a sheet."""
-
-    pdf = "pdf"
-    md = "md"
-
-
-class Paper(StrEnum):
-    """The paper sizes of a sheet."""
-
-    a4 = "a4"
-    letter = "letter"
-
-
-@app.command(
-    epilog=examples(
-        "atmosbox sheet lifting-dry",
-        "atmosbox sheet lifting-dry --seed 7 --answers",
-        "atmosbox sheet temperature --set temperature=20degC --paper letter --out class.pdf",
-        "atmosbox sheet temperature --lab",
-        "atmosbox sheet ./my_scene.py --format md",
-    )
+@command(
+    "atmosbox sheet lifting-dry",
+    "atmosbox sheet lifting-dry --seed 7 --answers",
+    "atmosbox sheet temperature --set temperature=20degC --paper letter --out class.pdf",
+    "atmosbox sheet temperature --lab",
+    "atmosbox sheet ./my_scene.py --format md",
 )
-@guarded
 def sheet(
     scene: Annotated[str, SceneName],
     answers: Annotated[
@@ -54,9 +36,9 @@ def sheet(
     values: ValuesOfAll = None,
     seed: Seed = None,
     engine: Engine = None,
-    paper: Annotated[Paper, typer.Option(help="The size of the pages.")] = Paper.a4,
+    paper: Annotated[Literal["a4", "letter"], typer.Option(help="The size of the pages.")] = "a4",
     format: Annotated[
-        SheetFormat | None, typer.Option(help="The format, where the name of the file does not say it.")
+        Literal["pdf", "md"] | None, typer.Option(help="The format, where the name of the file does not say it.")
     ] = None,
     out: Annotated[
         str | None, out_option("The sheet.  [default: SCENE-sheet.pdf, or SCENE-answers.pdf, in this folder]")
@@ -75,9 +57,8 @@ def sheet(
     asked = gather(scene, values or (), seed=seed, engine=engine)
     if lab:
         asked = asked.for_a_page()
-    kind = "pdf" if format is None else format.value
-    path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{kind}") if out is None else Path(out)
-    path = sheets.check(path, format and format.value, paper=paper.value, force=force)
+    path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{format or 'pdf'}") if out is None else Path(out)
+    path = sheets.check(path, format, paper=paper, force=force)
     with prints_to_stderr(), progress(scene, quiet=quiet) as show:
         made = sheets.worksheet(
             asked.scene, asked.settings, engine=asked.engine, answers=answers, lab=lab, progress=show
@@ -86,7 +67,7 @@ def sheet(
     if not quiet:
         for sentence in made.disagreements:
             tell(f"warning: {sentence}")
-    say(str(sheets.save(made, path, paper=paper.value, force=force)))
+    say(str(sheets.save(made, path, paper=paper, force=force)))
     for page in pages:
         say(str(page))
 

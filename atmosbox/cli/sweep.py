@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import (
     Accuracy,
     Engine,
@@ -21,7 +21,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.terminal import guarded, prints_to_stderr, say, say_json, tell, width
+from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
@@ -35,14 +35,11 @@ _MOST_NAMED = 5
 """Largest number of failures that are printed one by one."""
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox sweep condensation --vary temperature=-10degC:40degC:6 --members 8",
-        "atmosbox sweep temperature --vary molecules=50:5000:5log --vary start=equal,maxwell",
-        "atmosbox sweep lifting-dry --vary ascent=50,100,200,400 --scheduler tcp://10.0.0.1:8786",
-    )
+@command(
+    "atmosbox sweep condensation --vary temperature=-10degC:40degC:6 --members 8",
+    "atmosbox sweep temperature --vary molecules=50:5000:5log --vary start=equal,maxwell",
+    "atmosbox sweep lifting-dry --vary ascent=50,100,200,400 --scheduler tcp://10.0.0.1:8786",
 )
-@guarded
 def sweep(
     ctx: typer.Context,
     scene: Annotated[str, SceneName],

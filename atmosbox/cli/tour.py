@@ -12,9 +12,9 @@ from typing import Annotated, NamedTuple
 
 import typer
 
-from atmosbox.cli.application import app, examples
+from atmosbox.cli.application import command
 from atmosbox.cli.option import Verbose
-from atmosbox.cli.terminal import guarded, say, tell
+from atmosbox.cli.terminal import say, tell
 from atmosbox.errors import AtmosboxError, FileError, SettingError
 
 FOLDER = "atmosbox-tour"
@@ -103,8 +103,7 @@ What is left needs your hands: atmosbox live temperature lets a class change a b
 is import atmosbox as ab; run = ab.run("lifting-dry"); ab.plot(run)."""
 
 
-@app.command(epilog=examples("atmosbox tour", "atmosbox tour --yes"))
-@guarded
+@command("atmosbox tour", "atmosbox tour --yes")
 def tour(
     yes: Annotated[bool, typer.Option("--yes", "-y", help="Go through without waiting for Enter.")] = False,
     out: Annotated[

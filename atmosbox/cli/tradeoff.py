@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples, typed
+from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import AllPanels, Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
 from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.terminal import INTERRUPTED, guarded, say, say_json, tell, width
+from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
 from atmosbox.text.table import measurement, number, table, wrapped
@@ -23,13 +23,10 @@ if TYPE_CHECKING:
 _COLUMNS = ("wall_seconds", "engine_seconds", "cost", "members", "energy_drift", "ledger", "missed", "escaped")
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox tradeoff lifting-dry",
-        "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
-    )
+@command(
+    "atmosbox tradeoff lifting-dry",
+    "atmosbox tradeoff atmosphere --budget 5min --set height=15km --out trade.nc",
 )
-@guarded
 def tradeoff(
     ctx: typer.Context,
     scene: Annotated[str, SceneName],

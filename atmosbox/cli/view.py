@@ -7,32 +7,29 @@ from typing import Annotated
 
 import typer
 
-from atmosbox.cli.application import app, examples
-from atmosbox.cli.option import Colours, Force, Language, PageTheme, Tongue, Verbose, out_option
+from atmosbox.cli.application import command
+from atmosbox.cli.option import Force, Language, PageTheme, Verbose, out_option
 from atmosbox.cli.output_name import beside
-from atmosbox.cli.terminal import guarded, say
+from atmosbox.cli.terminal import say
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
 
 MOST = 2
 
 
-@app.command(
-    epilog=examples(
-        "atmosbox run temperature --save-molecules",
-        "atmosbox view temperature.nc",
-        "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
-        "atmosbox view temperature.nc --language es --force",
-    )
+@command(
+    "atmosbox run temperature --save-molecules",
+    "atmosbox view temperature.nc",
+    "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
+    "atmosbox view temperature.nc --language es --force",
 )
-@guarded
 def view(
     files: Annotated[
         list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two, made with --save-molecules.")
     ],
     out: Annotated[str | None, out_option("The page.  [default: beside FILE, by its name]")] = None,
-    theme: PageTheme = Colours.auto,
-    language: Language = Tongue.auto,
+    theme: PageTheme = "auto",
+    language: Language = "auto",
     force: Force = False,
     verbose: Verbose = False,
 ) -> None:
@@ -54,5 +51,5 @@ def view(
         show(0.4, "writing the page")
         from atmosbox.page import save
 
-        written = save(runs, path, theme=theme.value, language=language.value, force=force)
+        written = save(runs, path, theme=theme, language=language, force=force)
     say(str(written))
