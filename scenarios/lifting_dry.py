@@ -89,15 +89,25 @@ def _ascent(settings: Settings) -> law.Ascent:
     freedom = 5 if settings.rotation else 3
     _, density, sides, _ = _start(settings)
     height = float(sides[2]) / float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-    environment = _environment(settings, 1.0)
-    route = tuple(environment.pressure(share) for share in np.linspace(0.0, 1.0, 400))
-    return law.Ascent(route, settings.ascent, height, freedom, CLOSING)
+    return law.Ascent(tuple(_route(settings).tolist()), settings.ascent, height, freedom, CLOSING)
+
+
+def _top(settings: Settings) -> float:
+    """Return the height to which the parcel rises [m]."""
+    si = settings.si
+    return float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
+
+
+def _route(settings: Settings) -> np.ndarray:
+    """Return the pressure of the environment at equal intervals of time, from the ground to the top [Pa]."""
+    si = settings.si
+    height = _top(settings) * np.linspace(0.0, 1.0, 400)
+    return law.environment_pressure(height, si.temperature, si.pressure, si.lapse_rate)
 
 
 def _environment(settings: Settings, duration: float) -> Environment:
     """Return the environment of a parcel that climbs at constant speed for ``duration`` [s]."""
-    si = settings.si
-    top = float(law.height_of_pressure(si.top_pressure, si.temperature, si.pressure, si.lapse_rate))
+    si, top = settings.si, _top(settings)
     freedom = 5 if settings.rotation else 3
 
     def height(time: float) -> float:
@@ -127,10 +137,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         spin *= n / spin.sum()
     duration = settings.ascent * mean_free_time
     environment = _environment(settings, duration * scale.time)
-    times = np.linspace(0.0, duration, 400)
-    pressures = np.array([environment.pressure(t * scale.time) for t in times]) / scale.pressure
+    pressures = rounded(_route(settings) / scale.pressure)
+    times = np.linspace(0.0, duration, len(pressures))
     driver = FollowPressure(
-        list(times), list(rounded(pressures)), mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess
+        list(times), list(pressures), mean_free_time=mean_free_time, relaxation=CLOSING, excess=excess
     )
     parcel = engine.make(
         engine.scatter(length, np.ones(n), rng),

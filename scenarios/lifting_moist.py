@@ -85,16 +85,14 @@ def _top(settings: Settings) -> float:
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the ascent according to theory."""
     si = settings.si
+    heights = np.linspace(0.0, _top(settings), 400)
     return MoistAscent(
         molecules=settings.molecules,
         diameter=si.diameter,
         temperature=si.temperature,
         pressure=si.pressure,
         vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
-        route=tuple(
-            float(law.environment_pressure(height, si.temperature, si.pressure, si.lapse_rate))
-            for height in np.linspace(0.0, _top(settings), 400)
-        ),
+        route=tuple(law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate).tolist()),
         length=settings.ascent,
         area=settings.area,
         most_liquid=si.cloud_water if settings.rain else math.inf,

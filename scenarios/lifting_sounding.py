@@ -112,7 +112,7 @@ def _ascent(settings: Settings) -> MoistAscent:
         temperature=float(found.temperature[0]),
         pressure=ground,
         vapour_pressure=float(law.saturation_vapor_pressure(found.dewpoint[0])),
-        route=tuple(float(p) for p in np.geomspace(ground, top, 400)),
+        route=tuple(np.geomspace(ground, top, 400).tolist()),
         length=settings.ascent,
         area=settings.area,
         most_liquid=settings.si.cloud_water if settings.rain else math.inf,

@@ -94,16 +94,14 @@ def _height(settings: Settings, share: float) -> float:
 def _ascent(settings: Settings) -> MoistAscent:
     """Return the journey according to theory."""
     si = settings.si
+    heights = [_height(settings, share) for share in np.linspace(0.0, 1.0, 400)]
     return MoistAscent(
         molecules=settings.molecules,
         diameter=si.diameter,
         temperature=si.temperature,
         pressure=si.pressure,
         vapour_pressure=float(law.saturation_vapor_pressure(si.dewpoint)),
-        route=tuple(
-            float(law.environment_pressure(_height(settings, share), si.temperature, si.pressure, si.lapse_rate))
-            for share in np.linspace(0.0, 1.0, 400)
-        ),
+        route=tuple(law.environment_pressure(heights, si.temperature, si.pressure, si.lapse_rate).tolist()),
         length=settings.travel,
         area=settings.area,
         most_liquid=si.cloud_water if settings.rain else math.inf,
