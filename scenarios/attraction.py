@@ -52,6 +52,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import Knob
+from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import AVOGADRO, BOLTZMANN
 
@@ -431,39 +432,25 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the drop, the energy, the temperature and the pressure; for a slab its profile."""
-    time = "elapsed_time"
-    grown = Panel(
-        "line",
+    grown = over_time(
         "A drop forms in the vapour" if settings.start == "vapour" else "Drop and vapour",
-        (
-            Line(time, "largest_drop_molecule_count", "largest drop"),
-            Line(time, "vapor_molecule_count", "free vapour"),
-        ),
-        x_label="time",
-        y_label="molecules",
-        headlines=("last_largest_drop_molecule_count",) if settings.start != "slab" else (),
+        {"largest_drop_molecule_count": "largest drop", "vapor_molecule_count": "free vapour"},
+        "molecules",
+        headline="last_largest_drop_molecule_count" if settings.start != "slab" else "",
     )
-    energies = Panel(
-        "line",
+    energies = over_time(
         "What the wells give becomes motion",
-        (
-            Line(time, "kinetic_energy", "kinetic"),
-            Line(time, "attraction_energy", "of attraction"),
-            Line(time, "molecular_energy", "both"),
-        ),
-        x_label="time",
-        y_label="energy",
-        y_unit="zJ",
+        {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"},
+        "energy",
+        "zJ",
     )
-    bath = (Line(time, "air_temperature_theory", "bath", "theory"),) if settings.bath != "none" else ()
-    warm = Panel(
-        "line",
+    warm = over_time(
         "Condensation warms" if settings.start == "vapour" else "Temperature",
-        (Line(time, "air_temperature", "molecules"), *bath),
-        x_label="time",
-        y_label="temperature",
-        y_unit="K",
-        headlines=("mean_temperature",) if settings.start == "slab" and settings.bath != "none" else (),
+        {"air_temperature": "molecules"},
+        "temperature",
+        "K",
+        theory="bath" if settings.bath != "none" else "",
+        headline="mean_temperature" if settings.start == "slab" and settings.bath != "none" else "",
     )
     if settings.start in ("slab", "pool"):
         profile = Panel(
@@ -476,30 +463,22 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             x_scale="log",
             headlines=("liquid_density", "vapor_density") if settings.start == "slab" else (),
         )
-        pressure = Panel(
-            "line",
+        pressure = over_time(
             "Its vapour pressure, which was not put in",
-            (
-                Line(time, "normal_pressure", "across the surface"),
-                Line(time, "normal_pressure_theory", "published simulations", "theory"),
-            ),
-            x_label="time",
-            y_label="pressure",
-            y_unit="bar",
-            averages=30,
-            headlines=("vapor_pressure",),
+            {"normal_pressure": "across the surface"},
+            "pressure",
+            "bar",
+            theory="published simulations",
+            parts=30,
+            headline="vapor_pressure",
         )
         return (profile, pressure, warm) if settings.start == "slab" else (profile, grown, energies, warm)
-    gas = (
-        () if settings.air else (Line(time, "virial_pressure_theory", "free vapour: gas law with B2 and B3", "theory"),)
-    )
-    pressure = Panel(
-        "line",
+    pressure = over_time(
         "Molecules in a drop hardly press",
-        (Line(time, "virial_pressure", "molecules"), *gas),
-        x_label="time",
-        y_label="pressure",
-        y_unit="bar",
-        averages=50,
+        {"virial_pressure": "molecules"},
+        "pressure",
+        "bar",
+        theory="" if settings.air else "free vapour: gas law with B2 and B3",
+        parts=50,
     )
     return (grown, energies, warm, pressure)

@@ -37,10 +37,11 @@ from atmosbox.scene import (
     setting,
 )
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.exchange import MoistBox, history
+from atmosbox.scene.exchange import MoistBox
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import moist_air, nuclei_heat_capacity, water
+from atmosbox.scene.panels import over_time
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -244,30 +245,33 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of vapour pressure, both rates and water against time, and of the drops if there are any."""
-    grown = history("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", parts=0)
+    grown = over_time("The drops grow and merge", {"largest_drop_radius": "the largest drop"}, "radius", "nm", log=True)
     return (
-        history(
+        over_time(
             "Vapour condenses until saturation",
             {"water_vapor_partial_pressure": "vapour"},
             "vapour pressure",
             "hPa",
+            log=True,
             parts=PARTS,
             headline="mean_water_vapor_partial_pressure",
             theory="saturation, put in",
         ),
-        history(
+        over_time(
             "In equilibrium both rates are equal",
             {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
             "molecules per time",
             "ns-1",
+            log=True,
             parts=PARTS,
             headline="mean_condensation_rate",
             theory="theory",
         ),
-        history(
+        over_time(
             "Water: vapour and droplets",
             {"vapor_molecule_count": "vapour", "liquid_molecule_count": "droplets"},
             "molecules",
+            log=True,
             parts=PARTS,
             headline="mean_relative_humidity",
         ),

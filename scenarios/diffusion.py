@@ -41,6 +41,7 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.instruments import MOMENTS
+from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -336,9 +337,19 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the share across the box at three moments, the decay of the slowest mode, and the entropy."""
     shares = {"early": "τ/10", "middle": "τ/2", "late": "2τ"}
     return (
-        _over_time("The difference decays", "mixing_amplitude", "slowest mode", "difference", "diffusion_coefficient"),
-        _over_time(
-            "Mixing makes entropy", "mixing_entropy", "counted", "entropy / N k ln 2", "entropy_after_one_mixing_time"
+        over_time(
+            "The difference decays",
+            {"mixing_amplitude": "slowest mode"},
+            "difference",
+            theory="theory",
+            headline="diffusion_coefficient",
+        ),
+        over_time(
+            "Mixing makes entropy",
+            {"mixing_entropy": "counted"},
+            "entropy / N k ln 2",
+            theory="theory",
+            headline="entropy_after_one_mixing_time",
         ),
         Panel(
             "line",
@@ -357,9 +368,3 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="percent",
         ),
     )
-
-
-def _over_time(title: str, name: str, label: str, y_label: str, headline: str) -> Panel:
-    """Return a panel of one variable against time, with its theory."""
-    lines = Line("elapsed_time", name, label), Line("elapsed_time", f"{name}_theory", "theory", "theory")
-    return Panel("line", title, lines, x_label="time", y_label=y_label, headlines=(headline,))

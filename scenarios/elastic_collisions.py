@@ -32,6 +32,7 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT
 from atmosbox.scene.knob import warmed_walls
+from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -196,29 +197,20 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of the discs, of the energies, and of the conserved quantities."""
     unlike = settings.mass_ratio > 1.0
+    light, heavy = ("light half", "heavy half") if unlike else ("one half", "the other")
     return (
         Panel("discs", "The discs at the end", x_unit="m"),
-        Panel(
-            "line",
+        over_time(
             "Light and heavy: the same energy" if unlike else "Discs alike: the same energy",
-            (
-                Line("elapsed_time", "running_energy_light", "light half" if unlike else "one half"),
-                Line("elapsed_time", "running_energy_heavy", "heavy half" if unlike else "the other"),
-                Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),
-            ),
-            x_label="time",
-            y_label="mean energy so\u00a0far",
-            x_scale="log",
-            headlines=("energy_of_light_discs",),
+            {"running_energy_light": light, "running_energy_heavy": heavy},
+            "mean energy so\u00a0far",
+            more=(Line("elapsed_time", "kinetic_energy_light_theory", "mean of all", "theory"),),
+            log=True,
+            headline="energy_of_light_discs",
         ),
-        Panel(
-            "line",
+        over_time(
             "Energy and momentum are conserved",
-            (
-                Line("elapsed_time", "energy_change", "energy"),
-                Line("elapsed_time", "momentum_residual", "momentum, with walls"),
-            ),
-            x_label="time",
-            y_label="relative change",
+            {"energy_change": "energy", "momentum_residual": "momentum, with walls"},
+            "relative change",
         ),
     )

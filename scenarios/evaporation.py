@@ -40,10 +40,11 @@ from atmosbox.scene import (
     setting,
 )
 from atmosbox.scene.engines import EXACT, suited, used
-from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, history, temperature_of_those_that_left
+from atmosbox.scene.exchange import AirOverPool, energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import open_pool, warmed_walls
 from atmosbox.scene.moisture import water
+from atmosbox.scene.panels import over_time
 from atmosbox.scene.piston import moist_parcel
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -298,29 +299,32 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of temperatures, vapour pressure and both rates against time, and of the energies."""
     leave = "leaving_energy_probability_density"
     return (
-        history(
+        over_time(
             "The pool cools, and then the air",
             {"gas_temperature": "air", "liquid_temperature": "pool"},
             "temperature",
             "degC",
+            log=True,
             parts=PARTS,
             headline="mean_liquid_temperature",
             theory="theory",
         ),
-        history(
+        over_time(
             "Vapour pressure reaches saturation",
             {"water_vapor_partial_pressure": "vapour", "liquid_saturation_vapor_pressure": "saturation, put in"},
             "vapour pressure",
             "hPa",
+            log=True,
             parts=PARTS,
             headline="final_humidity",
             theory="theory",
         ),
-        history(
+        over_time(
             "In equilibrium both rates are equal",
             {"condensation_rate": "condensation", "evaporation_rate": "evaporation"},
             "molecules per time",
             "ns-1",
+            log=True,
             parts=PARTS,
             headline="mean_evaporation_rate",
             theory="theory",

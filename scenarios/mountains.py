@@ -32,6 +32,7 @@ from atmosbox.scene.ascent import (
     temperature_covariance,
 )
 from atmosbox.scene.engines import EXACT, suited, used
+from atmosbox.scene.panels import over_time
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,18 +206,13 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
             y_unit="km",
             headlines=("arrival_temperature",),
         ),
-        Panel(
-            "line",
+        over_time(
             "Vapour, cloud and rain",
-            (
-                Line("elapsed_time", "humidity_mixing_ratio", "vapour"),
-                Line("elapsed_time", "cloud_liquid_water_mixing_ratio", "cloud"),
-                Line("elapsed_time", "humidity_mixing_ratio_theory", "vapour, theory", "theory"),
-                *(rain if settings.rain else ()),
-            ),
-            x_label="time",
-            y_label="mixing ratio",
-            y_unit="g kg-1",
-            headlines=("rain",) if settings.rain else (),
+            {"humidity_mixing_ratio": "vapour", "cloud_liquid_water_mixing_ratio": "cloud"},
+            "mixing ratio",
+            "g kg-1",
+            theory="vapour, theory",
+            more=rain if settings.rain else (),
+            headline="rain" if settings.rain else "",
         ),
     )

@@ -44,6 +44,7 @@ from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import DropGrowth, DropKind, MoistBox
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.moisture import moist_air, water
+from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN
 
@@ -338,32 +339,25 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of radii and humidity against time, and of the humidity over drops of any radius."""
     there = [name for name, count in (("salted", settings.salted), ("pure", settings.pure)) if count]
     called = {"salted": "with salt", "pure": "pure water"}
-    grow = [Line("elapsed_time", f"{name}_drop_radius", called[name]) for name in there]
-    grow += [Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there]
     law_of = {"salted": "with salt: Köhler", "pure": "pure water: Kelvin"}
     over = [Line("radius", f"{name}_drop_humidity", law_of[name], "theory") for name in there]
     over += [Line(f"{name}_drop_radius", "saturation_ratio", called[name]) for name in there]
     return (
-        Panel(
-            "line",
+        over_time(
             "Drops with salt grow, others vanish" if len(there) > 1 else "Drops grow or vanish",
-            tuple(grow),
-            x_label="time",
-            y_label="radius",
-            y_unit="nm",
-            headlines=("salted_drop_radius_at_the_end",) if settings.salted else (),
+            {f"{name}_drop_radius": called[name] for name in there},
+            "radius",
+            "nm",
+            more=tuple(Line("elapsed_time", f"{name}_drop_radius_theory", "theory", "theory") for name in there),
+            headline="salted_drop_radius_at_the_end" if settings.salted else "",
         ),
-        Panel(
-            "line",
+        over_time(
             "The humidity is the same for all",
-            (
-                Line("elapsed_time", "saturation_ratio", "air"),
-                Line("elapsed_time", "saturation_ratio_theory", "theory", "theory"),
-            ),
-            x_label="time",
-            y_label="relative humidity",
-            y_unit="percent",
-            headlines=("humidity_over_drops",),
+            {"saturation_ratio": "air"},
+            "relative humidity",
+            "percent",
+            theory="theory",
+            headline="humidity_over_drops",
         ),
         Panel(
             "line",

@@ -34,6 +34,7 @@ from atmosbox.scene import (
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
+from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.statistics import overlapping_average
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
@@ -244,40 +245,28 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
 def panels(settings: Settings) -> tuple[Panel, ...]:
     """Return the panels of temperature and pressure against time, and of the speeds."""
     warming = settings.start_temperature <= settings.temperature
+    scatter = "air_temperature_noise"
+    walls = Line("elapsed_time", "air_temperature_theory", "walls ± expected scatter", "theory", error=scatter)
     return (
-        Panel(
-            "line",
+        over_time(
             "Cold molecules between warm walls" if warming else "Hot molecules between cooler walls",
-            (
-                Line("elapsed_time", "air_temperature", "molecules"),
-                Line(
-                    "elapsed_time",
-                    "air_temperature_theory",
-                    "walls ± expected scatter",
-                    "theory",
-                    error="air_temperature_noise",
-                ),
-            ),
-            x_label="time",
-            y_label="temperature",
-            y_unit="degC",
-            x_scale="log",
-            averages=60,
-            headlines=("mean_temperature",),
+            {"air_temperature": "molecules"},
+            "temperature",
+            "degC",
+            more=(walls,),
+            log=True,
+            parts=60,
+            headline="mean_temperature",
         ),
-        Panel(
-            "line",
+        over_time(
             "Their impacts are the pressure",
-            (
-                Line("elapsed_time", "air_pressure", "six walls"),
-                Line("elapsed_time", "air_pressure_theory", "n k T Z", "theory"),
-            ),
-            x_label="time",
-            y_label="pressure",
-            y_unit="hPa",
-            x_scale="log",
-            averages=60,
-            headlines=("mean_pressure",),
+            {"air_pressure": "six walls"},
+            "pressure",
+            "hPa",
+            theory="n k T Z",
+            log=True,
+            parts=60,
+            headline="mean_pressure",
         ),
         Panel(
             "histogram",

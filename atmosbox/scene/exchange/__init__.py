@@ -4,7 +4,6 @@ from atmosbox.scene.exchange.drop_growth import DropGrowth, DropKind
 from atmosbox.scene.exchange.emission import energy_of_those_that_leave, temperature_of_those_that_left
 from atmosbox.scene.exchange.moist_box import MoistBox
 from atmosbox.scene.exchange.pool import AirOverPool
-from atmosbox.scene.exchange.rates import history
 
 __all__ = [
     "AirOverPool",
@@ -12,6 +11,5 @@ __all__ = [
     "DropKind",
     "MoistBox",
     "energy_of_those_that_leave",
-    "history",
     "temperature_of_those_that_left",
 ]

@@ -6,6 +6,7 @@ afterwards, on a machine that has neither the scene nor the engine.
 """
 
 from atmosbox.scene.panels.line import ROLES, Line
+from atmosbox.scene.panels.over_time import over_time
 from atmosbox.scene.panels.panel import ATMOSPHERE_VARIABLES, DISC_VARIABLES, KINDS, SCALES, SKEWT_AXES, Panel
 from atmosbox.scene.panels.record import from_json, to_json
 
@@ -19,5 +20,6 @@ __all__ = [
     "Line",
     "Panel",
     "from_json",
+    "over_time",
     "to_json",
 ]
