@@ -506,16 +506,15 @@ def _lapse_rate(late: "xr.Dataset", column: Column, settings: Settings) -> Headl
     unknown = min(FOURIER * settings.knudsen * reached, 1.0) / (1.0 + settings.stirring)
     # and as a parcel keeps its centre-of-mass motion, three of its degrees of freedom do no work
     unknown += 3.0 / (settings.freedom * PARCEL * settings.molecules)
-    return Headline(
+    return Headline.of_mean(
         "lapse_rate_of_the_air",
-        float(measured.mean),
-        float(measured.standard_error),
+        "lapse rate of the stirred air",
+        measured,
         expected,
-        unknown * settings.lapse,
-        "molecules that fly so far conduct less than Fourier's law says, and few of them make a parcel",
         "K m-1",
         "K/km",
-        "lapse rate of the stirred air",
+        tolerance=unknown * settings.lapse,
+        reason="molecules that fly so far conduct less than Fourier's law says, and few of them make a parcel",
     )
 
 
@@ -560,27 +559,24 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     climbed = average_beside(late.potential_energy.values / per_metre, energy, memory)
     return (
         weight_headline,
-        Headline(
+        Headline.of_mean(
             "mean_temperature",
-            float(temperature.mean),
-            float(temperature.standard_error),
-            kT * column.scale.temperature,
-            2.0 / (column.dimensions * settings.molecules) * settings.temperature,
-            "a finite number of molecules",
-            "K",
-            "K",
             "temperature of the column",
+            temperature,
+            kT * column.scale.temperature,
+            "K",
+            tolerance=2.0 / (column.dimensions * settings.molecules) * settings.temperature,
+            reason="a finite number of molecules",
         ),
-        Headline(
+        Headline.of_mean(
             "mean_height",
-            float(climbed.mean),
-            float(climbed.standard_error),
+            "mean height of the molecules",
+            climbed,
             height,
-            0.001 * height,
-            "the theory takes the gas to be locally uniform",
             "m",
             "km",
-            "mean height of the molecules",
+            tolerance=0.001 * height,
+            reason="the theory takes the gas to be locally uniform",
         ),
     )
 

@@ -50,7 +50,6 @@ from atmosbox.scene import (
     setting,
 )
 from atmosbox.scene.engines import EXACT
-from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import Knob
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
@@ -318,16 +317,8 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         left_out = 4.0 * abs(third) * density**3 * theory
         reason = "further virial coefficients are left out"
         found.append(
-            Headline(
-                "mean_virial_pressure",
-                float(mean.mean),
-                float(mean.standard_error),
-                theory,
-                left_out,
-                reason,
-                "Pa",
-                "bar",
-                "pressure",
+            Headline.of_mean(
+                "mean_virial_pressure", "pressure", mean, theory, "Pa", "bar", tolerance=left_out, reason=reason
             )
         )
     return tuple(found)
@@ -412,21 +403,9 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     for name, (value, error), answer, allowed, reason, unit, si, shown, label in rows:
         expected = None if answer is None else answer * unit
         found.append(Headline(name, value * unit, error * unit, expected, allowed * unit, reason, si, shown, label))
-    temperature = block_average(late.air_temperature.values, BLOCKS)
     if settings.bath != "none":
-        found.append(
-            Headline(
-                "mean_temperature",
-                float(temperature.mean),
-                float(temperature.standard_error),
-                settings.temperature,
-                0.0,
-                CHANCE_ALONE,
-                "K",
-                "K",
-                "temperature",
-            )
-        )
+        temperature = block_average(late.air_temperature.values, BLOCKS)
+        found.append(Headline.of_mean("mean_temperature", "temperature", temperature, settings.temperature, "K"))
     return tuple(found)
 
 

@@ -149,48 +149,22 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     """Return the ratio of mean energies, and the largest errors of energy and momentum."""
     late = dataset.isel(elapsed_time=slice(SETTLE, None))
     found = [
-        Headline(
-            "largest_energy_change",
-            float(np.abs(dataset.energy_change.values).max()),
-            0.0,
-            0.0,
-            1e-12,
-            "a computer rounds at every collision",
-            "1",
-            "1",
-            "largest change of the energy",
-        ),
-        Headline(
-            "largest_momentum_residual",
-            float(dataset.momentum_residual.values.max()),
-            0.0,
-            0.0,
-            1e-12,
-            "a computer rounds at every collision",
-            "1",
-            "1",
-            "largest momentum unaccounted for",
-        ),
+        Headline(name, float(largest), 0.0, 0.0, 1e-12, "a computer rounds at every collision", "1", "1", label)
+        for name, largest, label in (
+            ("largest_energy_change", np.abs(dataset.energy_change.values).max(), "largest change of the energy"),
+            ("largest_momentum_residual", dataset.momentum_residual.values.max(), "largest momentum unaccounted for"),
+        )
     ]
     if late.sizes["elapsed_time"] >= 40 and settings.mass_ratio > 1.0:
         mean = float(dataset.kinetic_energy.values[0]) / settings.molecules
         share = block_average(
             late.kinetic_energy_light.values / mean, memory=_memory(dataset) / settings.si.duration * FRAMES
         )
-        found.insert(
-            0,
-            Headline(
-                "energy_of_light_discs",
-                float(share.mean),
-                float(share.standard_error),
-                1.0,
-                0.0,
-                "none: in the long run all discs have the same mean energy",
-                "1",
-                "1",
-                "energy of a light disc over the mean",
-            ),
+        label, reason = (
+            "energy of a light disc over the mean",
+            "none: in the long run all discs have the same mean energy",
         )
+        found.insert(0, Headline.of_mean("energy_of_light_discs", label, share, 1.0, "1", reason=reason))
     return tuple(found)
 
 

@@ -295,17 +295,8 @@ def _balance(late: "xr.Dataset", growth: DropGrowth, of: np.ndarray) -> Headline
 def _left(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:
     """Return the humidity that remains when all drops have evaporated."""
     found = block_average(dataset.saturation_ratio.values[late], BLOCKS)
-    return Headline(
-        "humidity_at_the_end",
-        float(found.mean),
-        float(found.standard_error),
-        float(_path(dataset, growth)[1][late].mean()),
-        0.0,
-        CHANCE_ALONE,
-        "1",
-        "percent",
-        "humidity at the end",
-    )
+    theory = float(_path(dataset, growth)[1][late].mean())
+    return Headline.of_mean("humidity_at_the_end", "humidity at the end", found, theory, "1", "percent")
 
 
 def _size(dataset: "xr.Dataset", growth: DropGrowth, late: slice) -> Headline:

@@ -32,7 +32,6 @@ from atmosbox.scene import (
     setting,
 )
 from atmosbox.scene.engines import EXACT, used
-from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.panels import over_time
 from atmosbox.scene.rounding import rounded
@@ -194,50 +193,29 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
         crowded = float(law.contact_value(law.packing_fraction(density, 1.0))) * share_of_contacts
         expected *= (1.0 - 1.0 / settings.molecules) / crowded
     mean_speed = float(law.mean_speed(BOLTZMANN * si.temperature, DRY_AIR.molecule_mass))
+    reason = "molecules at a wall are packed a little differently from those inside"
     return (
-        Headline(
-            "mean_temperature",
-            float(temperature.mean),
-            float(temperature.standard_error),
-            si.temperature,
-            0.0,
-            CHANCE_ALONE,
-            "K",
-            "degC",
-            "temperature",
-        ),
-        Headline(
+        Headline.of_mean("mean_temperature", "temperature", temperature, si.temperature, "K", "degC"),
+        Headline.of_mean(
             "mean_pressure",
-            float(pressure.mean),
-            float(pressure.standard_error),
+            "pressure",
+            pressure,
             density * factor * scale.pressure,
-            off * density * (factor - 1.0) * scale.pressure,
-            "molecules at a wall are packed a little differently from those inside",
             "Pa",
             "hPa",
-            "pressure",
+            tolerance=off * density * (factor - 1.0) * scale.pressure,
+            reason=reason,
         ),
-        Headline(
-            "mean_speed",
-            float(speed.mean),
-            float(speed.standard_error),
-            mean_speed,
-            0.0,
-            CHANCE_ALONE,
-            "m s-1",
-            "m s-1",
-            "mean speed",
-        ),
-        Headline(
+        Headline.of_mean("mean_speed", "mean speed", speed, mean_speed, "m s-1"),
+        Headline.of_mean(
             "collision_rate",
-            float(per_second.mean),
-            float(per_second.standard_error),
+            "collisions of a molecule",
+            per_second,
             expected,
-            off * expected,
-            "molecules at a wall are packed a little differently from those inside",
             "s-1",
             "ns-1",
-            "collisions of a molecule",
+            tolerance=off * expected,
+            reason=reason,
         ),
     )
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    from atmosbox.scene.statistics import BlockAverage
 
 __all__ = ["AS_STATED", "CHANCE_ALONE", "CHANCE_LIMIT", "ENGINE_IS_OFF", "NO", "YES", "Headline"]
 
@@ -69,6 +73,23 @@ class Headline:
     label: str
     bias: float = 0.0
     bias_se: float = 0.0
+
+    @classmethod
+    def of_mean(
+        cls,
+        name: str,
+        label: str,
+        mean: BlockAverage,
+        theory: float | None,
+        unit: str,
+        display_unit: str = "",
+        *,
+        tolerance: float = 0.0,
+        reason: str = CHANCE_ALONE,
+    ) -> Self:
+        """Return the headline of a mean with its standard error; the display unit is ``unit`` if none is given."""
+        value, error = float(mean.mean), float(mean.standard_error)
+        return cls(name, value, error, theory, tolerance, reason, unit, display_unit or unit, label)
 
     @property
     def misfit(self) -> float | None:
