@@ -100,11 +100,6 @@ class Scale:
         """Unit of energy of the body of air: of its ledger, of heat and of work [J]."""
         return self.weight * self.energy
 
-    @property
-    def total_impulse(self) -> float:
-        """Unit of momentum of the body of air, and of the impulse that a wall receives from it [kg m s-1]."""
-        return self.weight * self.mass * self.velocity
-
     def reduced_temperature(self, temperature: float) -> float:
         """Return k_B T in the unit of energy: the ``kT`` that the engine is given for a heat bath.
 

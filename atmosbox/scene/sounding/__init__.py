@@ -16,7 +16,7 @@ delimited      CSV and the like
 profile_netcdf profiles as xarray and MetPy write them
 analytic       Weisman and Klemp's formula for the environment of a thunderstorm
 hydrostatics   the heights of levels
-lifted_parcel  LCL, LFC, EL, CAPE, CIN and precipitable water, by MetPy
+lifted_parcel  LCL, LFC, EL, CAPE and CIN, by MetPy
 ============== =========================================================================
 """
 

@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from atmosbox.errors import SettingError, SoundingError, shown
+from atmosbox.errors import SoundingError, shown
 from atmosbox.scene.sounding.hydrostatics import hydrostatic_height
 from atmosbox.scene.sounding.profile import Sounding
 
 __all__ = ["Indices", "Level", "indices"]
-
-_CHOICES = ("top", "bottom", "wide", "most_cape")
 
 
 @dataclass(frozen=True)
@@ -53,8 +51,6 @@ class Indices:
         Convective available potential energy, 0 if the parcel never becomes free [J kg-1].
     cin
         Convective inhibition, 0 or negative [J kg-1].
-    precipitable_water
-        Vapour above a square metre, as depth of water [m].
     """
 
     lcl: Level
@@ -62,19 +58,15 @@ class Indices:
     el: Level | None
     cape: float
     cin: float
-    precipitable_water: float
 
 
-def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
-    r"""Return LCL, LFC, EL, CAPE, CIN and precipitable water, for the parcel of the lowest level.
+def indices(sounding: Sounding) -> Indices:
+    r"""Return LCL, LFC, EL, CAPE and CIN of the parcel of the lowest level.
 
     Parameters
     ----------
     sounding
         The ascent.
-    which_lfc
-        Which level of free convection is reported if there are several, in MetPy's words: "top" (MetPy's default),
-        "bottom", "wide" or "most_cape".
 
     Returns
     -------
@@ -83,18 +75,16 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
 
     Raises
     ------
-    SettingError
-        If `which_lfc` is not one of the four.
     SoundingError
         If MetPy has no answer for this ascent.
 
     Notes
     -----
-    The numbers are those of MetPy's ``lcl``, ``lfc``, ``el``, ``surface_based_cape_cin`` and ``precipitable_water``.
-    MetPy's LFC and EL are where the *temperatures* of parcel and environment cross, as lines do on a skew-T, while its
-    CAPE and CIN belong to *virtual* temperatures and to the lowest LFC of those [1]_. So there can be CAPE without an
-    LFC, or an EL without CAPE. From the lowest LFC to the highest EL, a stable layer in between reduces CAPE; if the
-    sounding ends below the EL, CAPE is summed up to its end.
+    The numbers are those of MetPy's ``lcl``, ``lfc``, ``el`` and ``surface_based_cape_cin``; of several levels of free
+    convection the highest is taken. MetPy's LFC and EL are where the *temperatures* of parcel and environment cross, as
+    lines do on a skew-T, while its CAPE and CIN belong to *virtual* temperatures and to the lowest LFC of those [1]_.
+    So there can be CAPE without an LFC, or an EL without CAPE. From the lowest LFC to the highest EL, a stable layer in
+    between reduces CAPE; if the sounding ends below the EL, CAPE is summed up to its end.
 
     References
     ----------
@@ -114,16 +104,13 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
     import metpy.calc as mpcalc
     from metpy.units import units
 
-    if which_lfc not in _CHOICES:
-        raise SettingError("which_lfc", which_lfc, "is not a choice", f"give one of {', '.join(_CHOICES)}")
     p, t, td = sounding.pressure * units.Pa, sounding.temperature * units.K, sounding.dewpoint * units.K
     try:
         with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
             lcl = mpcalc.lcl(p[0], t[0], td[0])
-            lfc = mpcalc.lfc(p, t, td, which=which_lfc)
+            lfc = mpcalc.lfc(p, t, td)
             el = mpcalc.el(p, t, td)
             cape, cin = mpcalc.surface_based_cape_cin(p, t, td)
-            water = mpcalc.precipitable_water(p, td)
     except Exception as error:  # MetPy raises errors of many kinds on an unusual ascent
         raise SoundingError(
             f"{shown(sounding.name)}: MetPy finds no parcel's path ({shown(str(error))}): give an ascent that reaches "
@@ -135,9 +122,7 @@ def indices(sounding: Sounding, which_lfc: str = "top") -> Indices:
         raise SoundingError(f"{shown(sounding.name)}: MetPy finds no cloud base for the ground: check its dewpoint.")
     energies = (_number(energy, "J/kg") for energy in (cape, cin))
     cape_, cin_ = (0.0 if math.isnan(energy) else energy for energy in energies)
-    return Indices(
-        lowest, _level(lfc, sounding, height), _level(el, sounding, height), cape_, cin_, _number(water, "m")
-    )
+    return Indices(lowest, _level(lfc, sounding, height), _level(el, sounding, height), cape_, cin_)
 
 
 def _number(quantity: Any, unit: str) -> float:
