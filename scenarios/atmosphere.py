@@ -2,9 +2,9 @@
 
 Ten thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the
 floor. They fall, and within some minutes density and pressure decrease with height by the barometric law, by a factor
-e every 8.4 km; the means leave these minutes out. Each molecule falls freely between collisions, and yet the column
-neither lies down on the floor nor leaves. The molecules hit the floor, and the force on the floor minus that on the
-ceiling is the weight of the air.
+e every 8.4 km; the means leave out the first half hour, until the temperature has settled, too. Each molecule falls
+freely between collisions, and yet the column neither lies down on the floor nor leaves. The molecules hit the floor,
+and the force on the floor minus that on the ceiling is the weight of the air.
 
 The temperature comes out the same at all heights, because nothing stirs or heats the air. A
 molecule that rises loses speed, but only fast ones get high, and both effects cancel. A real atmosphere is heated
@@ -92,7 +92,7 @@ STIRRED = {
 PARCEL, LIFTS = 0.05, (0.15, 0.35)
 """Share of all molecules that are in a parcel, and its least and greatest lift, as shares of all molecules."""
 TURN = 0.05
-"""Time between two sets of exchanges, in units of the time in which sound climbs a scale height."""
+"""Time between two sets of exchanges, in units of H/√(kT/m), with the scale height H."""
 INNER = 0.1
 """Share of the molecules at floor and ceiling where the lapse rate is not measured: few parcels come so far."""
 COLDEST = 0.3
@@ -154,7 +154,11 @@ class Settings(SceneSettings):
     )
     plane: bool = setting(False, "", "whether the air is a plane of discs")
     duration: float = setting(
-        400.0, "1", "how long to watch, in times that sound takes to climb a scale height", low=1.0, high=1e5
+        400.0,
+        "1",
+        "how long to watch, in units of H/√(kT/m), with the scale height H: 29 s in air at 15 °C",
+        low=1.0,
+        high=1e5,
     )
 
     def __init__(self, /, **values: Any) -> None:
@@ -289,7 +293,7 @@ class Column:
         r"""Return the time in which the column relaxes after a start out of equilibrium [reduced time].
 
         The surplus of energy must leave through the floor, or, if the floor is isolated, spread to all heights:
-        measured for Knudsen numbers of 0.02 to 5, that takes some 4 Kn times as long as sound needs for a scale height.
+        measured for Knudsen numbers of 0.02 to 5, that takes some 4 Kn times H/√(kT/m), with the scale height H.
         Of a surplus of a third of the energy less than a tenth of the scatter of a single sample is left after
         :math:`(2 + \tfrac12 \ln N)\,\tau`.
         """
@@ -429,7 +433,7 @@ def _stirring_facts(settings: Settings, column: Column) -> dict[str, str]:
     lift = f"by {100.0 * LIFTS[0]:g} to {100.0 * LIFTS[1]:g} % of the mass of the air"
     what = f"parcels of {100.0 * PARCEL:g} % of it rise and sink {lift}" if column.works else f"molecules swap {lift}"
     return {
-        "stirring": f"{what}, each molecule {2.0 * PARCEL * column.rate:.3g} times while sound climbs a scale height; "
+        "stirring": f"{what}, each molecule {2.0 * PARCEL * column.rate:.3g} times in the time H/√(kT/m); "
         f"that carries {settings.stirring:g} times as much heat as molecules conduct",
         "adiabat": f"g/c_p = {1000.0 * settings.lapse:.2f} K/km",
     }

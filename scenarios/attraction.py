@@ -418,7 +418,7 @@ def panels(settings: Settings) -> tuple[Panel, ...]:
         headline="last_largest_drop_molecule_count" if settings.start != "slab" else "",
     )
     energies = over_time(
-        "What the wells give becomes motion",
+        "What the wells give becomes motion" if settings.bath == "none" else "What the wells give, the bath takes",
         {"kinetic_energy": "kinetic", "attraction_energy": "of attraction", "molecular_energy": "both"},
         "energy",
         "zJ",

@@ -8,9 +8,9 @@ dry adiabat, T ~ p^(2/7).
 Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact;
 smooth walls; a hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it
 would change its temperature by less than a billionth), water, mixing with the environment, heat from it.
-Exaggerated: the molecules are drawn larger than they are, so that they meet often, and some kilometres
+Exaggerated: the molecules are larger than those of air, so that they meet often, and some kilometres
 are climbed within nanoseconds. Because the ascent is not infinitely slow, the parcel arrives at 300 hPa
-too warm: by about 150 K divided by the length of the ascent in mean free times, 0.1 K at first.
+too warm: by about 155 K divided by the length of the ascent in mean free times, 0.1 K at first.
 """
 
 import math

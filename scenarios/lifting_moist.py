@@ -14,7 +14,7 @@ heat, which follows from the binding energy and the heat capacities; a hydrostat
 rate. Reversible: the droplets stay in the parcel; with rain=on the cloud holds a gram per kilogram, and any more
 falls out, which is nearly pseudo-adiabatic. Left out: ice, the curvature of droplets and what is dissolved in them;
 gravity inside the parcel; mixing with the environment. Exaggerated: some kilometres are climbed within nanoseconds,
-in a few hundred collisions of each molecule; the molecules are drawn larger than they are; the droplets have far
+in a few hundred collisions of each molecule; the molecules are larger than those of air; the droplets have far
 more area than so little water could. Few molecules are vapour, one in fifty, and already below the cloud base some
 of them are clustered, RH / (1 - RH) on average.
 """

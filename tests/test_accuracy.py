@@ -363,7 +363,7 @@ def test_a_known_bias_excuses_a_misfit_to_its_side_alone():
 def test_a_misfit_that_only_a_known_bias_excuses_is_told():
     lines = headline_lines([headline(302.5, bias=2.0)], 200)
     assert lines[1].endswith("as stated")
-    assert lines[-1] == "temperature: up to 2.20 K off, for the measured error of this engine is that large."
+    assert lines[-1] == "temperature: up to 2.20 K off, because the measured error of this engine is that large."
     assert headline_lines([headline(300.3, bias=2.0)], 200)[1].endswith("yes")
 
 

@@ -793,7 +793,7 @@ def test_the_verdict_is_that_of_the_headline():
 
 def test_a_misfit_that_only_the_model_excuses_is_explained():
     lines = report.headline_lines([a_headline(error=0.01, tolerance=0.5)], 200)
-    assert lines[-1] == "temperature: up to 0.500 K off, for the box is small."
+    assert lines[-1] == "temperature: up to 0.500 K off, because the box is small."
 
 
 def test_a_run_without_headlines_says_why():

@@ -149,7 +149,7 @@ def _critical(data: xr.Dataset, fluid: theory.SimpleFluid, strength: float) -> R
         value,
         f"± {deviation} K",
         f"of this model {expected:.1f} K",
-        "which the law of their difference misses by some 2 % from so far",
+        "expected too high: the law of their difference holds only near it",
     )
 
 

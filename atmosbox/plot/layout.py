@@ -123,10 +123,11 @@ def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
         for line in panel.lines
         if line.role == "data" and panel.kind != "histogram"
     )
-    small = " · bars and bands: ± 1 standard error" if has_errors else ""
-    small += ", hollow: not known" if has_hollow else ""
-    if any(panel.averages for panel in panels):
-        small += " · bars and bands of averages: scatter of single values, ± 1 standard deviation"
+    along = " and ".join(dict.fromkeys(panel.x_label or "x" for panel in panels if panel.averages))
+    small = f" · against {along}: averages of frames, ± 1 standard deviation of single frames" if along else ""
+    if has_errors:
+        small += f" · {'other ' if along else ''}bars and bands: ± 1 standard error"
+        small += ", hollow: not known" if has_hollow else ""
     return small + (f" · {BACKGROUND}" if any(panel.kind == "skewt" for panel in panels) else "")
 
 

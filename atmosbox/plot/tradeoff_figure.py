@@ -105,7 +105,7 @@ def _one_panel(dataset: xr.Dataset, look: Theme) -> Figure:
                 seconds[here & those], error[here & those], marker, mfc=face, mec=colour, mew=0.8 * look.line,
                 ms=1.7 * look.marker, zorder=3,
             )  # fmt: skip
-        engine, what, fixed = _series(dataset, row)
+        engine, what, fixed = _series(dataset, row, here)
         words = f"{engine}\n{what}" + (f"\n{fixed}" if fixed else "")
         labels.append(Label(words, seconds[along], error[along], colour))
     allowed = share * limit(str(one.unit.item()))
@@ -284,11 +284,13 @@ def _colour(dataset: xr.Dataset, row: int) -> str:
     return to_hex(DATA_COLOURS[known.index(_engine(dataset, row)) % len(DATA_COLOURS)])
 
 
-def _series(dataset: xr.Dataset, row: int) -> tuple[str, str, str]:
-    """Return the engine of a series, its varied setting with the range of values, and the settings of all its runs."""
+def _series(dataset: xr.Dataset, row: int, shown: NDArray[np.bool_]) -> tuple[str, str, str]:
+    """Return the engine of a series, its varied setting with the range of the points ``shown``, and its own settings.
+
+    Its own settings are those of all its runs.
+    """
     rows = series_of(dataset)
-    row_is = (dataset.series.values == row) & np.isfinite(dataset.engine_seconds.values)
-    values = dataset.value.values[row_is][np.argsort(dataset.engine_seconds.values[row_is])]
+    values = dataset.value.values[shown][np.argsort(dataset.engine_seconds.values[shown])]
     vary = rows[row]["vary"] if row < len(rows) else "settings"
     ends = " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1]) if np.isfinite(value)))
     own = rows[row]["settings"] if row < len(rows) else {}
@@ -311,7 +313,7 @@ def _legend(dataset: xr.Dataset, look: Theme) -> list[Line2D]:
     made = np.isfinite(dataset.engine_seconds.values)
     entries = []
     for row in sorted({int(k) for k in dataset.series.values[made]}):
-        engine, what, fixed = _series(dataset, row)
+        engine, what, fixed = _series(dataset, row, made & (dataset.series.values == row))
         words = f"{engine}: {what}" + (f", {fixed}" if fixed else "")
         entries.append(
             Line2D([], [], ls="", marker=_MARKERS[row % len(_MARKERS)], color=_colour(dataset, row), label=words)

@@ -255,4 +255,4 @@ def _excuses(runs: Sequence[Trial], rows: set[str]) -> list[str]:
                 known = bare(from_si(each.known, each.display_unit, difference=True), 2)
                 allowed = f"{known} {spelled(each.difference_unit)}".rstrip()
                 excuses.setdefault(each.excuse, []).append(f"{each.label} in run {run.letter} (up to {allowed})")
-    return [f"More than chance: {'; '.join(numbers)}, for {reason}." for reason, numbers in excuses.items()]
+    return [f"More than chance: {'; '.join(numbers)}, because {reason}." for reason, numbers in excuses.items()]

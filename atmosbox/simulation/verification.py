@@ -128,7 +128,7 @@ def _agreement(headline: Headline) -> str:
     told = f"{headline.label}: misfit {misfit}, allowed {chance} by chance"
     if headline.known > 0.0:
         told += f" and {known} as known"
-    return f"{told}, for {headline.excuse}" if headline.verdict == AS_STATED else told
+    return f"{told}, because {headline.excuse}" if headline.verdict == AS_STATED else told
 
 
 def _balance(dataset: xr.Dataset) -> Check:

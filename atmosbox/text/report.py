@@ -120,7 +120,9 @@ def headline_cells(headlines: Sequence[Headline]) -> tuple[list[str], list[list[
     if any("σ" in row[4] for row in rows):
         known = ", + the known error of the model" if any("+" in row[4] for row in rows) else ""
         said.append(f"allowed: {CHANCE_LIMIT:g} standard errors σ, by chance{known}")
-    said += [f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}for {reason}." for reason, which in notes.items()]
+    said += [
+        f"{'; '.join(which)}, {_ALIKE.get(len(which), 'all ')}because {reason}." for reason, which in notes.items()
+    ]
     return header, rows, said
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from jobs.drawing import BLUE, VERMILLION, axes_of, save, sheet
+from jobs.drawing import BLUE, VERMILLION, axes_of, explain, save, sheet
 from jobs.registry import Findings, job
 
 from atmosbox import theory
@@ -18,6 +18,8 @@ LEVELS = (850, 700, 500, 300)
 SEEDS = range(1, 5)
 LENGTHS = (50, 100, 200, 400, 1000)
 NUMBERS = (3000, 6000, 12_000)
+ALONE = "known error of the model"
+WITH_CHANCE = "the same + 4 standard errors of one run"
 TICKS = (300, 400, 500, 700, 850, 1000)
 RAIN: Mapping[str, Any] = {"rain": True}
 _MEMORY: dict[tuple[Any, ...], runner.Outcome] = {}
@@ -130,7 +132,7 @@ def draw_adiabats(found: Findings, keeps: list[Any], rains: list[Any], settings:
     known = adiabats(line, settings)
     styles = (
         (keeps, "droplets stay", BLUE, "o", (5.0, 2.0), DARK),
-        (rains, "they rain out", VERMILLION, "s", (1.2, 1.2), FAINT),
+        (rains, "droplets rain out", VERMILLION, "s", (1.2, 1.2), FAINT),
     )
     with axes_of(2, (10.4, 5.2)) as (drawing, (left, right)):
         dry = keeps[0].dataset
@@ -152,21 +154,27 @@ def draw_adiabats(found: Findings, keeps: list[Any], rains: list[Any], settings:
             reversible = adiabats(100.0 * hpa, settings)["reversible"]
             misfit = np.mean([each.parcel_temperature - each.adiabat_temperature for each in data], axis=0)
             left.plot(own + misfit - 273.15, hpa, marker, color=colour, markevery=4, label=label)
-            left.plot(own - 273.15, hpa, dashes=dashes, color=dark, linestyle="--", zorder=5)
+            left.plot(own - 273.15, hpa, dashes=dashes, color=dark, linestyle="--", zorder=5, label=f"theory, {label}")
             shown = running_mean(own + misfit - reversible, 5)
             right.fill_betweenx(hpa, shown - error, shown + error, color=colour, alpha=0.2, linewidth=0)
             right.plot(shown, hpa, color=colour, marker=marker, markevery=6, label=label)
-            right.plot(own - reversible, hpa, dashes=dashes, color=dark, linestyle="--", zorder=5, label="its adiabat")
+            right.plot(
+                own - reversible, hpa, dashes=dashes, color=dark, linestyle="--", zorder=5, label=f"theory, {label}"
+            )
         pseudo = known["pseudo"] - known["reversible"]
         right.plot(pseudo, line / 100.0, "-.", color=ENVIRONMENT_COLOURS[1], label="pseudo-adiabat")
         for axes in (left, right):
             axes.set(yscale="log", ylabel="pressure (hPa)", ylim=(1010.0, 295.0))
             axes.set_yticks(TICKS, [str(tick) for tick in TICKS])
             axes.set_yticks([], minor=True)
-        left.set(title="Clouds cool half as fast", xlabel="temperature (°C)")
-        right.set(title="Which adiabat is it?", xlabel="minus the reversible adiabat (K)", xlim=(-3.3, 1.1))
+        left.set(title="In a cloud, air cools half as fast", xlabel="temperature (°C)")
+        right.set(title="Which adiabat is it?", xlabel="difference from the reversible adiabat (K)", xlim=(-1.75, 0.75))
         left.legend(loc="upper right")
-        right.legend(loc="center left")
+        right.legend(loc="center left", bbox_to_anchor=(0.0, 0.42))
+        explain(
+            drawing,
+            "right: curves with marks are means of 5 frames of two runs; bands: ± 1 standard error of one frame",
+        )
         save(found, drawing, "moist-adiabats")
 
 
@@ -214,19 +222,27 @@ def draw_price(found: Findings, fast: np.ndarray, few: np.ndarray) -> None:
     """Draw the misfit against length, and the cloud base against number."""
     with axes_of(2, (10.4, 4.4)) as (drawing, (left, right)):
         panels = (
-            (left, fast, "length of the ascent (mean free times)", "misfit at 500 hPa (K)", "A fast ascent is off"),
-            (right, few, "molecules", "cloud base minus LCL (hPa)", "The cloud base, by the molecules"),
+            (
+                left,
+                fast,
+                "length of the ascent (mean free times)",
+                "misfit at 500 hPa (K)",
+                "A fast ascent is off",
+                ALONE,
+            ),
+            (right, few, "molecules", "cloud base minus LCL (hPa)", "The cloud base, by the molecules", WITH_CHANCE),
         )
-        for axes, (x, mean, error, allowed), x_label, y_label, title in (
+        for axes, (x, mean, error, allowed), x_label, y_label, title, band in (
             (axes, rows.T, *words) for axes, rows, *words in panels
         ):
-            axes.fill_between(x, -allowed, allowed, color=REFERENCE_COLOURS[1], alpha=0.3, lw=0, label="allowed for")
+            axes.fill_between(x, -allowed, allowed, color=REFERENCE_COLOURS[1], alpha=0.3, lw=0, label=band)
             axes.axhline(0.0, linestyle="--", color=DARK, label="theory")
             axes.errorbar(x, mean, error, fmt="o", capsize=3, color=BLUE, label="mean of four runs")
             axes.set(xscale="log", xlabel=x_label, ylabel=y_label, title=title)
             axes.set_xticks(x, [f"{each:,.0f}" for each in x])
             axes.set_xticks([], minor=True)
             axes.legend(loc="lower right")
+        explain(drawing)
         save(found, drawing, "moist-price")
 
 
@@ -258,7 +274,9 @@ def draw_mountains(found: Findings, runs: dict[bool, Any]) -> None:
         land.plot(way, ground, color=DARK, linewidth=1.4)
         cloud = running_mean(wet.cloud_liquid_water_mixing_ratio.values * 1000.0, 3)
         low, high = ground + 0.1, ground + 0.1 + 0.45 * cloud
-        land.fill_between(way, low, high, where=cloud > 0.15, color="#8ec5ea", lw=0, label="cloud water")
+        land.fill_between(
+            way, low, high, where=cloud > 0.15, color="#8ec5ea", lw=0, label="cloud water, 1 km for 2.2 g/kg"
+        )
         fallen = np.gradient(running_mean(wet.rain_mixing_ratio.values * 1000.0, 5))
         falls = fallen > 0.2 * fallen.max()
         land.plot(way[falls][::2], ground[falls][::2] + 0.05, "|", color=BLUE, markersize=9, label="rain falls")
@@ -271,8 +289,19 @@ def draw_mountains(found: Findings, runs: dict[bool, Any]) -> None:
             t, own = data.parcel_temperature - 273.15, data.adiabat_temperature - 273.15
             warm.plot(way, t, color=colour, marker=marker, markevery=6, markersize=5, label=label)
             tall.plot(running_mean(t, 3), ground, color=colour, marker=marker, markevery=6, markersize=5, label=label)
-            warm.plot(way, own, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5)
-            tall.plot(own, ground, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5, label="theory")
+            warm.plot(
+                way, own, dashes=dashes, color=DARK, linestyle="--", linewidth=1.3, zorder=5, label=f"theory, {label}"
+            )
+            tall.plot(
+                own,
+                ground,
+                dashes=dashes,
+                color=DARK,
+                linestyle="--",
+                linewidth=1.3,
+                zorder=5,
+                label=f"theory, {label}",
+            )
         tall.plot(wet.environment_temperature - 273.15, ground, "-.", color=ENVIRONMENT_COLOURS[0], label="environment")
         warm.set(xlabel="share of the way (%)", ylabel="temperature (°C)", title="It arrives warmer than it left")
         tall.set(xlabel="temperature (°C)", ylabel="height (km)", title="5 K per kilometre up, 10 K down")

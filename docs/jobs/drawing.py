@@ -8,7 +8,7 @@ from jobs.registry import Findings
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from atmosbox.plot.theme import DATA_COLOURS, THEMES, style
+from atmosbox.plot.theme import DATA_COLOURS, FAINT, THEMES, style
 
 DOTS_PER_INCH = 130
 BLUE, VERMILLION = DATA_COLOURS[0], DATA_COLOURS[1]
@@ -51,6 +51,11 @@ def axes_of(number: int, size: tuple[float, float], widths: Any = None) -> Itera
         for each in axes:
             each.set_prop_cycle(color=DATA_COLOURS)
         yield drawing, axes
+
+
+def explain(drawing: Figure, text: str = "bars: ± 1 standard error") -> None:
+    """Write a line below a figure that says what its error bars and bands are."""
+    drawing.supxlabel(text, x=0.01, horizontalalignment="left", fontsize=9, color=FAINT)
 
 
 def save(found: Findings, drawing: Figure, name: str, dots_per_inch: float = DOTS_PER_INCH) -> None:

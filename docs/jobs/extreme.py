@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from jobs.drawing import BLUE, VERMILLION, axes_of, save, sheet
+from jobs.drawing import BLUE, VERMILLION, axes_of, explain, save, sheet
 from jobs.registry import Findings, job, rounded
 
 from atmosbox import theory
@@ -224,4 +224,5 @@ def tunnelling(found: Findings) -> None:
             ylim=(0.004, 2.0),
         )
         axis.legend(loc="lower left")
+        explain(drawing)
         save(found, drawing, "tunnelling")

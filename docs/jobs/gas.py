@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from jobs.drawing import axes_of, save
+from jobs.drawing import axes_of, explain, save
 from jobs.registry import Findings, job
 
 from atmosbox import theory
@@ -137,6 +137,7 @@ def draw_equation_of_state(found: Findings, points: np.ndarray) -> None:
             ylim=(-0.4, 0.4),
         )
         right.legend(loc="upper left")
+        explain(drawing)
         save(found, drawing, "equation-of-state")
 
 

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import numpy as np
-from jobs.drawing import BLUE, VERMILLION, axes_of, save
+from jobs.drawing import BLUE, VERMILLION, axes_of, explain, save
 from jobs.registry import Findings, job
 from scipy import optimize
 
@@ -154,6 +154,7 @@ def draw_finite_speed(
         axes.set_xticks([], minor=True)
         axes.set_yticks([0.05, 0.1, 0.2, 0.5, 1.0, 2.0], ["0.05", "0.1", "0.2", "0.5", "1", "2"])
         axes.legend()
+        explain(drawing)
         save(found, drawing, "finite-speed")
 
 

@@ -73,16 +73,6 @@ def analytic(found: Findings) -> None:
                 ),
             ]
         )
-    expected = loaded
-    assert expected.lfc is not None
-    assert expected.el is not None
-    runs.append(
-        [
-            "**theory**",
-            f"**{expected.cape:.0f}**",
-            f"**−{abs(expected.cin):.0f}**",
-            f"**{expected.lfc / 100:.0f}**",
-            f"**{expected.el / 100:.1f}**",
-        ]
-    )
+    expected = [f"**{by_name[name].theory / unit:.{digits}f}**".replace("-", "−") for name, unit, digits in shown]
+    runs.append(["**theory**", *expected])
     found.table(["seed", "CAPE [J/kg]", "CIN [J/kg]", "LFC [hPa]", "EL [hPa]"], runs, key="seeds")

@@ -1,7 +1,7 @@
 """Columns that are stirred: the temperature between rest and the adiabat, and its lapse rate against the stirring."""
 
 import numpy as np
-from jobs.drawing import BLUE, axes_of, save
+from jobs.drawing import BLUE, axes_of, explain, save
 from jobs.registry import Findings, job, rounded
 
 from atmosbox import theory
@@ -114,7 +114,11 @@ def stirring(found: Findings) -> None:
                 RATES, values, yerr=errors, fmt=mark, color=colour, markerfacecolor=fill, label=label, zorder=3
             )
             right.plot(
-                between, expected, color=DARK, linestyle="--" if rotation else ":", label="theory" if rotation else None
+                between,
+                expected,
+                color=DARK,
+                linestyle="--" if rotation else ":",
+                label="theory, air" if rotation else "theory, spheres",
             )
         right.axhline(1.0, color="0.7", linewidth=1)
         right.set(
@@ -124,4 +128,5 @@ def stirring(found: Findings) -> None:
         right.set_xticks(RATES, [f"{rate:g}" for rate in RATES])
         right.minorticks_off()
         right.legend(loc="lower right")
+        explain(drawing)
         save(found, drawing, "stirred")

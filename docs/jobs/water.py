@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from jobs.drawing import BLUE, save, sheet
+from jobs.drawing import BLUE, explain, save, sheet
 from jobs.registry import Findings, job
 
 from atmosbox import theory
@@ -80,7 +80,14 @@ def draw_saturation(
         top.plot(line, formula * (1.0 + real) / 100.0, **band, label="measured water (IAPWS)")
         top.plot(line, formula / 100.0, "--", color=DARK, label="$e_s(T)$ that is put in")
         top.errorbar(
-            t, e / 100.0, error / 100.0, fmt="o", capsize=3, color=BLUE, label="both rates are equal", zorder=5
+            t,
+            e / 100.0,
+            error / 100.0,
+            fmt="o",
+            capsize=3,
+            color=BLUE,
+            label="measured, where both rates are equal",
+            zorder=5,
         )
         top.set(
             title="The two rates meet at the vapour pressure put in",
@@ -92,7 +99,8 @@ def draw_saturation(
         low.plot(line, 100.0 * real, **band)
         low.axhline(0.0, linestyle="--", color=DARK)
         low.errorbar(t, 100.0 * (share - 1.0), 100.0 * share_error, fmt="o", capsize=3, color=BLUE)
-        low.set(xlabel="temperature (°C)", ylabel="minus $e_s$ (%)", ylim=(-3.0, 3.0))
+        low.set(xlabel="temperature (°C)", ylabel="difference from $e_s$ (%)", ylim=(-3.0, 3.0))
+        explain(drawing)
         save(found, drawing, "saturation")
 
 

@@ -202,7 +202,7 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
             "Press spheres together until they almost freeze: they press as the equation of state says.",
             dense(0.49)),
         Extreme("packing-0.49-fine", "φ = 0.49, steps of σ / 250",
-            "The same in steps short enough for neighbours a tenth of a diameter apart.",
+            "The same in steps of a tenth of the mean free path, which is a twenty-fourth of a diameter here.",
             dense(0.49, finer=0.004)),
         Extreme("packing-0.58", "φ = 0.58",
             "Start a lattice where a fluid would be a glass: it stays a crystal and presses as one.", dense(0.58)),
@@ -227,7 +227,7 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
                      coarsely=60.0)),
     ),
     "walls": (
-        Extreme("hot-and-cold", "walls 10⁶ apart",
+        Extreme("hot-and-cold", "walls at kT = 10⁶ and 1",
             "Put points between walls of kT = 10⁶ and 1: they carry the heat of a formula that is exact.",
             heat(gas(200, 1.0, few=20, diameter=0.0, walls=(HeatBath(1e6), HeatBath(1.0), *SMOOTH[:4]),
                      options={"stepped": {"dt": 2e-5}}), 1e6, 5.0, 200.0)),
