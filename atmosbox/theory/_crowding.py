@@ -1,15 +1,13 @@
 """The equation of state of spheres or of discs, by the number of dimensions."""
 
 from collections.abc import Callable
-from functools import partial
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, require_dimensions
 from atmosbox.theory.disc import (
     FREEZING_PACKING_FRACTION_DISCS,
-    DiscForm,
     compressibility_factor_discs,
     inverse_compressibility_discs,
     packing_fraction_discs,
@@ -17,7 +15,6 @@ from atmosbox.theory.disc import (
 from atmosbox.theory.entropy import excess_chemical_potential, excess_chemical_potential_discs
 from atmosbox.theory.equation_of_state import (
     FREEZING_PACKING_FRACTION,
-    Form,
     compressibility_factor,
     inverse_compressibility,
     packing_fraction,
@@ -34,23 +31,23 @@ class Crowding(NamedTuple):
     freezing: float
 
 
-def crowding(dimensions: int, form: Form | DiscForm | None) -> Crowding:
+_SPHERES = Crowding(
+    excess_chemical_potential,
+    compressibility_factor,
+    inverse_compressibility,
+    packing_fraction,
+    FREEZING_PACKING_FRACTION,
+)
+_DISCS = Crowding(
+    excess_chemical_potential_discs,
+    compressibility_factor_discs,
+    inverse_compressibility_discs,
+    packing_fraction_discs,
+    FREEZING_PACKING_FRACTION_DISCS,
+)
+
+
+def crowding(dimensions: int) -> Crowding:
     """Return the equation of state of spheres or of discs."""
     require_dimensions(dimensions)
-    if dimensions == 2:
-        plane = cast("DiscForm", form or "henderson")
-        return Crowding(
-            partial(excess_chemical_potential_discs, form=plane),
-            partial(compressibility_factor_discs, form=plane),
-            partial(inverse_compressibility_discs, form=plane),
-            packing_fraction_discs,
-            FREEZING_PACKING_FRACTION_DISCS,
-        )
-    space = cast("Form", form or "kolafa")
-    return Crowding(
-        partial(excess_chemical_potential, form=space),
-        partial(compressibility_factor, form=space),
-        partial(inverse_compressibility, form=space),
-        packing_fraction,
-        FREEZING_PACKING_FRACTION,
-    )
+    return _DISCS if dimensions == 2 else _SPHERES

@@ -12,13 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.theory.equation_of_state import Form, contact_value, packing_fraction
+from atmosbox.theory.equation_of_state import contact_value, packing_fraction
 from atmosbox.theory.maxwell import mean_speed
 
 
-def collision_rate(
-    number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike, form: Form = "kolafa"
-) -> FloatArray:
+def collision_rate(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
     r"""Return the collision rate of one molecule, :math:`\nu = 4 n \sigma^2 g(\sigma) \sqrt{\pi k T / m}`.
 
     Parameters
@@ -31,8 +29,6 @@ def collision_rate(
         Temperature as an energy [energy].
     mass
         Mass of a molecule [mass].
-    form
-        Equation of state that gives the contact value, as in :func:`atmosbox.theory.compressibility_factor`.
 
     Returns
     -------
@@ -42,7 +38,7 @@ def collision_rate(
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
@@ -59,15 +55,13 @@ def collision_rate(
     >>> print(f"{rate:.1e} per second")
     7.1e+09 per second
     """
-    contact = contact_value(packing_fraction(number_density, diameter), form)
+    contact = contact_value(packing_fraction(number_density, diameter))
     sweep = 4.0 * as_floats(number_density) * as_floats(diameter) ** 2
     rate: FloatArray = sweep * contact * np.sqrt(np.pi * as_floats(kT) / as_floats(mass))
     return rate
 
 
-def mean_free_time(
-    number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike, form: Form = "kolafa"
-) -> FloatArray:
+def mean_free_time(number_density: ArrayLike, diameter: ArrayLike, kT: ArrayLike, mass: ArrayLike) -> FloatArray:
     r"""Return the mean time between two collisions of one molecule, :math:`\tau = 1 / \nu`.
 
     Parameters
@@ -80,8 +74,6 @@ def mean_free_time(
         Temperature as an energy [energy].
     mass
         Mass of a molecule [mass].
-    form
-        Equation of state that gives the contact value, as in :func:`atmosbox.theory.compressibility_factor`.
 
     Returns
     -------
@@ -91,7 +83,7 @@ def mean_free_time(
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
@@ -105,10 +97,10 @@ def mean_free_time(
     >>> round(float(mean_free_time(0.5, 1.0, 1.0, 1.0)), 5)
     0.13017
     """
-    return 1.0 / collision_rate(number_density, diameter, kT, mass, form)
+    return 1.0 / collision_rate(number_density, diameter, kT, mass)
 
 
-def mean_free_path(number_density: ArrayLike, diameter: ArrayLike, form: Form = "kolafa") -> FloatArray:
+def mean_free_path(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray:
     r"""Return the mean distance between two collisions of one molecule.
 
     :math:`\lambda = 1 / (\sqrt{2} \pi n \sigma^2 g)`. It is the mean speed times the mean free time, and does
@@ -120,8 +112,6 @@ def mean_free_path(number_density: ArrayLike, diameter: ArrayLike, form: Form = 
         Molecules per volume [length^-3], above zero.
     diameter
         Diameter of a molecule [length], above zero.
-    form
-        Equation of state that gives the contact value, as in :func:`atmosbox.theory.compressibility_factor`.
 
     Returns
     -------
@@ -131,7 +121,7 @@ def mean_free_path(number_density: ArrayLike, diameter: ArrayLike, form: Form = 
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
@@ -145,7 +135,7 @@ def mean_free_path(number_density: ArrayLike, diameter: ArrayLike, form: Form = 
     >>> round(float(mean_free_path(101325.0 / (BOLTZMANN * 288.15), DRY_AIR.diameter)) * 1e9)
     64
     """
-    return mean_speed(1.0, 1.0) * mean_free_time(number_density, diameter, 1.0, 1.0, form)
+    return mean_speed(1.0, 1.0) * mean_free_time(number_density, diameter, 1.0, 1.0)
 
 
 def contact_value_between(number_density: ArrayLike, diameter: ArrayLike) -> FloatArray:

@@ -2,8 +2,8 @@ r"""The effect of the excluded volume of molecules on entropy, free energy and t
 
 References
 ----------
-Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048. Kolafa, J., Labík, S., Malijevský, A. (2004),
-doi:10.1039/B402792B. Henderson, D. (1975), doi:10.1080/00268977500102511.
+Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B. Henderson, D. (1975),
+doi:10.1080/00268977500102511.
 """
 
 import numpy as np
@@ -11,24 +11,14 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.theory.disc import (
-    CLOSE_PACKING_DISCS,
-    DiscForm,
-    checked_packing_fraction_discs,
-    compressibility_factor_discs,
-)
-from atmosbox.theory.equation_of_state import (
-    Form,
-    checked_packing_fraction,
-    compressibility_factor,
-    contact_value,
-)
+from atmosbox.theory.disc import checked_packing_fraction_discs, compressibility_factor_discs
+from atmosbox.theory.equation_of_state import checked_packing_fraction, compressibility_factor, contact_value
 
 _NODES, _WEIGHTS = leggauss(32)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 
 
-def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
+def excess_free_energy(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the free energy per molecule, in units of kT, that excluded volume adds to an ideal gas.
 
     :math:`a(\phi) = \int_0^\phi (Z - 1)\, d\phi' / \phi'`. Hard spheres have no potential energy, so this is also minus
@@ -39,9 +29,6 @@ def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> Fl
     ----------
     packing_fraction
         Share of the space filled [1].
-    form
-        Equation of state: ``"kolafa"`` [2]_, or ``"carnahan-starling"`` [1]_ with its closed form
-        :math:`\phi (4 - 3\phi) / (1 - \phi)^2`.
 
     Returns
     -------
@@ -51,30 +38,27 @@ def excess_free_energy(packing_fraction: ArrayLike, form: Form = "kolafa") -> Fl
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     Notes
     -----
-    The integral over the ``"kolafa"`` form is a Gauss-Legendre quadrature with 32 points, exact to rounding.
+    The integral is a Gauss-Legendre quadrature with 32 points, exact to rounding.
 
     References
     ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
 
     Examples
     --------
-    >>> round(float(excess_free_energy(0.2, "carnahan-starling")), 4)
-    1.0625
+    >>> round(float(excess_free_energy(0.2)), 4)
+    1.0635
     """
-    phi = checked_packing_fraction(packing_fraction, form)
-    if form == "carnahan-starling":
-        return phi * (4.0 - 3.0 * phi) / (1.0 - phi) ** 2
-    integral: FloatArray = contact_value(phi[..., np.newaxis] * _NODES, form) @ _WEIGHTS
+    phi = checked_packing_fraction(packing_fraction)
+    integral: FloatArray = contact_value(phi[..., np.newaxis] * _NODES) @ _WEIGHTS
     return 4.0 * phi * integral
 
 
-def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
+def excess_chemical_potential(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the work, in units of kT, of inserting one more molecule.
 
     :math:`\mu_{ex} / kT = a(\phi) + Z(\phi) - 1` with :math:`a` from :func:`excess_free_energy`; the probability that a
@@ -84,8 +68,6 @@ def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa"
     ----------
     packing_fraction
         Share of the space filled [1].
-    form
-        Equation of state, as in :func:`compressibility_factor`.
 
     Returns
     -------
@@ -95,12 +77,11 @@ def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa"
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
 
     Examples
     --------
@@ -109,23 +90,19 @@ def excess_chemical_potential(packing_fraction: ArrayLike, form: Form = "kolafa"
     >>> round(float(1.0 / np.exp(-excess_chemical_potential(0.2))))
     12
     """
-    return excess_free_energy(packing_fraction, form) + compressibility_factor(packing_fraction, form) - 1.0
+    return excess_free_energy(packing_fraction) + compressibility_factor(packing_fraction) - 1.0
 
 
-def excess_free_energy_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+def excess_free_energy_discs(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the free energy per disc, in units of kT, that excluded volume adds to an ideal plane gas.
 
-    :math:`a(\eta) = \int_0^\eta (Z - 1)\, d\eta' / \eta'`, as :func:`excess_free_energy` of spheres.
+    :math:`a(\eta) = \int_0^\eta (Z - 1)\, d\eta' / \eta' = \frac{9 \eta}{8 (1 - \eta)} - \frac{7}{8} \ln (1 - \eta)`
+    [1]_, as :func:`excess_free_energy` of spheres.
 
     Parameters
     ----------
     packing_fraction
         Share of the area covered [1].
-    form
-        Equation of state: ``"henderson"`` [1]_, of which
-        :math:`a = \frac{9 \eta}{8 (1 - \eta)} - \frac{7}{8} \ln (1 - \eta)`, or ``"santos-lopez-yuste"`` [2]_,
-        of which :math:`a = [(2\eta_{cp} - 1) \ln (1 - (2\eta_{cp} - 1) \eta / \eta_{cp}) -
-        \ln (1 - \eta / \eta_{cp})] / 2 (1 - \eta_{cp})`.
 
     Returns
     -------
@@ -135,36 +112,29 @@ def excess_free_energy_discs(packing_fraction: ArrayLike, form: DiscForm = "hend
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
     .. [1] Henderson, D. (1975), doi:10.1080/00268977500102511.
-    .. [2] Santos, A., López de Haro, M., Yuste, S. B. (1995), J. Chem. Phys. 103, 4622.
 
     Examples
     --------
     >>> round(float(excess_free_energy_discs(0.2)), 4)
     0.4765
     """
-    eta = checked_packing_fraction_discs(packing_fraction, form)
-    if form == "henderson":
-        energy: FloatArray = 1.125 * eta / (1.0 - eta) - 0.875 * np.log1p(-eta)
-        return energy
-    share, rest = eta / CLOSE_PACKING_DISCS, 2.0 * CLOSE_PACKING_DISCS - 1.0
-    bent: FloatArray = (rest * np.log1p(-rest * share) - np.log1p(-share)) / (1.0 - rest)
-    return bent
+    eta = checked_packing_fraction_discs(packing_fraction)
+    energy: FloatArray = 1.125 * eta / (1.0 - eta) - 0.875 * np.log1p(-eta)
+    return energy
 
 
-def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm = "henderson") -> FloatArray:
+def excess_chemical_potential_discs(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the work, in units of kT, of inserting one more disc, :math:`a(\eta) + Z(\eta) - 1`.
 
     Parameters
     ----------
     packing_fraction
         Share of the area covered [1].
-    form
-        Equation of state, as in :func:`excess_free_energy_discs`.
 
     Returns
     -------
@@ -174,7 +144,7 @@ def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm 
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
@@ -187,12 +157,10 @@ def excess_chemical_potential_discs(packing_fraction: ArrayLike, form: DiscForm 
     >>> round(float(np.exp(excess_chemical_potential_discs(0.2))))
     3
     """
-    return excess_free_energy_discs(packing_fraction, form) + compressibility_factor_discs(packing_fraction, form) - 1.0
+    return excess_free_energy_discs(packing_fraction) + compressibility_factor_discs(packing_fraction) - 1.0
 
 
-def hard_sphere_isentrope(
-    packing_fraction: ArrayLike, packing_fraction0: ArrayLike, dof: float = 3, form: Form = "kolafa"
-) -> FloatArray:
+def hard_sphere_isentrope(packing_fraction: ArrayLike, packing_fraction0: ArrayLike, dof: float = 3) -> FloatArray:
     r"""Return the factor by which a gas of spheres warms when it is compressed slowly and without heat.
 
     The entropy per molecule, :math:`(f/2) \ln T - \ln \phi - a(\phi)`, is constant, so
@@ -206,8 +174,6 @@ def hard_sphere_isentrope(
         Share of the space filled, now and at the start [1].
     dof
         Degrees of freedom f that share the energy: 3, or 5 with two of rotation, 6 with three [1].
-    form
-        Equation of state, as in :func:`compressibility_factor`.
 
     Returns
     -------
@@ -217,7 +183,7 @@ def hard_sphere_isentrope(
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     Notes
     -----
@@ -226,8 +192,7 @@ def hard_sphere_isentrope(
 
     References
     ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
 
     Examples
     --------
@@ -237,6 +202,6 @@ def hard_sphere_isentrope(
     1.8673
     """
     phi, phi0 = as_floats(packing_fraction), as_floats(packing_fraction0)
-    room = excess_free_energy(phi, form) - excess_free_energy(phi0, form)
+    room = excess_free_energy(phi) - excess_free_energy(phi0)
     warming: FloatArray = (phi / phi0 * np.exp(room)) ** (2.0 / dof)
     return warming

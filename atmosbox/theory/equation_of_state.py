@@ -44,7 +44,7 @@ _SERIES_SLOPE = _SERIES.deriv()
 _CONTACT_SERIES = Polynomial(_COEFFICIENTS[1:] / 4.0)
 
 
-def checked_packing_fraction(packing_fraction: ArrayLike, form: Form) -> FloatArray:
+def checked_packing_fraction(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
     """Return the packing fractions as floats, or raise ``ValueError`` where the equation of state does not hold."""
     if form not in _HIGHEST_PACKING:
         raise ValueError(f"form = {form!r} must be one of {', '.join(_HIGHEST_PACKING)}.")
@@ -157,7 +157,7 @@ def compressibility_factor(packing_fraction: ArrayLike, form: Form = "kolafa") -
     return 1.0 + 4.0 * checked_packing_fraction(packing_fraction, form) * contact_value(packing_fraction, form)
 
 
-def inverse_compressibility(packing_fraction: ArrayLike, form: Form = "kolafa") -> FloatArray:
+def inverse_compressibility(packing_fraction: ArrayLike) -> FloatArray:
     r"""Return the stiffness of the gas against compression at constant temperature.
 
     :math:`(\partial P / \partial n)_T / kT`, in terms of the compressibility factor
@@ -168,8 +168,6 @@ def inverse_compressibility(packing_fraction: ArrayLike, form: Form = "kolafa") 
     ----------
     packing_fraction
         Share of the space filled [1].
-    form
-        Equation of state, as in :func:`compressibility_factor`.
 
     Returns
     -------
@@ -179,29 +177,24 @@ def inverse_compressibility(packing_fraction: ArrayLike, form: Form = "kolafa") 
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
 
     Examples
     --------
-    >>> round(float(inverse_compressibility(0.2, "carnahan-starling")), 4)
-    4.7109
+    >>> round(float(inverse_compressibility(0.2)), 4)
+    4.7236
     """
-    phi = checked_packing_fraction(packing_fraction, form)
-    if form == "carnahan-starling":
-        return (1.0 + 4.0 * phi + 4.0 * phi**2 - 4.0 * phi**3 + phi**4) / (1.0 - phi) ** 4
+    phi = checked_packing_fraction(packing_fraction)
     x = phi / (1.0 - phi)
     stiffness: FloatArray = _SERIES(x) + phi * _SERIES_SLOPE(x) / (1.0 - phi) ** 2
     return stiffness
 
 
-def gas_pressure(
-    number_density: ArrayLike, kT: ArrayLike, diameter: ArrayLike = 0.0, form: Form = "kolafa"
-) -> FloatArray:
+def gas_pressure(number_density: ArrayLike, kT: ArrayLike, diameter: ArrayLike = 0.0) -> FloatArray:
     r"""Return the pressure of a gas of hard spheres, :math:`P = n k T Z`.
 
     Without a diameter it is that of an ideal gas.
@@ -214,8 +207,6 @@ def gas_pressure(
         Temperature as an energy [energy].
     diameter
         Diameter of a molecule [length].
-    form
-        Equation of state, as in :func:`compressibility_factor`.
 
     Returns
     -------
@@ -225,12 +216,11 @@ def gas_pressure(
     Raises
     ------
     ValueError
-        If a packing fraction lies outside the range of the equation of state, or the form is unknown.
+        If a packing fraction lies outside the range of the equation of state.
 
     References
     ----------
-    .. [1] Carnahan, N. F., Starling, K. E. (1969), doi:10.1063/1.1672048.
-    .. [2] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
+    .. [1] Kolafa, J., Labík, S., Malijevský, A. (2004), doi:10.1039/B402792B.
 
     Examples
     --------
@@ -242,4 +232,4 @@ def gas_pressure(
     100267
     """
     density = as_floats(number_density)
-    return density * as_floats(kT) * compressibility_factor(packing_fraction(density, diameter), form)
+    return density * as_floats(kT) * compressibility_factor(packing_fraction(density, diameter))

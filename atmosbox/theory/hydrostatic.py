@@ -23,8 +23,6 @@ from numpy.typing import ArrayLike
 from atmosbox.theory._array import FloatArray, as_floats, require_not_negative, require_positive
 from atmosbox.theory._crowding import Crowding, crowding
 from atmosbox.theory.barometric import barometric_density, column_mean_height
-from atmosbox.theory.disc import DiscForm
-from atmosbox.theory.equation_of_state import Form
 
 _NODES, _WEIGHTS = leggauss(16)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
@@ -77,7 +75,6 @@ def _profile(
     mass: float,
     gravity: float,
     diameter: float,
-    form: Form | DiscForm | None,
     dimensions: int,
 ) -> Callable[[FloatArray], FloatArray]:
     """Return the function that gives the number density at a height inside the column."""
@@ -85,7 +82,7 @@ def _profile(
 
     require_positive(molecules_per_area=molecules_per_area, kT=kT, mass=mass)
     require_not_negative(gravity=gravity, diameter=diameter)
-    gas = crowding(dimensions, form)
+    gas = crowding(dimensions)
     if not top > bottom:
         raise ValueError(f"top = {top} must lie above bottom = {bottom}.")
     if diameter == 0.0:
@@ -123,7 +120,6 @@ def hydrostatic_layers(
     mass: float,
     gravity: float,
     diameter: float = 0.0,
-    form: Form | DiscForm | None = None,
     dimensions: int = 3,
 ) -> FloatArray:
     r"""Return the mean number density in each layer of a closed isothermal column.
@@ -146,9 +142,6 @@ def hydrostatic_layers(
         Acceleration of gravity [length time^-2]; zero is allowed.
     diameter
         Diameter of a molecule [length]; zero for an ideal gas.
-    form
-        Equation of state, as in :func:`atmosbox.theory.compressibility_factor`, ``"kolafa"`` by default; of
-        discs as in :func:`atmosbox.theory.compressibility_factor_discs`, ``"henderson"`` by default.
     dimensions
         3, or 2 for discs in a plane.
 
@@ -185,14 +178,14 @@ def hydrostatic_layers(
     z = as_floats(edges)
     if z.ndim != 1 or z.size < 2 or not np.all(np.diff(z) > 0.0):
         raise ValueError("edges must be at least two heights, each above the one before.")
-    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
+    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, dimensions)
     lower, upper = np.clip(z[:-1], bottom, top), np.clip(z[1:], bottom, top)
     reached = upper - lower
     held = profile(lower[:, np.newaxis] + reached[:, np.newaxis] * _NODES) @ _WEIGHTS * reached
     heavy = mass * gravity * reached / kT > _SHALLOW
     if np.any(heavy):
         ends = profile(np.stack([lower[heavy], upper[heavy]]))
-        gas = crowding(dimensions, form)
+        gas = crowding(dimensions)
         below, above = ends * kT * gas.compressibility_factor(gas.packing_fraction(ends, diameter))
         held[heavy] = (below - above) / (mass * gravity)
     layers: FloatArray = held / np.diff(z)
@@ -207,14 +200,13 @@ def hydrostatic_mean_height(
     mass: float,
     gravity: float,
     diameter: float = 0.0,
-    form: Form | DiscForm | None = None,
     dimensions: int = 3,
 ) -> float:
     r"""Return the mean height of the molecules of a closed isothermal column, :math:`\int n z\,dz / \int n\,dz`.
 
     Parameters
     ----------
-    molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions
+    molecules_per_area, bottom, top, kT, mass, gravity, diameter, dimensions
         As in :func:`hydrostatic_layers`.
 
     Returns
@@ -240,7 +232,7 @@ def hydrostatic_mean_height(
     >>> [round(hydrostatic_mean_height(*column, diameter), 3) for diameter in (0.0, 1.0)]
     [1.5, 1.78]
     """
-    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, form, dimensions)
+    profile = _profile(molecules_per_area, bottom, top, kT, mass, gravity, diameter, dimensions)
     if diameter == 0.0:
         return bottom + float(column_mean_height(top - bottom, kT, mass, gravity))
     depth = min(mass * gravity * (top - bottom) / kT, _EMPTY)

@@ -67,13 +67,12 @@ DENSE = {
 }
 
 
-@pytest.mark.parametrize("form", ["kolafa", "carnahan-starling"])
-def test_a_dense_column_is_in_hydrostatic_balance(form):
+def test_a_dense_column_is_in_hydrostatic_balance():
     heights = np.linspace(0.5, 11.5, 12)
-    density = column_at_rest.hydrostatic_column(heights, **DENSE, form=form)
+    density = column_at_rest.hydrostatic_column(heights, **DENSE)
 
     def balance(_height, n):
-        stiffness = theory.inverse_compressibility(theory.packing_fraction(n, 1.0), form)
+        stiffness = theory.inverse_compressibility(theory.packing_fraction(n, 1.0))
         return -n * 1.5 * 0.2 / (1.2 * stiffness)
 
     fall = integrate.solve_ivp(
@@ -83,13 +82,12 @@ def test_a_dense_column_is_in_hydrostatic_balance(form):
     assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
 
 
-@pytest.mark.parametrize("form", ["kolafa", "carnahan-starling"])
-def test_a_dense_column_holds_its_molecules_and_carries_their_weight(form):
+def test_a_dense_column_holds_its_molecules_and_carries_their_weight():
     nodes, weights = leggauss(64)
-    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **DENSE, form=form)
+    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **DENSE)
     assert 5.5 * weights @ inside == pytest.approx(3.0, rel=1e-11)
-    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **DENSE, form=form)
-    floor, ceiling = theory.gas_pressure(ends, 1.2, 1.0, form)
+    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **DENSE)
+    floor, ceiling = theory.gas_pressure(ends, 1.2, 1.0)
     assert floor - ceiling == pytest.approx(3.0 * 1.5 * 0.2, rel=1e-12)
 
 
@@ -166,39 +164,37 @@ def test_a_very_deep_column_ends_in_vacuum_without_a_warning():
 PLANE = DENSE | {"molecules_per_area": 4.0, "gravity": 0.3, "dimensions": 2}
 
 
-@pytest.mark.parametrize("form", ["henderson", "santos-lopez-yuste"])
-def test_the_free_energy_of_discs_is_the_integral_of_their_pressure(form):
+def test_the_free_energy_of_discs_is_the_integral_of_their_pressure():
     covered = np.linspace(0.0, 0.7, 29)
 
     def integrand(eta):
-        return 2.0 * float(theory.contact_value_discs(eta, form))
+        return 2.0 * float(theory.contact_value_discs(eta))
 
     room = [integrate.quad(integrand, 0.0, eta, epsabs=0.0, epsrel=1e-13)[0] for eta in covered]
-    assert np.allclose(theory.excess_free_energy_discs(covered, form), room, rtol=1e-12, atol=0.0)
+    assert np.allclose(theory.excess_free_energy_discs(covered), room, rtol=1e-12, atol=0.0)
     # and its slope is that pressure: d a / d ln(eta) = Z - 1
     step = 1e-5
     inside = covered[1:-1]
     above, below = inside * (1.0 + step), inside * (1.0 - step)
-    slope = theory.excess_free_energy_discs(above, form) - theory.excess_free_energy_discs(below, form)
-    excess = theory.compressibility_factor_discs(inside, form) - 1.0
+    slope = theory.excess_free_energy_discs(above) - theory.excess_free_energy_discs(below)
+    excess = theory.compressibility_factor_discs(inside) - 1.0
     assert np.allclose(slope / (2.0 * step), excess, rtol=1e-7, atol=0.0)
 
 
-@pytest.mark.parametrize("form", ["henderson", "santos-lopez-yuste"])
-def test_the_stiffness_of_discs_is_the_slope_of_their_pressure_and_of_their_potential(form):
+def test_the_stiffness_of_discs_is_the_slope_of_their_pressure_and_of_their_potential():
     covered, step = np.linspace(0.01, 0.69, 18), 1e-6
     above, below = covered * (1.0 + step), covered * (1.0 - step)
-    stiffness = theory.inverse_compressibility_discs(covered, form)
+    stiffness = theory.inverse_compressibility_discs(covered)
 
     def slope(pressure):
         return (pressure(above) - pressure(below)) / (2.0 * step)
 
-    pressed = slope(lambda eta: eta * theory.compressibility_factor_discs(eta, form)) / covered
+    pressed = slope(lambda eta: eta * theory.compressibility_factor_discs(eta)) / covered
     assert np.allclose(pressed, stiffness, rtol=1e-8, atol=0.0)
-    lifted = slope(lambda eta: np.log(eta) + theory.excess_chemical_potential_discs(eta, form))
+    lifted = slope(lambda eta: np.log(eta) + theory.excess_chemical_potential_discs(eta))
     assert np.allclose(lifted, stiffness, rtol=1e-8, atol=0.0)
     # it increases, as the search for the packing fraction of a potential requires
-    assert (np.diff(theory.inverse_compressibility_discs(np.linspace(0.0, 0.7, 1000), form)) > 0.0).all()
+    assert (np.diff(theory.inverse_compressibility_discs(np.linspace(0.0, 0.7, 1000))) > 0.0).all()
 
 
 def test_the_mean_free_path_of_thin_discs_is_one_over_the_strip_that_they_sweep():
@@ -207,14 +203,13 @@ def test_the_mean_free_path_of_thin_discs_is_one_over_the_strip_that_they_sweep(
     assert path == pytest.approx(1.0 / (2.0 * np.sqrt(2.0) * density * 0.9), rel=1e-5)
 
 
-@pytest.mark.parametrize("form", [None, "santos-lopez-yuste"])
-def test_a_plane_column_is_in_hydrostatic_balance(form):
+def test_a_plane_column_is_in_hydrostatic_balance():
     heights = np.linspace(0.5, 11.5, 12)
-    density = column_at_rest.hydrostatic_column(heights, **PLANE, form=form)
+    density = column_at_rest.hydrostatic_column(heights, **PLANE)
 
     def balance(_height, n):
         covered = theory.packing_fraction_discs(n, 1.0)
-        return -n * 1.5 * 0.3 / (1.2 * theory.inverse_compressibility_discs(covered, form or "henderson"))
+        return -n * 1.5 * 0.3 / (1.2 * theory.inverse_compressibility_discs(covered))
 
     fall = integrate.solve_ivp(
         balance, (0.5, 11.5), density[:1], t_eval=heights, method="DOP853", rtol=1e-12, atol=1e-14
@@ -224,16 +219,15 @@ def test_a_plane_column_is_in_hydrostatic_balance(form):
     assert np.allclose(density, fall.y[0], rtol=1e-10, atol=0.0)
 
 
-@pytest.mark.parametrize("form", [None, "santos-lopez-yuste"])
-def test_a_plane_column_holds_its_molecules_and_carries_their_weight(form):
+def test_a_plane_column_holds_its_molecules_and_carries_their_weight():
     nodes, weights = leggauss(64)
-    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **PLANE, form=form)
+    inside = column_at_rest.hydrostatic_column(6.0 + 5.5 * nodes, **PLANE)
     assert 5.5 * weights @ inside == pytest.approx(4.0, rel=1e-11)
-    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **PLANE, form=form)
-    floor, ceiling = theory.gas_pressure_discs(ends, 1.2, 1.0, form or "henderson")
+    ends = column_at_rest.hydrostatic_column([0.5, 11.5], **PLANE)
+    floor, ceiling = theory.gas_pressure_discs(ends, 1.2, 1.0)
     assert floor - ceiling == pytest.approx(4.0 * 1.5 * 0.3, rel=1e-12)
     edges = np.array([0.0, 0.4, 2.0, 5.0, 9.0, 12.0])
-    layers = theory.hydrostatic_layers(edges, **PLANE, form=form)
+    layers = theory.hydrostatic_layers(edges, **PLANE)
     assert layers @ np.diff(edges) == pytest.approx(4.0, rel=1e-12)
 
 
@@ -262,8 +256,6 @@ def test_columns_that_make_no_sense_are_refused():
         ({"gravity": -1.0}, "gravity = -1.0 must be a finite number of at least 0"),
         ({"top": 0.5}, "top = 0.5 must lie above bottom = 0.5"),
         ({"dimensions": 4}, "dimensions = 4 must be 2 or 3"),
-        ({"form": "henderson"}, "form = 'henderson' must be one of kolafa, carnahan-starling"),
-        ({"form": "kolafa", "dimensions": 2}, "form = 'kolafa' must be one of henderson, santos-lopez-yuste"),
     ]
     for wrong, sentence in cases:
         with pytest.raises(ValueError, match=sentence):

@@ -14,7 +14,8 @@ def test_the_mean_free_path_of_a_thin_gas_is_maxwells():
 
 def test_equal_species_share_the_collisions_of_one():
     rates = theory.collision_rate_between([0.2, 0.1], [1.0, 1.0], [1.0, 1.0], 2.0)
-    total = theory.collision_rate(0.3, 1.0, 2.0, 1.0, "carnahan-starling")
+    classic = theory.contact_value(theory.packing_fraction(0.3, 1.0), "carnahan-starling")
+    total = 4.0 * 0.3 * classic * np.sqrt(np.pi * 2.0)
     assert rates.sum(axis=1) == pytest.approx([total, total], rel=1e-14)
     assert rates[:, 0] == pytest.approx(2.0 * rates[:, 1], rel=1e-14)
 
