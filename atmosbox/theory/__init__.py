@@ -47,7 +47,7 @@ from atmosbox.theory.barometric import (
     column_floor_ratio,
     column_mean_height,
 )
-from atmosbox.theory.buoyancy import Convection, cape_cin, density_temperature, parcel_buoyancy
+from atmosbox.theory.buoyancy import Convection, cape_cin, parcel_buoyancy
 from atmosbox.theory.cloud_base import CloudBase, measured_cloud_base
 from atmosbox.theory.coexistence import CriticalPoint, critical_point, slope_of_pressure
 from atmosbox.theory.collision import (
@@ -105,6 +105,7 @@ from atmosbox.theory.evaporation import (
 from atmosbox.theory.finite_rate import DISSIPATION, Ascent
 from atmosbox.theory.humidity import (
     WATER_MASS_RATIO,
+    density_temperature,
     mixing_ratio,
     saturation_mixing_ratio,
     vapor_pressure,

@@ -14,43 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from atmosbox.theory._array import FloatArray, as_floats
-from atmosbox.theory._water import MASS_RATIO, checked_positive
+from atmosbox.theory._water import checked_positive
 from atmosbox.theory.constants import STANDARD_GRAVITY
 from atmosbox.theory.environment import DRY_AIR_GAS_CONSTANT
-
-
-def density_temperature(temperature: ArrayLike, vapor: ArrayLike, liquid: ArrayLike = 0.0) -> FloatArray:
-    r"""Return the temperature at which dry air would be as dense as air with this vapour and this liquid.
-
-    :math:`T (1 + r/\epsilon) / (1 + r + l)` [1]_: vapour makes air lighter, and a cloud carries the weight of its
-    water. Without liquid it is the virtual temperature.
-
-    Parameters
-    ----------
-    temperature
-        Temperature [K].
-    vapor, liquid
-        Mass per mass of dry air [kg kg^-1].
-
-    Returns
-    -------
-    ndarray
-        Density temperature [K].
-
-    References
-    ----------
-    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, equation 4.3.6.
-
-    Examples
-    --------
-    Ten grams of liquid compensate three kelvin of warmth:
-
-    >>> [round(float(density_temperature(270.0, 0.004, liquid)), 1) for liquid in (0.0, 0.010)]
-    [270.7, 268.0]
-    """
-    r = as_floats(vapor)
-    dense: FloatArray = as_floats(temperature) * (1.0 + r / MASS_RATIO) / (1.0 + r + as_floats(liquid))
-    return dense
 
 
 def parcel_buoyancy(

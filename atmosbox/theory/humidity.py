@@ -116,13 +116,44 @@ def saturation_mixing_ratio(pressure: ArrayLike, temperature: ArrayLike) -> Floa
     return mixing_ratio(saturation.saturation_vapor_pressure(temperature), pressure)
 
 
-def virtual_temperature(
-    temperature: ArrayLike, mixing_ratio: ArrayLike, liquid_mixing_ratio: ArrayLike = 0.0
-) -> FloatArray:
-    r"""Return the temperature at which dry air of the same pressure is as dense as this air.
+def density_temperature(temperature: ArrayLike, vapor: ArrayLike, liquid: ArrayLike = 0.0) -> FloatArray:
+    r"""Return the temperature at which dry air would be as dense as air with this vapour and this liquid.
 
-    :math:`T (1 + r / \epsilon) / (1 + r + l)`: vapour makes air lighter, cloud water heavier. With liquid it is
-    also called density temperature.
+    :math:`T (1 + r/\epsilon) / (1 + r + l)` [1]_: vapour makes air lighter, and a cloud carries the weight of its
+    water. Without liquid it is the virtual temperature.
+
+    Parameters
+    ----------
+    temperature
+        Temperature [K].
+    vapor, liquid
+        Mass per mass of dry air [kg kg^-1].
+
+    Returns
+    -------
+    ndarray
+        Density temperature [K].
+
+    References
+    ----------
+    .. [1] Emanuel, K. A. (1994), Atmospheric Convection, equation 4.3.6.
+
+    Examples
+    --------
+    Ten grams of liquid compensate three kelvin of warmth:
+
+    >>> [round(float(density_temperature(270.0, 0.004, liquid)), 1) for liquid in (0.0, 0.010)]
+    [270.7, 268.0]
+    """
+    r = as_floats(vapor)
+    dense: FloatArray = as_floats(temperature) * (1.0 + r / MASS_RATIO) / (1.0 + r + as_floats(liquid))
+    return dense
+
+
+def virtual_temperature(temperature: ArrayLike, mixing_ratio: ArrayLike) -> FloatArray:
+    r"""Return the temperature at which dry air of the same pressure is as dense as this air, which has no liquid.
+
+    :math:`T (1 + r / \epsilon) / (1 + r)`: vapour makes air lighter.
 
     Parameters
     ----------
@@ -130,8 +161,6 @@ def virtual_temperature(
         Temperature T [K].
     mixing_ratio
         Mass of vapour per mass of dry air r [kg kg^-1].
-    liquid_mixing_ratio
-        Mass of liquid that the air carries per mass of dry air l [kg kg^-1].
 
     Returns
     -------
@@ -149,13 +178,11 @@ def virtual_temperature(
 
     Examples
     --------
-    Fifteen grams of vapour add 2.7 K; as much cloud water takes away more than that:
+    Fifteen grams of vapour add 2.7 K:
 
-    >>> virtual_temperature(293.15, 0.015, [0.0, 0.015]).round(1)
-    array([295.8, 291.5])
+    >>> round(float(virtual_temperature(293.15, 0.015)), 1)
+    295.8
     """
     t = checked_positive(as_floats(temperature), "temperature")
     r = checked_not_negative(as_floats(mixing_ratio), "mixing_ratio")
-    liquid = checked_not_negative(as_floats(liquid_mixing_ratio), "liquid_mixing_ratio")
-    virtual: FloatArray = t * (1.0 + r / MASS_RATIO) / (1.0 + r + liquid)
-    return virtual
+    return density_temperature(t, r)

@@ -19,6 +19,7 @@ from atmosbox.theory._water import (
     TRIPLE_TEMPERATURE,
     VAPOR_HEAT,
 )
+from atmosbox.theory.vapor_number import vapor_number
 
 __all__ = ["IsobaricWater", "isobaric_water"]
 
@@ -38,13 +39,11 @@ class IsobaricWater(NamedTuple):
     """Mean vapour pressure [Pa]."""
 
 
-def isobaric_water(
-    pressure: float, temperature: float, air: int, vapor: int, liquid: int, nuclei_heat: float = 0.0
-) -> IsobaricWater:
+def isobaric_water(pressure: float, temperature: float, air: int, vapor: int, liquid: int) -> IsobaricWater:
     r"""Return the equilibrium of air, vapour and liquid at constant pressure, without heat exchange.
 
     Each division of the enthalpy, and each volume, has a probability proportional to its number of states. With
-    :math:`\varphi` for every molecule outside the liquid and :math:`M = c_{pd} N_a + c_{pv} N_v + c_l n + C`,
+    :math:`\varphi` for every molecule outside the liquid and :math:`M = c_{pd} N_a + c_{pv} N_v + c_l n`,
 
     .. math:: P(N_v) \propto \frac{(N_a + N_v)!}{N_v!} \left( \frac{\zeta}{p} \right)^{N_v}
               \frac{(H - N_v \varphi)^M}{\Gamma(M + 1)} , \qquad
@@ -60,8 +59,6 @@ def isobaric_water(
         Temperature of air, vapour and liquid at the start [K].
     air, vapor, liquid
         Molecules of air :math:`N_a`, of vapour and of liquid at the start [1].
-    nuclei_heat
-        Heat capacity of condensation nuclei at the temperature of the liquid, C [k].
 
     Returns
     -------
@@ -71,7 +68,7 @@ def isobaric_water(
     Raises
     ------
     ValueError
-        If the pressure or the temperature is not positive, a number is negative, or there are no molecules or nuclei.
+        If the pressure or the temperature is not positive, a number is negative, or there are no molecules.
 
     Notes
     -----
@@ -93,31 +90,24 @@ def isobaric_water(
     (3.9, 1.6, 291.5)
     """
     require_positive(pressure=pressure, temperature=temperature)
-    require_not_negative(air=air, vapor=vapor, liquid=liquid, nuclei_heat=nuclei_heat)
+    require_not_negative(air=air, vapor=vapor, liquid=liquid)
     water = int(vapor) + int(liquid)
-    if not air + water + nuclei_heat > 0.0:
-        raise ValueError("air, vapor, liquid and nuclei_heat are all 0: nothing could hold the enthalpy.")
+    if not air + water > 0:
+        raise ValueError("air, vapor and liquid are all 0: nothing could hold the enthalpy.")
     number = np.arange(water + 1)
-    enthalpy = (
-        AIR_HEAT * air + VAPOR_HEAT * vapor + LIQUID_HEAT * liquid + nuclei_heat
-    ) * temperature + vapor * BINDING
+    enthalpy = (AIR_HEAT * air + VAPOR_HEAT * vapor + LIQUID_HEAT * liquid) * temperature + vapor * BINDING
     left = enthalpy - BINDING * number
-    states = AIR_HEAT * air + VAPOR_HEAT * number + LIQUID_HEAT * (water - number) + nuclei_heat
+    states = AIR_HEAT * air + VAPOR_HEAT * number + LIQUID_HEAT * (water - number)
     possible = left > 0.0
     t = TRIPLE_TEMPERATURE
     zeta = np.log(TRIPLE_PRESSURE / pressure) + EXCESS * np.log(t) + BINDING / t
     weight = zeta * number - _log_gamma(number + 1.0) + _log_gamma(air + number + 1.0)
     weight += states * np.log(np.where(possible, left, 1.0)) - _log_gamma(states + 1.0)
-    weight = np.where(possible, weight, -np.inf)
-    share = np.exp(weight - np.max(weight))
-    probability: FloatArray = share / np.sum(share)
-    mean = float(probability @ number)
+    found = vapor_number(np.where(possible, weight, -np.inf))
     return IsobaricWater(
-        probability,
-        mean,
-        float(probability @ (number - mean) ** 2),
-        float(probability @ (left / states)),
-        float(pressure * (probability @ (number / np.maximum(air + number, 1.0)))),
+        *found,
+        float(found.probability @ (left / states)),
+        float(pressure * (found.probability @ (number / np.maximum(air + number, 1.0)))),
     )
 
 

@@ -33,7 +33,8 @@ class VaporNumber(NamedTuple):
     """Variance of that number [1]."""
 
 
-def _vapor_number(log_weight: FloatArray) -> VaporNumber:
+def vapor_number(log_weight: FloatArray) -> VaporNumber:
+    """Return the distribution of a number whose values 0, 1, 2, ... have these logarithms of their weights."""
     number = np.arange(log_weight.size)
     weight = np.exp(log_weight - np.max(log_weight))
     probability: FloatArray = weight / np.sum(weight)
@@ -88,7 +89,7 @@ def isothermal_vapor_number(water: int, temperature: float, volume: float) -> Va
     checked_temperature(as_floats(temperature))
     expected = _water.saturation(as_floats(temperature)) * volume / (BOLTZMANN * temperature)
     number = np.arange(int(water) + 1)
-    return _vapor_number(special.xlogy(number, expected) - special.gammaln(number + 1.0))
+    return vapor_number(special.xlogy(number, expected) - special.gammaln(number + 1.0))
 
 
 def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nuclei_heat: float = 0.0) -> VaporNumber:
@@ -157,4 +158,4 @@ def isolated_vapor_number(water: int, air: int, energy: float, volume: float, nu
     possible = (left > 0.0) & (states > 0.0)
     held = (states - 1.0) * np.log(np.where(possible, left, 1.0)) - special.gammaln(np.where(possible, states, 1.0))
     weight = (zeta + BINDING / t) * number - special.gammaln(number + 1.0) + held
-    return _vapor_number(np.where(possible, weight, -np.inf))
+    return vapor_number(np.where(possible, weight, -np.inf))

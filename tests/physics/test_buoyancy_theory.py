@@ -111,7 +111,7 @@ def test_a_tropical_sounding_of_many_levels_as_metpy_has_it():
 def test_cloud_water_weighs_on_the_parcel():
     path = theory.parcel_path(LEVELS, 1e5, 300.0, 0.018)
     light = theory.virtual_temperature(path.temperature, path.vapor)
-    heavy = theory.virtual_temperature(path.temperature, path.vapor, path.liquid)
+    heavy = theory.density_temperature(path.temperature, path.vapor, path.liquid)
     around = light - np.array([0.0, 0.5, 3.0, 4.0, 3.0, -1.0])
     loaded, free = theory.cape_cin(LEVELS, around, heavy), theory.cape_cin(LEVELS, around, light)
     assert 0.0 < loaded.cape < free.cape

@@ -109,12 +109,12 @@ def test_humidities_are_metpys_spelling_and_values():
     assert theory.virtual_temperature(warm, ratio) == pytest.approx(expected, rel=1e-6)
 
 
-def test_virtual_temperature_is_that_of_dry_air_as_dense():
+def test_density_temperature_is_that_of_dry_air_as_dense():
     pressure, warm, vapor, liquid = 9e4, 290.0, 0.012, 0.003
     e = theory.vapor_pressure(pressure, vapor)
     dry = (pressure - e) / (R_DRY * warm)
     density = dry * (1.0 + vapor + liquid)
-    assert theory.virtual_temperature(warm, vapor, liquid) == pytest.approx(pressure / (R_DRY * density), rel=1e-14)
+    assert theory.density_temperature(warm, vapor, liquid) == pytest.approx(pressure / (R_DRY * density), rel=1e-14)
 
 
 def test_the_cloud_base_is_metpys_to_a_tenth_of_a_hectopascal():
