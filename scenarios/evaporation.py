@@ -45,9 +45,9 @@ from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import open_pool, warmed_walls
 from atmosbox.scene.moisture import water
 from atmosbox.scene.panels import over_time
-from atmosbox.scene.piston import moist_parcel
+from atmosbox.scene.piston import moist_parcel, parcel_facts
 from atmosbox.scene.rounding import rounded
-from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
+from atmosbox.theory.constants import BOLTZMANN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -170,12 +170,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         samples=3,
         settle=min(_settled(start, settings), FRAMES - 1),
         facts={
-            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in start.sides + 1.0)
-            + " nm at the start, real size",
-            "weight of a molecule": "1, each stands for one real molecule",
-            "exaggeration": "none"
-            if settings.diameter == 0.37
-            else f"molecules {si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+            **parcel_facts(scale, start.sides),
+            **({"exaggeration": "none"} if settings.diameter == 0.37 else {}),
             "vapour at the start": f"{start.vapour} molecules",
             "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
             + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")

@@ -37,7 +37,7 @@ from atmosbox.scene import (
 from atmosbox.scene.ascent import atmosphere_panel, refuse_descent
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.knob import altitude
-from atmosbox.scene.piston import CLOSING, size_of_parcel
+from atmosbox.scene.piston import CLOSING, free_time_of, parcel_facts, size_of_parcel
 from atmosbox.scene.rounding import rounded
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -126,10 +126,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     n = settings.molecules
     rng = RandomNumbers(settings.seed)
     scale, density, sides, excess = _start(settings, ideal=engine.ideal)
-    mean_free_time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-    if engine.ideal:  # no excluded volume
-        mean_free_time *= float(law.contact_value(law.packing_fraction(density, 1.0)))
-    mean_free_time = rounded(mean_free_time)
+    mean_free_time = free_time_of(density, ideal=engine.ideal)
     length = tuple(sides + 1.0)
     degrees = 2.0 if settings.rotation else 0.0
     spin = rotational_energies(1.0, np.full(n, degrees), rng)
@@ -152,7 +149,6 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         seed=settings.seed,
         driver=driver,
     )
-    gamma = "7/5" if settings.rotation else "5/3"
     warmth = environment.adiabat(settings.si.top_pressure) * _ascent(settings).finite_speed(settings.si.top_pressure)
     return Setup(
         parcel,
@@ -161,11 +157,8 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         FRAMES,
         (Air(), Lift(driver, environment)),
         facts={
-            "box": f"{length[0] * scale.length * 1e9:.1f} x {length[1] * scale.length * 1e9:.1f} x "
-            f"{length[2] * scale.length * 1e9:.1f} nm at the start, real size",
-            "weight of a molecule": "1, each stands for one real molecule",
-            "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
-            "gamma": gamma,
+            **parcel_facts(scale, sides),
+            "gamma": "7/5" if settings.rotation else "5/3",
             "ascent": f"{environment.height(math.inf) / 1000.0:.1f} km in {duration * scale.time * 1e9:.3g} ns",
             "error by the finite speed": f"{warmth:.2g} K at the top",
         },

@@ -12,13 +12,14 @@ from atmosbox.engine import Piston, Specular
 from atmosbox.scene.moisture import moist_air
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.units import Scale
+from atmosbox.theory.constants import DRY_AIR
 
 if TYPE_CHECKING:
     from atmosbox.engine import FollowPressure, Liquid, Parcel
     from atmosbox.engine.core.random import Source
     from atmosbox.scene.engines import EngineChoice
 
-__all__ = ["CLOSING", "FLATNESS", "moist_parcel", "size_of_parcel"]
+__all__ = ["CLOSING", "FLATNESS", "free_time_of", "moist_parcel", "parcel_facts", "size_of_parcel"]
 
 FLATNESS = 0.4
 """Height of the box over its width: the box rises to be nearly as high as it is wide, and a slow piston makes less
@@ -76,6 +77,29 @@ def size_of_parcel(
         excess *= 0.0 if ideal else law.contact_share(sides, 1.0, molecules)
         density *= wanted / (density + excess)
     return rounded(density), rounded(sides), rounded(excess / density**2)
+
+
+def free_time_of(density: float, *, ideal: bool) -> float:
+    """Return the mean free time at kT = 1 in a gas of a density [1/diameter^3]; longer if molecules have no volume."""
+    time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
+    return rounded(time * (float(law.contact_value(law.packing_fraction(density, 1.0))) if ideal else 1.0))
+
+
+def parcel_facts(scale: Scale, sides: NDArray[np.float64]) -> dict[str, str]:
+    """Return the lines of the model card about the box of a parcel and its molecules.
+
+    Parameters
+    ----------
+    scale
+        The units of the box.
+    sides : (axis,)
+        Sides of the space that centres can reach at the start [diameter].
+    """
+    return {
+        "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0) + " nm at the start, real size",
+        "weight of a molecule": "1, each stands for one real molecule",
+        "exaggeration": f"molecules {scale.length / DRY_AIR.diameter:.1f} times as wide as those of air",
+    }
 
 
 def moist_parcel(

@@ -14,10 +14,9 @@ from atmosbox.scene.engines import EngineChoice
 from atmosbox.scene.instruments import Air, Environment, MoistLift, Water
 from atmosbox.scene.knob import altitude, way
 from atmosbox.scene.moisture import water
-from atmosbox.scene.piston import CLOSING, moist_parcel
+from atmosbox.scene.piston import CLOSING, moist_parcel, parcel_facts
 from atmosbox.scene.rounding import rounded
 from atmosbox.scene.setup import Setup
-from atmosbox.theory.constants import DRY_AIR
 
 __all__ = ["rise"]
 
@@ -98,10 +97,7 @@ def rise(
         (Air(), Water(rains=ascent.rains), MoistLift(driver, environment, curve, scatter)),
         samples=samples,
         facts={
-            "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0)
-            + " nm at the start, real size",
-            "weight of a molecule": "1, each stands for one real molecule",
-            "exaggeration": f"molecules {ascent.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
+            **parcel_facts(scale, sides),
             "water": f"{1000.0 * ascent.total_water:.1f} g/kg: {ascent.vapour} molecules",
             "lifting condensation level": f"{base / 100.0:.1f} hPa" if base > ascent.top_pressure else "not reached",
             "ascent": f"in {duration * scale.time * 1e9:.3g} ns",

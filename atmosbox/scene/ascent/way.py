@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from atmosbox import theory as law
 from atmosbox.scene.moisture import nuclei_heat_capacity, vapour_molecules
-from atmosbox.scene.piston import size_of_parcel
-from atmosbox.scene.rounding import rounded
+from atmosbox.scene.piston import free_time_of, size_of_parcel
 from atmosbox.scene.units import Scale
 from atmosbox.theory.constants import BOLTZMANN, DRY_AIR
 
@@ -85,10 +84,7 @@ class MoistAscent:
 
     def mean_free_time(self, *, ideal: bool) -> float:
         """Return the mean free time at the start, in units of the box."""
-        density = self.box(ideal=ideal)[0]
-        time = float(law.mean_free_time(density, 1.0, 1.0, 1.0))
-        # molecules without volume collide less often
-        return rounded(time * (float(law.contact_value(law.packing_fraction(density, 1.0))) if ideal else 1.0))
+        return free_time_of(self.box(ideal=ideal)[0], ideal=ideal)
 
     @property
     def vapour(self) -> int:
