@@ -202,9 +202,7 @@ def open_pool(parcel: Any) -> Knob:
     return Knob("open_pool", "share of the pool that is open; the rest is covered", "percent", 0.0, 100.0, 100.0, turn)
 
 
-def gravity(
-    parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float, name: str = "gravity"
-) -> Knob:
+def gravity(parcel: Parcel, scale: Scale, settings: SceneSettings, *, low: float, high: float) -> Knob:
     """Return the knob that sets the strength of gravity; see `wall_temperature` for the parameters.
 
     Examples
@@ -219,7 +217,7 @@ def gravity(
     def turn(acceleration: float) -> None:
         parcel.set_gravity(acceleration / scale.acceleration)
 
-    return _of_setting(settings, name, low, high, turn)
+    return _of_setting(settings, "gravity", low, high, turn)
 
 
 def altitude(parcel: Parcel, driver: FollowPressure, height: Callable[[float], float]) -> Knob:

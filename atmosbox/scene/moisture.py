@@ -22,8 +22,8 @@ NUCLEI = 100.0
 """Heat capacity of the nuclei on which droplets form, in k, where there is enough air."""
 
 
-def water(scale: Scale, diameter: float = 1.0) -> Substance:
-    """Return water in the units of a scene whose unit of mass is a molecule of air.
+def water(scale: Scale) -> Substance:
+    """Return water in the units of a scene whose units of mass and length are a molecule of air and its diameter.
 
     Its binding energy and its heat capacity are those of `atmosbox.theory.saturation_vapor_pressure`; so its saturation
     vapour pressure follows that formula at every temperature.
@@ -32,8 +32,6 @@ def water(scale: Scale, diameter: float = 1.0) -> Substance:
     ----------
     scale
         The units of the scene.
-    diameter
-        Diameter of a molecule of vapour [length].
 
     Examples
     --------
@@ -46,7 +44,7 @@ def water(scale: Scale, diameter: float = 1.0) -> Substance:
     at_unit = float(law.saturation_vapor_pressure(scale.temperature)) / scale.pressure
     return Substance(
         mass=law.WATER_MASS_RATIO,
-        diameter=diameter,
+        diameter=1.0,
         binding_energy=binding,
         heat_capacity=law.LIQUID_HEAT_CAPACITY,
         volatility=rounded(at_unit * math.exp(binding)),
