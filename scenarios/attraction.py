@@ -272,15 +272,19 @@ def theory(dataset: "xr.Dataset", settings: Settings) -> dict[str, np.ndarray]:
     return found
 
 
-_OF_SLAB = (
-    "vapor_number_density",
-    "liquid_number_density",
-    "normal_pressure",
-    "vapor_well_energy",
-    "liquid_well_energy",
-    "surface_tension",
-)
-"""Measurements that most frames of a slab must have: a thin layer has no inside, and may have no vapour beside it."""
+def _units_of_slab(scale: Scale) -> dict[str, float]:
+    """Return the measurements that most frames of a slab must have, with their units.
+
+    A thin layer has no inside, and may have no vapour beside it.
+    """
+    return {
+        "vapor_number_density": scale.number_density,
+        "liquid_number_density": scale.number_density,
+        "normal_pressure": scale.pressure,
+        "vapor_well_energy": scale.energy,
+        "liquid_well_energy": scale.energy,
+        "surface_tension": scale.pressure * scale.length,
+    }
 
 
 def _gas_pressure(settings: Settings) -> float:
@@ -297,7 +301,7 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     if late.sizes["elapsed_time"] < 2 * BLOCKS:
         return ()
     if settings.start == "slab" and all(
-        name in late and np.isfinite(late[name].values).mean() > 0.5 for name in _OF_SLAB
+        name in late and np.isfinite(late[name].values).mean() > 0.5 for name in _units_of_slab(_scale(settings))
     ):
         return _of_slab(late, settings)
     found = []
@@ -339,16 +343,8 @@ def _of_slab(late: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]:
     share = min(max((dense - mean) / (dense - thin), 0.0), 1.0)
     memory = 2.0 * share * height / math.sqrt(8.0 * kT / math.pi)
     frame = float(late.elapsed_time[1] - late.elapsed_time[0]) * 1e-9 / scale.time
-    units = {
-        "vapor_number_density": scale.number_density,
-        "liquid_number_density": scale.number_density,
-        "normal_pressure": scale.pressure,
-        "vapor_well_energy": scale.energy,
-        "liquid_well_energy": scale.energy,
-        "surface_tension": scale.pressure * scale.length,
-    }
     series = {}
-    for name, unit in units.items():
+    for name, unit in _units_of_slab(scale).items():
         values = late[name].values / unit
         series[name] = np.where(np.isfinite(values), values, np.nanmean(values))
 

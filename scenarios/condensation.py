@@ -38,10 +38,10 @@ from atmosbox.scene import (
 )
 from atmosbox.scene.engines import EXACT, used
 from atmosbox.scene.exchange import MoistBox
-from atmosbox.scene.headline import CHANCE_ALONE
 from atmosbox.scene.knob import wall_temperature
 from atmosbox.scene.moisture import moist_air, nuclei_heat_capacity, water
 from atmosbox.scene.panels import over_time
+from atmosbox.scene.statistics import BlockAverage
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -226,20 +226,9 @@ def headlines(dataset: "xr.Dataset", settings: Settings) -> tuple[Headline, ...]
     found = []
     for name, measured, unit, shown, label, expected in rows:
         mean = block_average(measured.values, BLOCKS, memory / settings.si.duration * FRAMES)
-        error = max(float(mean.standard_error), alone * float(expected.mean()) / share if share else 0.0)
-        found.append(
-            Headline(
-                f"mean_{name}",
-                float(mean.mean),
-                error,
-                float(expected.mean()),
-                0.0,
-                CHANCE_ALONE,
-                unit,
-                shown,
-                label,
-            )
-        )
+        theory = float(expected.mean())
+        error = np.maximum(mean.standard_error, alone * theory / share if share else 0.0)
+        found.append(Headline.of_mean(f"mean_{name}", label, BlockAverage(mean.mean, error), theory, unit, shown))
     return tuple(found)
 
 

@@ -14,6 +14,7 @@ whatever its buoyancy. Exaggerated: some ten kilometres are climbed within nanos
 
 import functools
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -143,9 +144,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     found = _read(settings.sounding)
     facts = {"sounding": f"{found.name}: {len(found)} levels"}
     facts |= {f"remark {number}": remark for number, remark in enumerate([*found.remarks, *found.doubts], 1)}
-    return Setup(
-        **(vars(setup) | {"facts": facts | dict(setup.facts) | {"verdict": _verdict(settings)}, "doubts": found.doubts})
-    )
+    return replace(setup, facts=facts | dict(setup.facts) | {"verdict": _verdict(settings)}, doubts=found.doubts)
 
 
 def _convection(settings: Settings, *, weight: bool = True) -> law.Convection:

@@ -37,7 +37,6 @@ def execute_from(
         Path that its file would have, see `atmosbox.file.run_states.StateCheckpoint`; None stores no state.
     progress
         Called with the completed share and a word on the present activity.
-        Called with the share that is done and a word on what is being done.
 
     Raises
     ------

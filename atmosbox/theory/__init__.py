@@ -170,7 +170,6 @@ from atmosbox.theory.wall_law import (
 )
 from atmosbox.theory.well_gas import (
     square_well_compressibility,
-    square_well_energy,
     square_well_second_virial,
     square_well_third_virial,
 )
@@ -280,7 +279,6 @@ __all__ = [
     "saturation_vapor_pressure_iapws",
     "slope_of_pressure",
     "square_well_compressibility",
-    "square_well_energy",
     "square_well_second_virial",
     "square_well_third_virial",
     "staying_energy_density",

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "square_well_compressibility",
-    "square_well_energy",
     "square_well_second_virial",
     "square_well_third_virial",
 ]
@@ -111,33 +110,3 @@ def square_well_compressibility(density: ArrayLike, temperature: ArrayLike, rang
     rho = np.asarray(density, np.float64)
     second, third = square_well_second_virial(temperature, range), square_well_third_virial(temperature, range)
     return np.asarray(1.0 + rho * (second + rho * third))
-
-
-def square_well_energy(density: ArrayLike, temperature: ArrayLike, range: float = 1.5) -> Array:
-    r"""Return the potential energy of a molecule in a gas of low density, in depths of the well.
-
-    :math:`u = -T^2 (\rho\, dB_2/dT + \rho^2 / 2\; dB_3/dT)`, from the free energy that belongs to the pressure. It is
-    minus half the mean number of wells that a molecule is in.
-
-    Parameters
-    ----------
-    density, temperature
-        Number density [diameter^-3], and temperature T*.
-    range
-        Reach lambda of the well, from 1 to 2 [diameter].
-
-    Examples
-    --------
-    In a very thin gas a molecule has rho V e^(1/T) partners in the volume V of its well, rho V without attraction:
-
-    >>> volume = 4.0 * np.pi / 3.0 * (1.5**3 - 1.0)
-    >>> round(float(square_well_energy(1e-9, 1.0) / (-0.5 * 1e-9 * volume * np.e)), 6)
-    1.0
-    """
-    rho, warmth = np.asarray(density, np.float64), np.asarray(temperature, np.float64)
-    x = np.expm1(1.0 / warmth)
-    one, two, three = _third(range)
-    # -T^2 d/dT of x is e^(1/T) = 1 + x
-    second = -_HARD * (range**3 - 1.0)
-    third = -(_HARD**2) / 8.0 * (one + x * (2.0 * two + 3.0 * x * three))
-    return np.asarray((1.0 + x) * rho * (second + 0.5 * rho * third))

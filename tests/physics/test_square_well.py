@@ -21,6 +21,7 @@ from atmosbox.scene.statistics import block_average
 from atmosbox.simulation import runner
 from atmosbox.theory.constants import BOLTZMANN
 from tests.oracle.mayer import fourth_virial
+from tests.oracle.well_energy import square_well_energy
 
 ROUND = (Periodic(),) * 6
 
@@ -57,6 +58,11 @@ def test_virial_coefficients_are_the_integrals_of_mayer(range_):
     assert float(theory.square_well_third_virial(kT, range_)) == pytest.approx(product.mean(), abs=4.0 * error)
 
 
+def test_in_a_very_thin_gas_a_molecule_has_as_many_partners_as_boltzmann_says():
+    volume = 4.0 * np.pi / 3.0 * (1.5**3 - 1.0)
+    assert square_well_energy(1e-9, 1.0) == pytest.approx(-0.5 * 1e-9 * volume * np.e, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("kT", "runs"), [(1.5, 2), *(pytest.param(kT, 4, marks=pytest.mark.validate) for kT in (1.0, 1.5, 2.0, 3.0))]
 )
@@ -84,7 +90,7 @@ def test_a_thin_gas_has_the_pressure_and_energy_of_the_virial_series(kT, runs):
     print(kT, factor, float(theory.square_well_compressibility(density, kT)), energy)
     assert factor.standard_error < 2.5e-3
     assert abs(factor.mean - theory.square_well_compressibility(density, kT)) < 4.0 * factor.standard_error
-    assert abs(energy.mean - theory.square_well_energy(density, kT)) < 4.0 * energy.standard_error
+    assert abs(energy.mean - square_well_energy(density, kT)) < 4.0 * energy.standard_error
 
 
 @pytest.mark.validate

@@ -37,7 +37,6 @@ class Drift(NamedTuple):
     """Too warm, because of molecules in clusters in clear air and at the cloud base [K]."""
     lag: Array
     """Too cold, because vapour and heat are still on their way to the liquid [K]."""
-    """Too cold, because vapour and heat are under way to the liquid [K]."""
     piston: Array
     """Too cold, because the piston gives way to fluctuations [K]."""
     room: Array
