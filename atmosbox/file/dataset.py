@@ -81,11 +81,7 @@ def headline_variables(headline: _Headline) -> dict[str, xr.Variable]:
         derived(parent, "_theory"): headline.theory,
         derived(parent, "_tolerance"): headline.tolerance,
     }
-    held = {
-        entry.name: xr.Variable((), float(number), entry.attributes(), entry.encoding(()))
-        for entry, number in stated.items()
-        if number is not None
-    }
+    held = {entry.name: entry.holding(float(number)) for entry, number in stated.items() if number is not None}
     held[parent.name].attrs["display_units"] = headline.display_unit
     if headline.verdict is not None:
         allowed = {"misfit_allowed_by_chance": headline.chance, "misfit_allowed_as_known": headline.known}
@@ -108,12 +104,8 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
 
 def _measured(frames: Mapping[str, npt.ArrayLike]) -> dict[str, xr.Variable]:
     """Return the variables that hold these arrays."""
-    held = {}
-    for name, values in frames.items():
-        declared = variable(name)
-        array = _array(declared, values)
-        held[name] = xr.Variable(declared.dims, array, declared.attributes(), declared.encoding(array.shape))
-    return held
+    declared = {name: variable(name) for name in frames}
+    return {name: declared[name].holding(_array(declared[name], values)) for name, values in frames.items()}
 
 
 def _coordinate(name: str, values: npt.ArrayLike, time_unit: str) -> xr.Variable:
@@ -128,8 +120,7 @@ def _coordinate(name: str, values: npt.ArrayLike, time_unit: str) -> xr.Variable
     array = _array(declared, values)
     if declared.dtype != "U" and (np.diff(array) <= 0).any():
         raise ValueError(f"the coordinate {name} does not rise from each value to the next")
-    attrs = declared.attributes() | ({"units": time_unit} if name == "elapsed_time" else {})
-    return xr.Variable(declared.dims, array, attrs, declared.encoding(array.shape))
+    return (replace(declared, units=time_unit) if name == "elapsed_time" else declared).holding(array)
 
 
 def dataset(

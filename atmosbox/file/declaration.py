@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["SUFFIXES", "Variable", "derived"]
 
@@ -112,6 +116,12 @@ class Variable:
             chunks = (frames, molecules, *shape[2:])
             stored |= {"zlib": True, "complevel": 4, "shuffle": True, "chunksizes": chunks}
         return stored
+
+    def holding(self, values: npt.ArrayLike) -> xr.Variable:
+        """Return values as a variable of a dataset, with these attributes and this encoding."""
+        import xarray as xr
+
+        return xr.Variable(self.dims, values, self.attributes(), self.encoding(np.shape(values)))
 
 
 SUFFIXES = ("_se", "_count", "_theory", "_tolerance")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from atmosbox.errors import FileError
-from atmosbox.file.variables import variable
+from atmosbox.file.variables import known
 
 if TYPE_CHECKING:
     import netCDF4
@@ -98,9 +98,8 @@ def _parsed(text: object) -> Any:
 def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> None:
     """Refuse a declared variable that does not agree with its declaration."""
     numeric = isinstance(held.dtype, np.dtype) and held.dtype.kind in "iuf"
-    try:
-        declared = variable(name)
-    except KeyError:
+    declared = known(name)
+    if declared is None:
         return
     if numeric == (declared.dtype == "U"):
         found, wanted = ("numbers", "text") if numeric else ("text", "numbers")

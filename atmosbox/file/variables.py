@@ -16,7 +16,7 @@ from typing import Any
 
 from atmosbox.file.declaration import SUFFIXES, Variable, derived
 
-__all__ = ["VARIABLES", "variable"]
+__all__ = ["VARIABLES", "known", "variable"]
 
 _TIME, _MOLECULE, _PATH = ("elapsed_time",), ("molecule",), ("elapsed_time", "molecule", "axis")
 _MEAN, _POINT = "elapsed_time: mean", "elapsed_time: point"
@@ -310,10 +310,18 @@ def variable(name: str) -> Variable:
     >>> error.standard_name, error.units_metadata
     ('air_temperature standard_error', 'temperature: difference')
     """
+    found = known(name)
+    if found is None:
+        raise KeyError(f"{name!r} is not declared in atmosbox.file.dataset.VARIABLES")
+    return found
+
+
+def known(name: str) -> Variable | None:
+    """Return the declaration of a variable as `variable` does; None if nothing of that name is declared."""
     if name in VARIABLES:
         return VARIABLES[name]
     for suffix in SUFFIXES:
         parent = VARIABLES.get(name.removesuffix(suffix))
         if parent is not None and name.endswith(suffix):
             return derived(parent, suffix)
-    raise KeyError(f"{name!r} is not declared in atmosbox.file.dataset.VARIABLES")
+    return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.file.variables import variable
+from atmosbox.file.variables import known
 from atmosbox.live.trace import Trace, plain
 from atmosbox.scene.panels import Panel
 
@@ -141,12 +141,5 @@ def without_headlines(panel: Panel) -> Panel | None:
     """
     if panel.kind == "discs":
         return panel
-    lines = tuple(line for line in panel.lines if all(map(_declared, line.variables)))
+    lines = tuple(line for line in panel.lines if all(known(name.partition("[")[0]) for name in line.variables))
     return replace(panel, lines=lines, headlines=()) if lines else None
-
-
-def _declared(name: str) -> bool:
-    try:
-        return bool(variable(name.partition("[")[0]))
-    except KeyError:
-        return False

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.file.variables import variable
+from atmosbox.file.variables import known
 from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 
 __all__ = ["Meaning", "declared", "names", "panel_record"]
@@ -46,11 +46,8 @@ def declared(name: str, time_unit: str = "ns") -> Meaning:
     name = name.partition("[")[0]
     if name == "elapsed_time":
         return Meaning(time_unit, "time")
-    try:
-        found = variable(name)
-    except KeyError:
-        return Meaning("1", name.replace("_", " "))
-    return Meaning(found.units or "1", found.long_name)
+    found = known(name)
+    return Meaning("1", name.replace("_", " ")) if found is None else Meaning(found.units or "1", found.long_name)
 
 
 def names(panels: Iterable[Panel]) -> tuple[str, ...]:

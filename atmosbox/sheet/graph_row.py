@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from atmosbox.file.variables import variable
+from atmosbox.file.variables import known, variable
 from atmosbox.scene.conversion import from_si
 from atmosbox.scene.panels import Line, Panel
 from atmosbox.sheet.number_text import bare, spelled
@@ -58,7 +58,7 @@ def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
     found = []
     for panel in panels(prepared.settings) if callable(panels) else panels:
         for line in panel.lines if panel.kind in ("line", "profile", "histogram") else ():
-            if line.role != "data" or not _known(line.y):
+            if line.role != "data" or known(line.y) is None:
                 continue
             unit = spelled((panel.y_unit if panel.kind != "profile" else panel.x_unit) or _si_unit(panel, line))
             curve = f"{line.label}{_where(panel, line)}{f' [{unit}]' if unit else ''}"
@@ -66,13 +66,6 @@ def graph_rows(runs: Sequence[Trial]) -> list[dict[str, Any]]:
             lines = [_line(run, panel, line, theory) for run in runs]
             found.append({"graph": panel.title, "curve": curve, "lines": lines})
     return found
-
-
-def _known(name: str) -> bool:
-    try:
-        return bool(variable(name))
-    except KeyError:
-        return False
 
 
 def _si_unit(panel: Panel, line: Line) -> str:

@@ -124,7 +124,8 @@ def assemble(
         # CF takes a coordinate in pascal for a vertical axis; so a pressure is a label, not a dimension, of the grid
         dims += (f"{axis.name}_setting" if _is_pressure(axis) else own,)
         coords[own] = _coordinate(axis, own, dims[-1])
-    coords["member"] = _member(plan.members)
+    member = Variable("member", ("member",), "1", "number of the member", "realization", dtype="i8", ledger=True)
+    coords["member"] = member.holding(np.arange(1, plan.members + 1))
     data = _about_members(plan, ordered, dims)
     for name, found in measured.items():
         data |= _headline(name, found, plan, dims)
@@ -190,19 +191,14 @@ def _coordinate(axis: Axis, name: str, dim: str) -> xr.Variable:
     if not axis.numeric:
         words = ["on" if value is True else "off" if value is False else str(value) for value in axis.values]
         declared = Variable(name, (dim,), "", p.help, dtype="U")
-        return xr.Variable((dim,), np.array(words, dtype=str), declared.attributes(), declared.encoding(()))
+        return declared.holding(np.array(words, dtype=str))
     unit = declared_unit(p.unit).si
     known = "[" not in unit  # values in an unusual unit stay in their documented unit
     values = np.array(axis.si if known else [float(value) for value in axis.values])
     standard = "air_pressure" if _is_pressure(axis) else None
-    declared = Variable(name, (dim,), unit if known else p.unit, p.help, standard, ledger=True)
-    attributes = declared.attributes() | {"display_units": p.unit}
-    return xr.Variable((dim,), values, attributes, declared.encoding(values.shape))
-
-
-def _member(members: int) -> xr.Variable:
-    declared = Variable("member", ("member",), "1", "number of the member", "realization", dtype="i8", ledger=True)
-    return xr.Variable(("member",), np.arange(1, members + 1), declared.attributes(), declared.encoding((members,)))
+    made = Variable(name, (dim,), unit if known else p.unit, p.help, standard, ledger=True).holding(values)
+    made.attrs["display_units"] = p.unit
+    return made
 
 
 def _about_members(plan: Plan, records: Sequence[Record], dims: tuple[str, ...]) -> dict[str, xr.Variable]:
@@ -229,10 +225,10 @@ def _about_members(plan: Plan, records: Sequence[Record], dims: tuple[str, ...])
     }
     if any(reason.ravel()):
         declared[Variable("member_reason", both, "", "why the run failed", dtype="U")] = reason.astype(str)
-    made = {each.name: _shaped(each, values, (*plan.shape, plan.members)) for each, values in declared.items()}
+    made = {each.name: each.holding(values.reshape(*plan.shape, plan.members)) for each, values in declared.items()}
     if len({text for text in plan.engines if text}) > 1:
         engine = Variable("engine", dims, "", "engine and its options", dtype="U")
-        made["engine"] = _shaped(engine, np.array(plan.engines, dtype=str), plan.shape)
+        made["engine"] = engine.holding(np.array(plan.engines, dtype=str).reshape(plan.shape))
     return made
 
 
@@ -244,25 +240,20 @@ def _headline(name: str, found: _Measured, plan: Plan, dims: tuple[str, ...]) ->
     average = Variable(name, dims, said["unit"], said["label"], comment="mean over the members")
     own = Variable(f"{name}_by_member", both, said["unit"], f"{said['label']} in each run")
     made = {
-        name: _shaped(average, mean, plan.shape),
-        f"{name}_se": _shaped(derived(average, "_se"), error, plan.shape),
-        own.name: _shaped(own, found.value, (*plan.shape, plan.members)),
-        f"{own.name}_se": _shaped(derived(own, "_se"), found.error, (*plan.shape, plan.members)),
+        name: average.holding(mean.reshape(plan.shape)),
+        f"{name}_se": derived(average, "_se").holding(error.reshape(plan.shape)),
+        own.name: own.holding(found.value.reshape(*plan.shape, plan.members)),
+        f"{own.name}_se": derived(own, "_se").holding(found.error.reshape(*plan.shape, plan.members)),
     }
     if np.isfinite(found.theory).any():
         answer, _ = mean_and_error(found.theory, found.theory)
-        made[f"{name}_theory"] = _shaped(derived(average, "_theory"), answer, plan.shape)
+        made[f"{name}_theory"] = derived(average, "_theory").holding(answer.reshape(plan.shape))
     known = np.isfinite(found.tolerance)
     tolerance = np.where(known.any(axis=1), np.max(found.tolerance, axis=1, where=known, initial=0.0), np.nan)
-    made[f"{name}_tolerance"] = _shaped(derived(average, "_tolerance"), tolerance, plan.shape)
+    made[f"{name}_tolerance"] = derived(average, "_tolerance").holding(tolerance.reshape(plan.shape))
     if said["reason"]:
         made[f"{name}_tolerance"].attrs["comment"] = said["reason"]
     made[name].attrs["display_units"] = said["display_unit"]
     made[name].attrs["ancillary_variables"] = " ".join(each for each in made if each.startswith(f"{name}_"))
     made[own.name].attrs["ancillary_variables"] = f"{own.name}_se"
     return made
-
-
-def _shaped(declared: Variable, values: NDArray[Any], shape: tuple[int, ...]) -> xr.Variable:
-    values = values.reshape(shape)
-    return xr.Variable(declared.dims, values, declared.attributes(), declared.encoding(values.shape))
