@@ -215,7 +215,7 @@ def test_a_lock_without_the_systems_help_is_believed_as_long_as_its_owner_lives(
     """A shared folder may have no locks, and the owner may be on another computer."""
     lock = tmp_path / ".run.nc.lock"
     if not locks:
-        monkeypatch.setattr(output_lock, "_hold", lambda opened: None)
+        monkeypatch.setattr(output_lock, "hold", lambda opened: None)
     owner = {"pid": os.getppid(), "host": output_lock.host(), "since": "2026-11-22T00:00:00Z"}
     lock.write_text(json.dumps(owner))
     if not locks:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from atmosbox.errors import FileError, shown
+from atmosbox.file.output_lock import hold
 from atmosbox.file.output_path import check_writable, part_path, write_failure
 
 __all__ = ["Journal"]
@@ -71,7 +72,7 @@ class Journal:
     def __init__(
         self, path: Path, request: Mapping[str, Any], history: str, *, force: bool = False, kind: str = "sweep"
     ) -> None:
-        self._kind = kind
+        self._kind, self._head = kind, f"atmosbox_{kind}"  # the head marks the first line of a journal of this kind
         self.path = check_writable(self.place(path), force=True)
         self.records: dict[tuple[int, int], Record] = {}
         self.history = [history]
@@ -81,10 +82,11 @@ class Journal:
         except OSError as error:
             raise write_failure(error, self.path) from error
         try:
-            self._lock()
+            if hold(self._file.fileno()) is False:
+                raise FileError(
+                    f"{self.path} is being written by another {kind}: wait for it, or name another file with --out."
+                )
             if not self._recalled(request, force):
-                self.records = {}
-                self.history = [history]
                 self._truncate(0)
                 self._write({self._head: FORMAT, "request": dict(request), "history": history})
             elif self.history[-1] != history:
@@ -98,11 +100,6 @@ class Journal:
     def place(path: Path) -> Path:
         """Return the path of the journal of a file."""
         return part_path(path.with_suffix(".jsonl"))
-
-    @property
-    def _head(self) -> str:
-        """The key in the first line that marks a journal of this kind."""
-        return f"atmosbox_{self._kind}"
 
     def __enter__(self) -> Journal:
         """Return the journal, whose file is open."""
@@ -130,21 +127,6 @@ class Journal:
         self._file.close()
         self.path.unlink(missing_ok=True)
 
-    def _lock(self) -> None:
-        """Refuse a journal that another program is writing."""
-        with contextlib.suppress(ImportError):  # Windows has no fcntl
-            import fcntl
-
-            try:
-                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise FileError(
-                    f"{self.path} is being written by another {self._kind}: wait for it, or name another file with "
-                    "--out."
-                ) from None
-            except OSError:  # a file system without locks
-                return
-
     def _recalled(self, request: Mapping[str, Any], force: bool) -> bool:
         """Read the saved records; return False if there are none, or if the journal may be thrown away."""
         content = self._file.read()
@@ -167,7 +149,8 @@ class Journal:
             ) from None
         if not whole:
             return False
-        if different := _difference(head["request"], _plain(request)):
+        asked = json.loads(json.dumps(dict(request)))
+        if different := _difference(head["request"], asked):
             if force:
                 return False
             raise FileError(
@@ -194,12 +177,6 @@ class Journal:
             with contextlib.suppress(OSError):
                 self._truncate(size)
             raise write_failure(error, self.path) from error
-
-
-def _plain(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a request as it comes back from JSON."""
-    plain: dict[str, Any] = json.loads(json.dumps(dict(request)))
-    return plain
 
 
 def _difference(saved: Mapping[str, Any], asked: Mapping[str, Any]) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 from atmosbox.errors import FileError
 from atmosbox.file.provenance import moment
 
-__all__ = ["OutputLock", "alive", "host"]
+__all__ = ["OutputLock", "alive", "hold", "host"]
 
 ABANDONED = 3600.0
 """Seconds after which the lock of a process on another computer, which cannot be checked, counts as abandoned."""
@@ -91,7 +91,7 @@ class OutputLock:
         except OSError as error:
             raise FileError(f"{self.path} cannot be made ({error.strerror}): give another place with --out.") from error
         try:
-            held = _hold(opened)
+            held = hold(opened)
             owner = _owner(os.read(opened, 1000))
             if held is False or (owner and self._lives(owner, held is True, opened)):
                 whose = f"process {owner['pid']} on {owner['host']} since {owner['since']}" if owner else "another run"
@@ -132,7 +132,7 @@ class OutputLock:
             os.close(opened)
 
 
-def _hold(opened: int) -> bool | None:
+def hold(opened: int) -> bool | None:
     """Try to lock the file; False if another process has the lock, None if the system has no locks."""
     try:
         import fcntl
