@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import secrets
 import signal
@@ -90,7 +91,7 @@ def live(
     folder, name = _place(out, prepared.scene, force=force)
 
     from atmosbox.live import Session
-    from atmosbox.live.server import PORT, loopback, run
+    from atmosbox.live.server import PORT, loopback, serve_session
     from atmosbox.page import live_page
     from atmosbox.simulation.compilation import told
     from atmosbox.text.progress import progress
@@ -115,7 +116,9 @@ def live(
             tell("Ctrl-C ends it; what is being recorded is saved")
 
     token = None if no_token else secrets.token_urlsafe(16)
-    ended, left = run(session, live_page(language=language), host=host, port=number, token=token, opened=opened)
+    page = live_page(language=language)
+    served = serve_session(session, page, host=host, port=number, token=token, opened=opened)
+    ended, left = asyncio.run(served)
     for sentence in left:
         tell(sentence)
     raise typer.Exit(TERMINATED if ended == signal.SIGTERM else INTERRUPTED)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import os
 from collections.abc import Sequence
-from typing import overload
 
 from atmosbox.interface.wording import in_python
 
@@ -39,12 +38,6 @@ class Printed(tuple[str, ...]):
     def _repr_html_(self) -> str:
         """Return the table for a notebook."""
         return f'<pre style="line-height:1.35;overflow-x:auto">{html.escape(repr(self))}</pre>'
-
-
-@overload
-def scenes() -> Printed: ...
-@overload
-def scenes(scene: str | os.PathLike[str]) -> Printed: ...
 
 
 def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:

@@ -25,7 +25,7 @@ from atmosbox.live.audience import Audience, Mailbox
 from atmosbox.live.session import Session
 from atmosbox.live.worker import GREET, JOIN, LEAVE, Worker
 
-__all__ = ["PORT", "allowed", "loopback", "run", "serve_session"]
+__all__ = ["PORT", "allowed", "loopback", "serve_session"]
 
 PORT = 8642
 """The first port that is tried."""
@@ -210,16 +210,37 @@ async def _listen(service: _Service, host: str, port: int | None) -> SocketServe
     raise SettingError("port", port, "is in use or not allowed", "give another, or leave --port out for a free one")
 
 
-def run(
+async def _signal() -> int:
+    """Wait for Ctrl-C or a request to end, and return the signal."""
+    loop = asyncio.get_running_loop()
+    ended: asyncio.Future[int] = loop.create_future()
+
+    def note(number: int) -> None:
+        if not ended.done():
+            ended.set_result(number)
+
+    def end(number: int, frame: object) -> None:
+        loop.call_soon_threadsafe(note, number)
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        return await ended
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+
+
+async def serve_session(
     session: Session,
     document: str,
+    ending: Callable[[], Coroutine[Any, Any, int]] = _signal,
     *,
     host: str = "127.0.0.1",
     port: int | None = None,
     token: str | None = None,
     opened: Callable[[str, int], None],
 ) -> tuple[int, list[str]]:
-    """Serve a session until Ctrl-C or a request to end, and save the recording.
+    """Serve a session until `ending` returns, and save the recording.
 
     Parameters
     ----------
@@ -227,6 +248,9 @@ def run(
         The session to serve.
     document
         The HTML of the page.
+    ending
+        Function that waits for the end, and returns the signal that ended the server; by default the end is Ctrl-C or
+        a request to end.
     host, port
         Address and port; if no port is given, the first free one from `PORT` on.
     token
@@ -246,28 +270,6 @@ def run(
         If the port is in use, or the host is not an address of this computer.
     EngineError
         If the engine cannot go on.
-    """
-    return asyncio.run(serve_session(session, document, _signal, host=host, port=port, token=token, opened=opened))
-
-
-async def serve_session(
-    session: Session,
-    document: str,
-    ending: Callable[[], Coroutine[Any, Any, int]],
-    *,
-    host: str = "127.0.0.1",
-    port: int | None = None,
-    token: str | None = None,
-    opened: Callable[[str, int], None],
-) -> tuple[int, list[str]]:
-    """Serve a session until `ending` returns; see `run`.
-
-    Parameters
-    ----------
-    session, document, host, port, token, opened
-        See `run`.
-    ending
-        Function that waits for the end, and returns the signal that ended the server.
     """
     names = frozenset({host.casefold(), socket.gethostname().casefold()}) - {""}
     service = _Service(session, document, names, token)
@@ -292,23 +294,3 @@ async def serve_session(
             raise failure
         raise EngineError(f"The session has ended ({type(failure).__name__}: {failure}).") from failure
     return ended.result(), left
-
-
-async def _signal() -> int:
-    """Wait for Ctrl-C or a request to end, and return the signal."""
-    loop = asyncio.get_running_loop()
-    ended: asyncio.Future[int] = loop.create_future()
-
-    def note(number: int) -> None:
-        if not ended.done():
-            ended.set_result(number)
-
-    def end(number: int, frame: object) -> None:
-        loop.call_soon_threadsafe(note, number)
-
-    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        return await ended
-    finally:
-        for each, handler in before.items():
-            signal.signal(each, handler)
