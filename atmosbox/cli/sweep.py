@@ -125,8 +125,8 @@ def _whole(option: str, text: str, low: int, high: int = 1_000_000) -> int:
     try:
         return int(Parameter(option, "1", 8, low, high, kind="int").parse(text))
     except SettingError as error:
-        fix = error.fix.replace(f"--set {option}=", f"--{option} ")
-        raise type(error)(error.setting, error.value, error.problem, fix) from None
+        error.fix = error.fix.replace(f"--set {option}=", f"--{option} ")
+        raise
 
 
 def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:

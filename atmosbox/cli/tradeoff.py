@@ -59,8 +59,8 @@ def tradeoff(
         seconds = float(Parameter("budget", "s", 60.0, 1.0, 1e6).parse(budget))
         first = int(Parameter("seed", "1", 1, 0, 2**62, kind="int").parse(seed or "1"))
     except SettingError as error:
-        fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
-        raise type(error)(error.setting, error.value, error.problem, fix) from None
+        error.fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
+        raise
     path = check_writable(netcdf_name(out, for_scene(scene, "-tradeoff.nc")), force)
     files = [path, *(check_writable(path.with_suffix(suffix), force) for suffix in (".csv", ".png"))]
     with progress(scene, quiet=quiet) as show:

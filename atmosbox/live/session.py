@@ -209,8 +209,8 @@ class Session:
         try:
             self._obey(message.get("type"), message)
         except SettingError as error:  # worded for the command line
-            fix = error.fix.replace("--set ", "").replace("--engine ", "the engine ")
-            raise type(error)(error.setting, error.value, error.problem, fix) from None
+            error.fix = error.fix.replace("--set ", "").replace("--engine ", "the engine ")
+            raise
 
     def _obey(self, kind: object, message: Mapping[str, Any]) -> None:
         if kind == "play":

@@ -112,8 +112,8 @@ def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tup
         try:
             axes.append(Axis(parameter, _values(text, parameter)))
         except SettingError as error:
-            fix = f"give --vary {name}={_example(parameter)}"
-            raise type(error)(error.setting, error.value, error.problem, fix) from None
+            error.fix = f"give --vary {name}={_example(parameter)}"
+            raise
     return tuple(axes)
 
 

@@ -283,8 +283,8 @@ def _check_known(scene: str, types: Mapping[str, Any], vary: Sequence[str], give
             try:
                 settings.from_user({name: text})
             except UnknownSettingError as error:
-                fix = error.fix.replace("--set ", "--vary ")
-                raise UnknownSettingError(error.setting, error.value, error.problem, fix) from None
+                error.fix = error.fix.replace("--set ", "--vary ")
+                raise
 
 
 def _prepared(draft: Plan) -> tuple[dict[int, Prepared], dict[int, str]]:
