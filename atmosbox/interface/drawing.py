@@ -169,8 +169,8 @@ def compare(
     from pathlib import Path
 
     from atmosbox.plot.compare import compared, naming
-    from atmosbox.plot.compare.compared_file import save, spoken
-    from atmosbox.plot.comparison import MOST, figure
+    from atmosbox.plot.compare.compared_file import drawn, save
+    from atmosbox.plot.comparison import MOST
     from atmosbox.plot.theme import find
     from atmosbox.text.comparison_table import comparison_lines
 
@@ -183,9 +183,7 @@ def compare(
         names = naming(datasets, called)
         if out is not None:
             save(datasets, names, out, theme=theme, force=force)
-        scenes = dict.fromkeys(str(dataset.attrs.get("title", "")) for dataset in datasets)
-        title = spoken(f"{' and '.join(scenes)}: {names.title}")
-        drawing = _shown(figure(datasets, [spoken(label) for label in names.labels], title, theme), theme)
+        drawing = _shown(drawn(datasets, names, theme)[0], theme)
         return Comparison(drawing, "\n".join(comparison_lines(called, names, compared(datasets), _WIDTH)))
 
 

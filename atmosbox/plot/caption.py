@@ -69,7 +69,7 @@ def headlines(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> list[list[Readi
     >>> [[reading.sentence for reading in each] for each in headlines(dataset, (Panel("discs", "The box"),))]
     [['z (theory 1.00) = 1.25']]
     """
-    names = _stated(dataset, "atmosbox_headlines", list)
+    names = stated(dataset, "atmosbox_headlines", list)
     chosen = [list(panel.headlines) for panel in panels]
     if panels and not any(chosen):
         first = next((i for i, panel in enumerate(panels) if panel.kind != "discs"), 0)
@@ -224,7 +224,7 @@ def footer(dataset: xr.Dataset) -> str:
     >>> footer(xr.Dataset(attrs={"atmosbox_parameters": parameters}))
     'atmosbox 1.0 · atmosphere · 4000 molecules · seed 7'
     """
-    parameters = _stated(dataset, "atmosbox_parameters", dict)
+    parameters = stated(dataset, "atmosbox_parameters", dict)
     settings = parameters.get("settings", {})
     count = next((settings[name] for name in _COUNTS if name in settings), dataset.sizes.get("molecule"))
     seed, engine = settings.get("seed"), parameters.get("engine", settings.get("engine"))
@@ -276,7 +276,7 @@ def _scalar(dataset: xr.Dataset, name: str) -> float:
     return float(read(dataset, name)) if name in dataset.variables else math.nan
 
 
-def _stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
+def stated(dataset: xr.Dataset, name: str, kind: type) -> Any:
     """Return the value of an attribute that holds JSON; an empty one of this kind if the file lacks the attribute."""
     text = dataset.attrs.get(name)
     try:

@@ -18,6 +18,7 @@ from atmosbox.plot.theme import find
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 __all__ = ["save"]
 
@@ -72,12 +73,17 @@ def save(
         raise SettingError("FILE", None, f"is given {len(datasets)} times", "give two to six runs")
     path, kind = named(path, format, FORMATS, force=force)
     find(theme)
-    scenes = dict.fromkeys(str(dataset.attrs.get("title", "")) for dataset in datasets)
-    title = spoken(f"{' and '.join(scenes)}: {names.title}")
-    drawing = figure(datasets, [spoken(label) for label in names.labels], title, theme)
+    drawing, title = drawn(datasets, names, theme)
     parameters = "; ".join(str(dataset.attrs.get("atmosbox_parameters", "")) for dataset in datasets)
     write_whole(path, render(drawing, kind, theme, title=title, parameters=parameters))
     return path
+
+
+def drawn(datasets: Sequence[xr.Dataset], names: Naming, theme: str) -> tuple[Figure, str]:
+    """Return the figure of several runs, and its title."""
+    scenes = dict.fromkeys(str(dataset.attrs.get("title", "")) for dataset in datasets)
+    title = spoken(f"{' and '.join(scenes)}: {names.title}")
+    return figure(datasets, [spoken(label) for label in names.labels], title, theme), title
 
 
 def spoken(text: str) -> str:

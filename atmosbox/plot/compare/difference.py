@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from atmosbox.errors import FileError, UnitError
+from atmosbox.errors import UnitError
+from atmosbox.plot.caption import stated
 from atmosbox.scene.conversion import from_si
 
 if TYPE_CHECKING:
@@ -112,20 +112,9 @@ def compared(datasets: Sequence[xr.Dataset]) -> tuple[Compared, ...]:
     >>> found.unit, found.difference(1)
     ('degC', 20.0)
     """
-    names = list(dict.fromkeys(name for dataset in datasets for name in _headlines(dataset)))
-    found = [_compared(datasets, name) for name in names]
+    named = [name for dataset in datasets for name in stated(dataset, "atmosbox_headlines", list)]
+    found = [_compared(datasets, name) for name in dict.fromkeys(map(str, named))]
     return tuple(each for each in found if sum(math.isfinite(run.value) for run in each.runs) > 1)
-
-
-def _headlines(dataset: xr.Dataset) -> list[str]:
-    """Return the names of the headline numbers of a run."""
-    try:
-        found = json.loads(dataset.attrs.get("atmosbox_headlines", "[]"))
-    except (TypeError, ValueError):
-        found = None
-    if not isinstance(found, list):
-        raise FileError("The attribute atmosbox_headlines of the file cannot be read: it was not written by atmosbox.")
-    return [str(name) for name in found]
 
 
 def _compared(datasets: Sequence[xr.Dataset], name: str) -> Compared:
