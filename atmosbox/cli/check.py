@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import shutil
@@ -170,18 +171,9 @@ def _check_extremes(
 
 def _as_json(one: Finding, engine: str) -> dict[str, Any]:
     """Return a finding as a record for JSON."""
-    verdict = one.verdict
-    return {
-        "extreme": one.extreme.name,
-        "title": one.extreme.title,
-        "engine": engine,
-        "outcome": verdict.outcome,
-        "sentence": verdict.sentence,
-        "value": verdict.value,
-        "expected": verdict.expected,
-        "tolerance": verdict.tolerance,
-        "off": None if verdict.value is None else verdict.off,
-    }
+    off = None if one.verdict.value is None else one.verdict.off
+    about = {"extreme": one.extreme.name, "title": one.extreme.title, "engine": engine}
+    return {**about, **dataclasses.asdict(one.verdict), "off": off}
 
 
 def _row(found: Sequence[Finding]) -> list[str]:

@@ -21,6 +21,7 @@ from atmosbox.plot.pen import Pen
 from atmosbox.plot.place import blank, put_panels, settle
 from atmosbox.plot.theme import FAINT, Theme
 from atmosbox.plot.unit import convert, spelled
+from atmosbox.scene.conversion import to_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["Sheet"]
 
 _APART = 0.15  # if molecules fly farther than this between two pictures, in sides of the box, the footer says so
-_SECONDS_IN = {"s": 1.0, "us": 1e-6, "ns": 1e-9, "ps": 1e-12}
 _BAR = 0.6  # length of the colour bar, in widths of the box
 
 
@@ -156,7 +156,7 @@ class Sheet:
             return []
         unit = str(self.dataset["elapsed_time"].attrs.get("units", "s"))
         apart = float(np.median(np.diff(held.time[frames])))
-        flown = float(np.nanmean(held.speed)) * apart * _SECONDS_IN[unit]
+        flown = float(np.nanmean(held.speed)) * apart * to_si(1.0, unit)
         if self.stage is None or flown < _APART * held.side.max():
             return []
         far = f"{float(convert(flown, 'm', self.stage.unit)):.2g}"

@@ -39,7 +39,7 @@ def _grows(dataset: xr.Dataset, line: Line, running: Running) -> bool:
     return line.role == "data" and (in_time or any(name in running.names for name in names))
 
 
-def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, most: int = 2) -> tuple[Panel, ...]:
+def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running) -> tuple[Panel, ...]:
     """Return the panels to film: panels that grow, if possible of two kinds, and misfits only if there are no others.
 
     Parameters
@@ -50,13 +50,11 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, mos
         The panels of the figure of the run.
     running : Running
         The averages up to a frame that its molecules give.
-    most : int
-        Number of panels for which there is room; a skew-T takes the room of two.
 
     Returns
     -------
     tuple of Panel
-        The panels; none if nothing grows.
+        At most two panels, because there is no room for more, or a skew-T alone; none if nothing grows.
 
     Examples
     --------
@@ -75,7 +73,7 @@ def chosen(dataset: xr.Dataset, panels: tuple[Panel, ...], running: Running, mos
         return (first,)
     others = [panel for panel in rest if panel.kind != first.kind and panel.kind != "skewt"]
     others += [panel for panel in rest if panel.kind == first.kind]
-    picked = (first, *others[: most - 1])
+    picked = (first, *others[:1])
     return tuple(panel for panel in panels if panel in picked)
 
 

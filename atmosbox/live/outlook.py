@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import Environment
 from atmosbox.scene.setup import Setup
 
@@ -16,7 +17,6 @@ __all__ = ["outlook", "planned"]
 
 Array = NDArray[np.float64]
 _PLACES = 60
-_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 
 
 def outlook(setup: Setup) -> dict[str, Array]:
@@ -46,7 +46,7 @@ def outlook(setup: Setup) -> dict[str, Array]:
     seconds = np.linspace(0.0, setup.duration * setup.scale.time, _PLACES)
     pressure = np.array([environment.pressure(t) for t in seconds])
     way = {
-        "elapsed_time": seconds / _SECONDS[setup.time_unit],
+        "elapsed_time": seconds / to_si(1.0, setup.time_unit),
         "parcel_height": np.array([environment.height(t) for t in seconds]),
         "parcel_pressure": pressure,
         "environment_pressure": pressure,

@@ -9,6 +9,7 @@ import numpy as np
 
 from atmosbox.live.outlook import outlook, planned
 from atmosbox.page import NEIGHBOURS, Box, Stage, round_up, stage
+from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import wall_laws
 from atmosbox.scene.quantity import phrase
 from atmosbox.scene.setup import Setup
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Picture"]
 
-_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _FASTEST = 3.0
 _COLDER = 0.5  # share of the scale of speeds: if the speeds reach less of it, a new scale is chosen
 
@@ -119,7 +119,7 @@ class Picture:
 
     def time(self) -> float:
         """Return the time of the box, in the unit of its stage."""
-        return self._setup.parcel.time * self._setup.scale.time / _SECONDS[self._setup.time_unit]
+        return self._setup.parcel.time * self._setup.scale.time / to_si(1.0, self._setup.time_unit)
 
     def frame(self, sequence: int) -> bytes:
         """Return the present positions of everything that is drawn, as one message to the page."""

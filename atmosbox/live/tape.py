@@ -14,6 +14,7 @@ from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.output_path import check_writable
 from atmosbox.file.provenance import history_line
 from atmosbox.live.summary import without_headlines
+from atmosbox.scene.conversion import to_si
 from atmosbox.scene.panels import Panel, to_json
 from atmosbox.scene.parameter import Value
 from atmosbox.scene.quantity import phrase
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Change", "Tape", "file_for"]
 
-_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _NAMES = 1000
 _SAID = 20
 
@@ -183,7 +183,7 @@ class Tape:
 
     def _tell_changes(self, found: xr.Dataset) -> None:
         unit = self._setup.time_unit
-        seconds = self._setup.scale.time / _SECONDS[unit]
+        seconds = self._setup.scale.time / to_si(1.0, unit)
         told = [
             {"elapsed_time": each.time * seconds, "time_unit": unit, "name": each.name, "value": each.value,
              "unit": each.unit}

@@ -112,7 +112,7 @@ def page(
     return drawing
 
 
-def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, float, float] = (0, 0, 1, 1)) -> Figure:
+def blank(size: tuple[float, float], look: Theme) -> Figure:
     """Return an empty page whose panels make room for the text around them.
 
     Parameters
@@ -121,8 +121,6 @@ def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, floa
         Width and height [inch].
     look : Theme
         The theme: the size of the type sets the margins.
-    room : tuple of float
-        Left, bottom, width and height of the area for the panels, as shares of the page.
 
     Examples
     --------
@@ -132,7 +130,7 @@ def blank(size: tuple[float, float], look: Theme, room: tuple[float, float, floa
     [4.0, 3.0]
     """
     space = look.text / 144  # inch
-    engine = ConstrainedLayoutEngine(w_pad=space, h_pad=space / 1.5, wspace=0.02, hspace=0.03, rect=room)
+    engine = ConstrainedLayoutEngine(w_pad=space, h_pad=space / 1.5, wspace=0.02, hspace=0.03)
     drawing = Figure(figsize=size, layout=engine)
     FigureCanvasAgg(drawing)
     return drawing

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from atmosbox.file.variables import known, variable
-from atmosbox.scene.conversion import from_si
+from atmosbox.scene.conversion import from_si, to_si
 from atmosbox.scene.panels import Line, Panel
 from atmosbox.sheet.number_text import bare, spelled
 from atmosbox.sheet.sheet_run import Trial
@@ -19,7 +19,6 @@ __all__ = ["graph_rows", "until"]
 _TIME = "elapsed_time"
 _FRAMES = 20
 """Number of last frames over which a value is averaged, the same as for the gauges of a page."""
-_SECONDS = {"s": 1.0, "ns": 1e-9, "ps": 1e-12}
 _FIGURES = 3  # significant digits
 
 
@@ -35,7 +34,7 @@ def until(prepared: Prepared) -> str:
     setup = build(prepared)
     if setup.ends:
         return "Let each play until it stops."
-    time = setup.duration * setup.scale.time / _SECONDS[setup.time_unit]
+    time = setup.duration * setup.scale.time / to_si(1.0, setup.time_unit)
     return f"Let each play to {time:.3g} {setup.time_unit}, and pause."
 
 

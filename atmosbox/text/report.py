@@ -203,16 +203,7 @@ def card_json(card: Card) -> dict[str, Any]:
         "story": card.story,
         "facts": dict(card.facts),
         "parameters": [
-            {
-                "name": p.name,
-                "unit": p.unit,
-                "default": p.default,
-                "low": p.low,
-                "high": p.high,
-                "choices": p.choices,
-                "kind": p.kind,
-                "help": p.help,
-            }
+            {part: getattr(p, part) for part in ("name", "unit", "default", "low", "high", "choices", "kind", "help")}
             for p in card.parameters
         ],
     }
