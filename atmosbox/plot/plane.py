@@ -38,7 +38,10 @@ class Discs(NamedTuple):
     @property
     def heavy(self) -> NDArray[np.bool_]:
         """Which discs belong to the heavier half; none if all masses are equal."""
-        return _heavy_half(self.mass)
+        heavy = np.zeros(self.mass.size, dtype=bool)
+        if self.mass.size and self.mass.min() < self.mass.max():
+            heavy[np.argsort(self.mass, kind="stable")[self.mass.size // 2 :]] = True
+        return heavy
 
 
 def discs(dataset: xr.Dataset, unit: str) -> Discs:
@@ -159,11 +162,3 @@ def _box(
         return np.stack((np.zeros(2), ends[plane] if ends.ndim else np.full(2, ends)))
     radius = sizes[None, :, None] / 2
     return np.stack((np.nanmin(places - radius, axis=(0, 1)), np.nanmax(places + radius, axis=(0, 1))))
-
-
-def _heavy_half(mass: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell which discs belong to the heavier half; none if all masses are equal."""
-    heavy = np.zeros(mass.size, dtype=bool)
-    if mass.size and mass.min() < mass.max():
-        heavy[np.argsort(mass, kind="stable")[mass.size // 2 :]] = True
-    return heavy

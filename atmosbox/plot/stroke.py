@@ -10,17 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from atmosbox.plot.curve import Curve, curve, edges
-from atmosbox.plot.theme import (
-    DATA_COLOURS,
-    DATA_MARKERS,
-    ENVIRONMENT_COLOURS,
-    ENVIRONMENT_DASHES,
-    REFERENCE_COLOURS,
-    REFERENCE_WIDTH,
-    THEORY_COLOURS,
-    THEORY_DASHES,
-    Theme,
-)
+from atmosbox.plot.theme import CURVES, DATA_COLOURS, DATA_MARKERS, Theme
 from atmosbox.scene.panels import Line, Panel
 
 if TYPE_CHECKING:
@@ -242,17 +232,9 @@ def line_style(role: str, theme: Theme, index: int) -> dict[str, Any]:
     >>> line_style("data", THEMES["notes"], 0)["linestyle"]
     'solid'
     """
-    if role == "theory":
-        return {
-            "color": THEORY_COLOURS[index % len(THEORY_COLOURS)],
-            "linestyle": (0.0, THEORY_DASHES[index % len(THEORY_DASHES)]),
-            "linewidth": theme.line * 1.1,
-        }
-    if role == "environment":
-        colour = ENVIRONMENT_COLOURS[index % len(ENVIRONMENT_COLOURS)]
-        dashes = ENVIRONMENT_DASHES[index % len(ENVIRONMENT_DASHES)]
-        return {"color": colour, "linestyle": (0.0, dashes), "linewidth": theme.line}
-    if role == "reference":
-        colour = REFERENCE_COLOURS[index % len(REFERENCE_COLOURS)]
-        return {"color": colour, "linestyle": "solid", "linewidth": theme.line * REFERENCE_WIDTH}
-    return {"color": DATA_COLOURS[index % len(DATA_COLOURS)], "linestyle": "solid", "linewidth": theme.line}
+    colours, dashes, width = CURVES[role]
+    return {
+        "color": colours[index % len(colours)],
+        "linestyle": dashes[index % len(dashes)],
+        "linewidth": theme.line * width,
+    }

@@ -24,12 +24,18 @@ DATA_MARKERS = ("o", "s", "^", "D", "v", "P")
 # Dashes of the measured curves of one run where runs are compared: there the colour tells which run it is.
 DATA_DASHES = ("solid", (0.0, (1.0, 1.0)), (0.0, (4.0, 1.0, 1.0, 1.0)))
 THEORY_COLOURS = (DARK, "#5a5a5a", "#808080")
-THEORY_DASHES = ((5.0, 2.0), (1.2, 1.2), (9.0, 2.0, 2.0, 2.0, 2.0, 2.0))
+_THEORY_DASHES = ((0.0, (5.0, 2.0)), (0.0, (1.2, 1.2)), (0.0, (9.0, 2.0, 2.0, 2.0, 2.0, 2.0)))
 ENVIRONMENT_COLOURS = (_GREEN, _PURPLE)
-ENVIRONMENT_DASHES = ((7.0, 2.0, 1.5, 2.0), (1.5, 1.5))
+_ENVIRONMENT_DASHES = ((0.0, (7.0, 2.0, 1.5, 2.0)), (0.0, (1.5, 1.5)))
 # A reference curve is broad and pale and lies under the others: where curves coincide, each is still seen.
 REFERENCE_COLOURS = (_ORANGE, _SKY)
-REFERENCE_WIDTH = 2.6
+CURVES: dict[str, tuple[tuple[str, ...], tuple[Any, ...], float]] = {
+    "data": (DATA_COLOURS, ("solid",), 1.0),
+    "theory": (THEORY_COLOURS, _THEORY_DASHES, 1.1),
+    "environment": (ENVIRONMENT_COLOURS, _ENVIRONMENT_DASHES, 1.0),
+    "reference": (REFERENCE_COLOURS, ("solid",), 2.6),
+}
+"""Colours and dashes of the curves of each role, and their width in units of the theme's."""
 FIELD_COLOURS = "viridis"
 # Areas differ by colour and by hatching; the background lines of a diagram are paler than any curve.
 AREA_COLOURS = {"CAPE": _ORANGE, "CIN": _SKY}

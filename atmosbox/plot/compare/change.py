@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError
 from atmosbox.file.provenance import parameters
@@ -134,7 +132,7 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
         values = tuple(_value(each.get(name), known.get(name)) for each in held)
         if len(set(values)) > 1:
             changes.append(Change(name, values))
-    same = not changes and all(_equal(datasets[0], other) for other in datasets[1:])
+    same = not changes and all(map(datasets[0].equals, datasets[1:]))
     return Naming(scenes, tuple(changes), _labels(changes, files), same)
 
 
@@ -173,7 +171,7 @@ def _labels(changes: Sequence[Change], files: Sequence[str]) -> tuple[str, ...]:
             ", ".join(
                 change.values[run]
                 if change.name in ("scene", "engine")
-                else f"{_spoken(change.name)} {change.values[run]}"
+                else f"{change.name.replace('_', ' ')} {change.values[run]}"
                 for change in changes
             )
             for run in range(len(files))
@@ -188,24 +186,6 @@ def _labels(changes: Sequence[Change], files: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def _spoken(name: str) -> str:
-    return name.replace("_", " ")
-
-
 def _says_what(change: Change) -> bool:
     """Tell whether all values have a unit, so that they need no name beside them."""
     return all(" " in value for value in change.values)
-
-
-def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
-    """Tell whether two runs hold the same numbers."""
-    if set(one.variables) != set(other.variables):
-        return False
-    return all(
-        one[name].dims == other[name].dims and _same_values(one[name].values, other[name].values)
-        for name in one.variables
-    )
-
-
-def _same_values(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
-    return one.shape == other.shape and np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f")
