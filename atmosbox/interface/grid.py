@@ -99,9 +99,6 @@ def sweep(
 
 def _typed(values: str | Iterable[Any]) -> str:
     """Return values as text, as typed after ``--vary name=``."""
-    return values if isinstance(values, str) else ",".join(_word(value) for value in values)
-
-
-def _word(value: Any) -> str:
-    """Return one value as text, as typed on the command line."""
-    return {True: "on", False: "off"}[value] if isinstance(value, bool) else str(value)
+    if isinstance(values, str):
+        return values
+    return ",".join(("off", "on")[value] if isinstance(value, bool) else str(value) for value in values)

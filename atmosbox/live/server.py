@@ -197,10 +197,8 @@ async def _listen(service: _Service, host: str, port: int | None) -> SocketServe
                 close_timeout=_PATIENCE,
                 server_header=None,
             )
-        except socket.gaierror as error:
-            raise SettingError("host", host, "is no address of this computer", "give 127.0.0.1") from error
         except OSError as error:
-            if error.errno == errno.EADDRNOTAVAIL:
+            if isinstance(error, socket.gaierror) or error.errno == errno.EADDRNOTAVAIL:
                 raise SettingError("host", host, "is no address of this computer", "give 127.0.0.1") from error
             if error.errno not in _BUSY and "address already in use" not in str(error):
                 raise

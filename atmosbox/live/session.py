@@ -171,21 +171,17 @@ class Session:
             self.note("error", f"The box cannot go on: {error}. Begin anew.")
 
     def _closed(self) -> bool:
-        """Handle the completion of a frame; return whether to go on."""
+        """Record a frame; pause at the end of an ascent, or when no more can be kept. Return whether to go on."""
         self._recorder.closed(self.experiment, self.changes)
-        return not self.setup.ends or self._goes_on_beyond()
-
-    def _goes_on_beyond(self) -> bool:
-        """Pause at the end of an ascent, or when no more frames can be kept; return whether to go on."""
         frame = self.experiment.frame
-        if frame == self.setup.frames:
+        if self.setup.ends and frame == self.setup.frames:
             self.finished = True
             self.playing = False
             names = [name for name in self._hand.names if name in ("altitude", "way")]
             lead = f"; move the parcel on with {names[0]}" if names else ""
             self.note("info", f"The parcel has reached the end of its path{lead}, or begin anew.")
             return False
-        if frame >= longest(self.experiment):
+        if self.setup.ends and frame >= longest(self.experiment):
             self.playing = False
             self.note("warning", f"This path is {frame} frames long, which is all that is kept: begin anew.")
             return False
