@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PathCollection
@@ -16,9 +17,6 @@ from numpy.typing import NDArray
 
 from atmosbox.plot.curve import read
 from atmosbox.plot.theme import DARK, FAINT, OKABE_ITO, Theme
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["Ascent", "ascent_of", "draw_atmosphere", "draw_ground", "draw_way"]
 

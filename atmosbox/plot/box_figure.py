@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 
 from atmosbox.file.molecules import Molecules, molecules
@@ -17,9 +16,6 @@ from atmosbox.plot.pen import Pen
 from atmosbox.plot.place import blank, put_footer, put_heading, put_panels, settle
 from atmosbox.plot.theme import Theme, find, style
 from atmosbox.plot.unit import spelled
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["figure_with_box"]
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -27,9 +28,6 @@ from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, OKABE_ITO, PALE, The
 from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.unit import spelled
 from atmosbox.theory.constants import DRY_AIR
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["BoxPicture", "PlanarPicture", "box_picture", "instant", "speed_bar"]
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import xarray as xr
 
 from atmosbox.errors import FileError
 from atmosbox.plot.curve import read, unit_of
 from atmosbox.plot.plane import axis_names
 from atmosbox.plot.unit import convert, of_difference, power_of_ten, spelled
 from atmosbox.scene.panels import Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 HIDDEN = 0.5
 """A known error of the model is left out of figures if it is at most this many standard errors."""

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from atmosbox.plot.place import blank, put_footer, put_heading
 from atmosbox.plot.theme import DARK, DATA_COLOURS, REFERENCE_COLOURS, THEORY_COLOURS, Theme, style
 from atmosbox.plot.varied import Varied
 from atmosbox.theory.constants import BOLTZMANN
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["draw_coexistence", "is_coexistence"]
 

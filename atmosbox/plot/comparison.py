@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -23,11 +24,6 @@ from atmosbox.plot.stroke import draw_line, draw_steps, line_style
 from atmosbox.plot.theme import DARK, DATA_COLOURS, DATA_DASHES, Theme, find
 from atmosbox.plot.tilt import put_levels
 from atmosbox.scene.panels import Line, Panel
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import xarray as xr
 
 __all__ = ["MOST", "figure", "shared_panels"]
 

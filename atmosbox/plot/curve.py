@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.plot.unit import convert, of_difference
 from atmosbox.scene.panels import Line, Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _AGAIN = "run the scene again with this version of atmosbox"
 

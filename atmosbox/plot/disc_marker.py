@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
@@ -18,9 +17,6 @@ from atmosbox.plot.theme import DARK, FAINT, FIELD_COLOURS, Theme
 from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.unit import spelled
 from atmosbox.scene.panels import Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # Greatest width of the rim of a heavy disc, in diameters; approximate height of the box, in heights of the figure.
 _BROADEST_RIM, _BOX_HEIGHT = 0.12, 0.6

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
@@ -15,9 +15,6 @@ from atmosbox.plot.disc_marker import draw_discs
 from atmosbox.plot.stroke import MOST_POINTS, draw_line, draw_steps
 from atmosbox.plot.theme import Theme
 from atmosbox.scene.panels import Line, Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Entry = tuple[tuple[Artist, ...], str]
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
@@ -13,9 +14,6 @@ from atmosbox.plot.curve import Curve, curve
 from atmosbox.plot.draw import Entry
 from atmosbox.plot.theme import AREA_COLOURS, AREA_HATCHES, FAINT
 from atmosbox.scene.panels import Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ROUNDING = 1.0 + 1e-12  # allows for the rounding error of a pressure computed as exp(log(p))
 

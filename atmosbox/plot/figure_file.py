@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 from atmosbox.file.output_path import named, write_whole
@@ -14,9 +15,6 @@ from atmosbox.plot import sweep_figure, tradeoff_figure
 from atmosbox.plot.box_figure import figure_with_box
 from atmosbox.plot.layout import figure
 from atmosbox.plot.theme import find, style
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FORMATS = ("png", "svg", "pdf")
 

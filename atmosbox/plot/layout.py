@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
@@ -18,9 +18,6 @@ from atmosbox.plot.skewt import BACKGROUND, draw_skewt
 from atmosbox.plot.stroke import hollow_points
 from atmosbox.plot.theme import Theme, find
 from atmosbox.scene.panels import Line, Panel, from_json
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def figure(dataset: xr.Dataset, theme: str = "notes") -> Figure:

@@ -8,8 +8,9 @@ page that grows with its text.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -27,9 +28,6 @@ from atmosbox.plot.tick import put_ticks
 from atmosbox.plot.tilt import fit_skewt
 from atmosbox.plot.unit import labelled
 from atmosbox.scene.panels import Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["Draw", "Plate", "blank", "page", "put_footer", "put_heading", "put_panels", "settle"]
 

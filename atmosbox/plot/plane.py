@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from atmosbox.plot.curve import read
 from atmosbox.plot.unit import convert
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # The colour scale is logarithmic if the fastest discs are more than this many times as fast as the median disc.
 _WIDE_SPREAD = 10.0

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
@@ -21,9 +22,6 @@ from atmosbox.plot.theme import PALE, Theme
 from atmosbox.plot.tilt import ROTATION, put_levels
 from atmosbox.plot.unit import convert
 from atmosbox.scene.panels import Line, Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 BACKGROUND = "grey: dry adiabats (solid), moist adiabats (dashed), mixing ratios (dotted)"
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
@@ -12,9 +13,6 @@ from numpy.typing import NDArray
 from atmosbox.plot.curve import Curve, curve, edges
 from atmosbox.plot.theme import CURVES, DATA_COLOURS, DATA_MARKERS, Theme
 from atmosbox.scene.panels import Line, Panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # A measured curve of at most this many values is drawn as points with error bars, a longer one as a line with a band.
 MOST_POINTS = 40

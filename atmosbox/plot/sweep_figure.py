@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -18,9 +18,6 @@ from atmosbox.plot.theme import find, style
 from atmosbox.plot.unit import convert, of_difference, spelled
 from atmosbox.plot.varied import Varied
 from atmosbox.scene.panels import Line, Panel, to_json
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["MOST_PANELS", "figure", "is_sweep"]
 

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from atmosbox.scene.wish import TARGETS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = [
     "MOST_PANELS",

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
@@ -34,9 +35,6 @@ from atmosbox.plot.tradeoff_choice import (
     telling,
     total,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["figure"]
 

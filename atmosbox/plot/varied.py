@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from atmosbox.errors import FileError
 from atmosbox.plot.unit import convert, spelled
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["Varied"]
 

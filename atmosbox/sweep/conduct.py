@@ -6,7 +6,9 @@ import os
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+import xarray as xr
 
 from atmosbox.errors import SettingError
 from atmosbox.file.checkpoint import Checkpoint
@@ -18,9 +20,6 @@ from atmosbox.sweep import local
 from atmosbox.sweep.member import FAILED, Record
 from atmosbox.sweep.plan import Plan, Task
 from atmosbox.sweep.result import assemble
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["SweepInterrupted", "Swept", "sweep"]
 

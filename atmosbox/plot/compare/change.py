@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError
 from atmosbox.file.provenance import parameters
 from atmosbox.scene.parameter import Parameter
 from atmosbox.scene.quantity import phrase
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["Change", "Naming", "naming"]
 

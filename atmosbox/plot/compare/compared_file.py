@@ -6,7 +6,9 @@ import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import xarray as xr
+from matplotlib.figure import Figure
 
 from atmosbox.errors import SettingError
 from atmosbox.file.output_path import named, write_whole
@@ -15,10 +17,6 @@ from atmosbox.plot.compare.change import Naming
 from atmosbox.plot.comparison import MOST, figure
 from atmosbox.plot.figure_file import render
 from atmosbox.plot.theme import find
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 __all__ = ["save"]
 

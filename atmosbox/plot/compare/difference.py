@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+import xarray as xr
 
 from atmosbox.errors import UnitError
 from atmosbox.plot.caption import stated
 from atmosbox.scene.conversion import from_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["Compared", "Measured", "compared"]
 
