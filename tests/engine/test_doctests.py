@@ -31,7 +31,7 @@ KERNELS = [
 
 @pytest.mark.skipif(not COMPILED, reason="without numba kernels are plain functions")
 def test_kernels_with_examples_are_found():
-    assert {"time_to_contact", "time_to_leave", "uniform", "resolve_wall_hit"} <= {name for _, name in KERNELS}
+    assert {"earlier_root", "time_to_leave", "uniform", "resolve_wall_hit"} <= {name for _, name in KERNELS}
 
 
 @pytest.mark.parametrize(("module", "name"), KERNELS, ids=[name for _, name in KERNELS])

@@ -8,16 +8,25 @@ import math
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma
 
-__all__ = ["earlier_root", "quadratic", "resolve_contact", "share_energy", "time_to_contact"]
+__all__ = ["earlier_root", "quadratic", "resolve_contact", "share_energy"]
 
 
 @kernel(early=True)
 def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
     r"""Return discriminant, b and c of the equation :math:`v^2 t^2 + 2 b t + c = 0` for the contact of two molecules.
 
-    :math:`b = r \cdot v` is below zero while they approach, :math:`c = r^2 - \sigma^2`. The discriminant is formed with
-    min(b, 0): it is not above zero for nearly all pairs that miss, so that one test rejects them. Arguments as for
-    `time_to_contact`.
+    They touch when :math:`|r + v t|^2 = \sigma^2`: :math:`b = r \cdot v` is below zero while they approach, and
+    :math:`c = r^2 - \sigma^2`. The discriminant is formed with min(b, 0): it is not above zero for nearly all pairs
+    that miss, so that one test rejects them.
+
+    Parameters
+    ----------
+    rx, ry, rz
+        Position of one molecule relative to the other [length].
+    vx, vy, vz
+        Velocity of the first relative to the other [length/time].
+    diameter_squared
+        Square of the distance of their centres in contact [length^2].
     """
     b = rx * vx + ry * vy + rz * vz
     speed_squared = vx * vx + vy * vy + vz * vz
@@ -28,29 +37,9 @@ def quadratic(rx, ry, rz, vx, vy, vz, diameter_squared):
 
 @kernel(early=True)
 def earlier_root(discriminant, b, c):
-    """Return the earlier root of `quadratic` [time], 0 if it is past; needs a discriminant above and a b below zero."""
-    return max(c / (math.sqrt(discriminant) - b), 0.0)
+    """Return the earlier root of `quadratic`, which is the contact [time], and 0 if it is past.
 
-
-@kernel
-def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
-    r"""Return how long it takes two molecules to touch.
-
-    The contact is the earlier root of :math:`|r + v t|^2 = \sigma^2`.
-
-    Parameters
-    ----------
-    rx, ry, rz
-        Position of one molecule relative to the other [length].
-    vx, vy, vz
-        Velocity of the first relative to the other [length/time].
-    diameter_squared
-        Square of the distance of their centres in contact [length^2].
-
-    Returns
-    -------
-    float
-        Time from now [time], ``inf`` if they miss each other or move apart.
+    Needs a discriminant above and a b below zero; otherwise the two miss each other or move apart.
 
     Notes
     -----
@@ -65,13 +54,10 @@ def time_to_contact(rx, ry, rz, vx, vy, vz, diameter_squared):
     --------
     Three diameters apart at a closing speed of one, they fly the gap of two in a time of two:
 
-    >>> time_to_contact(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0)
+    >>> earlier_root(*quadratic(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0))
     2.0
-    >>> time_to_contact(3.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
-    inf
     """
-    discriminant, b, c = quadratic(rx, ry, rz, vx, vy, vz, diameter_squared)
-    return earlier_root(discriminant, b, c) if discriminant > 0.0 and b < 0.0 else math.inf
+    return max(c / (math.sqrt(discriminant) - b), 0.0)
 
 
 @kernel
