@@ -34,14 +34,18 @@ def walls_with(law, wall=4, height=1.0):
 
 
 def emitted(law, *, wall=4, rotation=0.0, planar=False, number=NUMBER, time=0.0):
-    """Return (normal, first, second, rotational energy) of molecules that hit a wall one after another."""
-    walls, state = walls_with(law, wall), random_state()
-    towards = -3.0 if wall % 2 == 0 else 3.0
-    second = 0.0 if planar else 0.5
-    hits = [
-        resolve_wall_hit(walls, wall, time, towards, 0.25, second, 7.0, MASS, rotation, planar, state)
-        for _ in range(number)
-    ]
+    """Return (normal, first, second, rotational energy) of molecules that hit a wall one after another.
+
+    The first and the second velocity are those along the other two axes, in the order x, y, z.
+    """
+    walls, state, axis = walls_with(law, wall), random_state(), wall // 2
+    before = [0.25, 0.0 if planar else 0.5]
+    before.insert(axis, -3.0 if wall % 2 == 0 else 3.0)
+    hits = []
+    for _ in range(number):
+        after, spin, change = resolve_wall_hit(wall, time, tuple(before), 7.0, (MASS, rotation), walls, planar, state)
+        assert change == after[axis] - before[axis]
+        hits.append([after[axis], *np.delete(after, axis), spin])
     return np.array(hits)
 
 
@@ -113,9 +117,8 @@ def test_a_heat_bath_emits_at_the_temperature_of_the_moment():
 
 def test_a_piston_reflects_in_its_own_frame():
     for velocity in [-2.0, 0.0, 0.5, 2.0]:
-        walls = walls_with(Piston(velocity), 5)
-        after = resolve_wall_hit(walls, 5, 0.0, 3.0, 0.25, 0.5, 7.0, MASS, 0.0, False, random_state())
-        assert after == (-3.0 + 2.0 * velocity, 0.25, 0.5, 7.0)
+        after = emitted(Piston(velocity), wall=5, number=1)[0]
+        assert after.tolist() == [-3.0 + 2.0 * velocity, 0.25, 0.5, 7.0]
         assert after[0] - velocity == -(3.0 - velocity)
 
 
@@ -123,5 +126,5 @@ def test_walls_without_chance_draw_no_number():
     state = random_state()
     before = state.copy()
     for law, wall in ((Specular(), 0), (Piston(0.1), 5)):
-        resolve_wall_hit(walls_with(law, wall), wall, 0.0, 1.0, 0.0, 0.0, 0.0, MASS, 0.0, False, state)
+        resolve_wall_hit(wall, 0.0, (1.0, 0.0, 0.0), 0.0, (MASS, 0.0), walls_with(law, wall), False, state)
     assert (state == before).all()

@@ -102,7 +102,7 @@ def _collide(step, epsilon, discs, frame, tallies, score):
                 v[0, j] -= back * rx
                 v[2, j] -= back * rz
                 height = z[i] - 0.5 * rz
-                tally_contact(i, j, step, height, mass[i] * change * square, False, discs, tallies, score)
+                tally_contact((i, j), step, height, mass[i] * change * square, False, discs, tallies, score)
     score.count[0] += n * (n - 1) // 2
 
 

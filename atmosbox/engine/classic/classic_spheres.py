@@ -128,7 +128,7 @@ def _collide(step, closing_only, discs, frame, tallies, score):
             v[1, j] += back * ry
             v[2, j] += back * rz
             virial = mass[i] * change * square
-            tally_contact(i, j, step, z[i] - 0.5 * rz, virial, parting, discs, tallies, score)
+            tally_contact((i, j), step, z[i] - 0.5 * rz, virial, parting, discs, tallies, score)
     score.count[0] += n * (n - 1) // 2
 
 

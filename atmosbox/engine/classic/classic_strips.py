@@ -111,8 +111,9 @@ def _sort(discs, strips):
 
 
 @kernel
-def _test(i, begin, end, step, discs, strips, frame, tallies, score):
-    """Test a disc against discs ``begin`` to ``end - 1`` in the order; exchange if they overlap and approach."""
+def _test(i, places, step, discs, strips, frame, tallies, score):
+    """Test a disc against those at some places of the order, first and end; exchange if they overlap and approach."""
+    begin, end = places
     x, z, v = discs.position[0], discs.position[2], discs.velocity
     diameter = 2.0 * discs.radius[i]
     for q in range(begin, end):
@@ -129,7 +130,7 @@ def _test(i, begin, end, step, discs, strips, frame, tallies, score):
             v[0, j] -= change * nx
             v[2, j] -= change * nz
             virial = -discs.mass[i] * change * distance
-            tally_contact(i, j, step, z[i] + 0.5 * rz, virial, False, discs, tallies, score)
+            tally_contact((i, j), step, z[i] + 0.5 * rz, virial, False, discs, tallies, score)
     score.count[0] += end - begin
 
 
@@ -143,10 +144,10 @@ def _exchange(step, discs, strips, frame, tallies, score):
             following = 0
         for p in range(begin, end):
             i = strips.order[p]
-            _test(i, p + 1, end, step, discs, strips, frame, tallies, score)
+            _test(i, (p + 1, end), step, discs, strips, frame, tallies, score)
             if following < strips.number:
-                begin_next, end_next = strips.first[following], strips.first[following + 1]
-                _test(i, begin_next, end_next, step, discs, strips, frame, tallies, score)
+                beside = strips.first[following], strips.first[following + 1]
+                _test(i, beside, step, discs, strips, frame, tallies, score)
 
 
 @kernel(entry=True)

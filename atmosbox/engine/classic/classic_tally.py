@@ -82,6 +82,12 @@ def beyond(x, radius, length, inverse):
 
 
 @kernel
+def _square(velocity):
+    """Return the square of a velocity, a tuple."""
+    return velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]
+
+
+@kernel
 def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
     r"""Give a molecule that has come beyond a wall, and moves outward, its velocity by the law of the wall.
 
@@ -103,28 +109,24 @@ def meet_wall(i, axis, side, time, discs, frame, walls, tallies):
     if v[axis, i] * side <= 0.0:
         return
     wall = 2 * axis + (1 if side > 0 else 0)
-    first = 1 if axis == 0 else 0
-    second = 1 if axis == 2 else 2
     mass = discs.mass[i]
-    before = v[0, i] * v[0, i] + v[1, i] * v[1, i] + v[2, i] * v[2, i]
-    came = v[axis, i]
-    v[axis, i], v[first, i], v[second, i], _ = resolve_wall_hit(
-        walls, wall, time, came, v[first, i], v[second, i], 0.0, mass, 0.0, frame.planar, tallies.random
-    )
+    before = (v[0, i], v[1, i], v[2, i])
+    after, _, change = resolve_wall_hit(wall, time, before, 0.0, (mass, 0.0), walls, frame.planar, tallies.random)
+    v[0, i], v[1, i], v[2, i] = after
     if walls.law[wall] == HEAT_BATH:
-        after = v[0, i] * v[0, i] + v[1, i] * v[1, i] + v[2, i] * v[2, i]
-        tallies.heat[wall] += 0.5 * mass * (after - before)
-    tallies.impulse[wall] += mass * side * (came - v[axis, i])
+        tallies.heat[wall] += 0.5 * mass * (_square(after) - _square(before))
+    tallies.impulse[wall] -= mass * side * change
     tallies.hits[wall] += 1
     tallies.count[4] += 1
 
 
 @kernel
-def tally_contact(i, j, step, height, virial, parting, discs, tallies, score):
-    """Count a contact of molecules i and j at a height [length], with its virial r . dp [energy].
+def tally_contact(pair, step, height, virial, parting, discs, tallies, score):
+    """Count the contact of a pair of molecules at a height [length], with its virial r . dp [energy].
 
     Contacts of the same two in successive steps count as repeated, as far as the last partner of each tells.
     """
+    i, j = pair
     layer = min(max(int(height * tallies.layer_scale), 0), tallies.virial.size - 1)
     tallies.virial[layer] += virial
     tallies.count[0] += 1

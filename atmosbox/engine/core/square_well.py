@@ -41,13 +41,13 @@ class Well(NamedTuple):
 
 
 @kernel
-def time_to_crossing(rx, ry, rz, ux, uy, uz, well, inside, within):
+def time_to_crossing(r, u, well, inside, within):
     r"""Return how long it takes a pair to reach its core or the edge of its well, if that happens soon.
 
     Parameters
     ----------
-    rx, ry, rz, ux, uy, uz
-        Position [length] and velocity [length/time] of one molecule relative to the other.
+    r, u : (axis,)
+        Position [length] and velocity [length/time] of one molecule relative to the other, tuples.
     well
         The law of the pair, a `Well`.
     inside
@@ -72,13 +72,15 @@ def time_to_crossing(rx, ry, rz, ux, uy, uz, well, inside, within):
     From a distance of 3 at unit speed to the edge at 1.5; from there to the core; from the core outwards to the edge:
 
     >>> well = Well(core=1.0, edge=2.25, depth=1.0)
-    >>> time_to_crossing(3.0, 0.0, 0.0, -1.0, 0.0, 0.0, well, False, 9.0)
+    >>> time_to_crossing((3.0, 0.0, 0.0), (-1.0, 0.0, 0.0), well, False, 9.0)
     (1.5, 1)
-    >>> time_to_crossing(1.5, 0.0, 0.0, -1.0, 0.0, 0.0, well, True, 9.0)
+    >>> time_to_crossing((1.5, 0.0, 0.0), (-1.0, 0.0, 0.0), well, True, 9.0)
     (0.5, 0)
-    >>> time_to_crossing(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, well, True, 9.0)
+    >>> time_to_crossing((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), well, True, 9.0)
     (0.5, 2)
     """
+    rx, ry, rz = r
+    ux, uy, uz = u
     b = rx * ux + ry * uy + rz * uz
     speed_squared = ux * ux + uy * uy + uz * uz
     distance_squared = rx * rx + ry * ry + rz * rz

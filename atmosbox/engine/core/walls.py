@@ -27,7 +27,6 @@ __all__ = [
     "Piston",
     "Specular",
     "Wall",
-    "bounce_off",
     "new_walls",
     "resolve_wall_hit",
     "wall_kT",
@@ -185,61 +184,7 @@ def wall_kT(walls: Any, wall: Any, time: Any) -> Any:
 
 
 @kernel
-def resolve_wall_hit(walls, wall, time, normal, first, second, energy, mass, rotation, planar, state):
-    """Return velocity and rotational energy of a molecule after it has hit a wall.
-
-    Parameters
-    ----------
-    walls, wall
-        The walls, and the number of the wall that is hit.
-    time
-        Time since the start [time].
-    normal, first, second
-        Velocity along the wall's axis, and along the two others in the order x, y, z [length/time].
-    energy, rotation
-        Rotational energy [energy] and the number of its degrees of freedom.
-    mass
-        Mass of the molecule [mass].
-    planar
-        Whether the gas is plane, so that the y velocity stays zero.
-    state
-        State of the random numbers; it is advanced.
-
-    Returns
-    -------
-    (float, float, float, float)
-        The three velocities, in the same order, and the rotational energy after the hit.
-
-    Examples
-    --------
-    A piston that recedes at 1 slows a molecule from a speed of 3 to 1:
-
-    >>> walls = new_walls((Specular(),) * 5 + (Piston(1.0),), 2.0)
-    >>> resolve_wall_hit(walls, 5, 0.0, 3.0, 0.5, 0.5, 0.0, 1.0, 0.0, False, np.array([1], np.uint64))
-    (-1.0, 0.5, 0.5, 0.0)
-    """
-    law = walls.law[wall]
-    if law == PISTON:
-        return -normal + 2.0 * walls.piston[1], first, second, energy
-    if law == SPECULAR or uniform(state) >= walls.accommodation[wall]:
-        return -normal, first, second, energy
-    kT = wall_kT(walls, wall, time)
-    thermal_speed = math.sqrt(kT / mass)
-    outward = 1.0 if wall & 1 == 0 else -1.0
-    normal = outward * thermal_speed * math.sqrt(-2.0 * log_of_normal(uniform(state)))
-    first, second = gaussian_pair(state)
-    first *= thermal_speed
-    second *= thermal_speed
-    if planar:
-        if wall >> 1 == 0:
-            first = 0.0
-        else:
-            second = 0.0
-    return normal, first, second, kT * gamma(rotation, state)
-
-
-@kernel
-def bounce_off(wall, time, velocity, spin, kind, walls, planar, state):
+def resolve_wall_hit(wall, time, velocity, spin, kind, walls, planar, state):
     """Return velocity and rotational energy after a wall hit, and the change of the velocity along the wall's axis.
 
     Parameters
@@ -253,22 +198,39 @@ def bounce_off(wall, time, velocity, spin, kind, walls, planar, state):
     kind
         Mass [mass] and rotational degrees of freedom of the molecule, a tuple.
     walls, planar, state
-        The walls, whether the gas is plane, and the state of the random numbers, which is advanced.
+        The walls, whether the gas is plane so that the y velocity stays zero, and the state of the random numbers,
+        which is advanced.
 
     Examples
     --------
-    A smooth floor reverses the vertical velocity:
+    A piston that recedes at 1 slows a molecule from a speed of 3 to 1:
 
-    >>> walls = new_walls((Specular(),) * 6, 2.0)
-    >>> bounce_off(4, 0.0, (1.0, 0.0, -2.0), 0.0, (1.0, 0.0), walls, False, np.array([1], np.uint64))
-    ((1.0, 0.0, 2.0), 0.0, 4.0)
+    >>> walls = new_walls((Specular(),) * 5 + (Piston(1.0),), 2.0)
+    >>> resolve_wall_hit(5, 0.0, (0.5, 0.5, 3.0), 0.0, (1.0, 0.0), walls, False, np.array([1], np.uint64))
+    ((0.5, 0.5, -1.0), 0.0, -4.0)
     """
     vx, vy, vz = velocity
     mass, rotation = kind
     axis = wall >> 1
+    # the velocities along the wall's axis, and along the two others in the order x, y, z
     came, first, second = (vx, vy, vz) if axis == 0 else ((vy, vx, vz) if axis == 1 else (vz, vx, vy))
-    went, first, second, spin = resolve_wall_hit(
-        walls, wall, time, came, first, second, spin, mass, rotation, planar, state
-    )
+    law = walls.law[wall]
+    went = -came
+    if law == PISTON:
+        went += 2.0 * walls.piston[1]
+    elif law != SPECULAR and uniform(state) < walls.accommodation[wall]:
+        kT = wall_kT(walls, wall, time)
+        thermal_speed = math.sqrt(kT / mass)
+        outward = 1.0 if wall & 1 == 0 else -1.0
+        went = outward * thermal_speed * math.sqrt(-2.0 * log_of_normal(uniform(state)))
+        first, second = gaussian_pair(state)
+        first *= thermal_speed
+        second *= thermal_speed
+        if planar:
+            if axis == 0:
+                first = 0.0
+            else:
+                second = 0.0
+        spin = kT * gamma(rotation, state)
     after = (went, first, second) if axis == 0 else ((first, went, second) if axis == 1 else (first, second, went))
     return after, spin, went - came

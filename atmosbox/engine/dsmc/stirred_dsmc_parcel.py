@@ -11,7 +11,7 @@ from atmosbox.engine.core.random import new_state
 from atmosbox.engine.core.refusal import RefusedError
 from atmosbox.engine.core.walls import PISTON
 from atmosbox.engine.dsmc.dsmc_parcel import DsmcParcel
-from atmosbox.engine.dsmc.stirring import Stirring, stir
+from atmosbox.engine.dsmc.stirring import Stirring, StirringWork, stir
 
 __all__ = ["StirredDsmcParcel"]
 
@@ -146,6 +146,5 @@ class StirredDsmcParcel(DsmcParcel):
         wide, deep, _ = self._open_sides()
         order: Any = np.argsort(self._columns.z[:n], kind="stable")
         column = self._gravity, wide * deep, self._gas.radius, self.ceiling - self._gas.radius
-        stir(
-            exchanges, self._stirring, order, self._columns, self._gas, column, self._dice, self._counted, self._factor
-        )
+        work = StirringWork(self._counted, self._factor)
+        stir(exchanges, self._stirring, order, self._columns, self._gas, column, self._dice, work)

@@ -31,7 +31,7 @@ References
 Poisson, S. D. (1823), Ann. Chim. Phys. 23, 337; Prandtl, L. (1925), doi:10.1002/zamm.19250050212 (mixing length).
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,7 +39,7 @@ from atmosbox.engine.core.elementary import exp, log
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import uniform
 
-__all__ = ["Stirring", "stir"]
+__all__ = ["Stirring", "StirringWork", "stir"]
 
 _LEAST = 1e-3  # least pressure over that at the floor: it may be lower before the air has fallen, but is taken as this
 
@@ -59,6 +59,17 @@ class Stirring(NamedTuple):
     rate: float
     interval: float
     works: bool = True
+
+
+class StirringWork(NamedTuple):
+    """What stirring has done, and its working memory.
+
+    ``counted : (2,)``: work done on the molecules [energy], and number of exchanges. ``factor : (molecule,)``: factor
+    of the velocities of air that comes from the floor to each place in the order of heights.
+    """
+
+    counted: Any
+    factor: Any
 
 
 @kernel
@@ -88,11 +99,12 @@ def _mean_velocity(first, number, order, columns):
 
 
 @kernel
-def _scale(first, number, lift, order, columns, mean, mass, rotates, factor):
+def _scale(first, number, lift, mean, order, columns, gas, factor):
     """Multiply the energies of a parcel as it moves to another pressure; return the energy gained [energy].
 
-    It moves from a place ``first`` to one that is higher by ``lift``; ``factor`` is described at `stir`.
+    It moves from a place ``first`` to one that is higher by ``lift``; ``factor`` is described at `StirringWork`.
     """
+    mass, rotates = gas.mass, gas.rotation > 0.0
     ux, uy, uz = mean
     sx = sy = sz = gain = 0.0
     for i in range(number):
@@ -125,7 +137,7 @@ def _swap(i, j, order, z):
 
 
 @kernel(entry=True)
-def stir(number, stirring, order, columns, gas, column, state, counted, factor):
+def stir(number, stirring, order, columns, gas, column, state, work):
     """Make a number of exchanges at random places.
 
     Parameters
@@ -142,13 +154,10 @@ def stir(number, stirring, order, columns, gas, column, state, counted, factor):
         Acceleration of gravity [length/time^2], area of the column [length^2], height of its lower and upper end.
     state : (1,)
         State of the random numbers; it is advanced.
-    counted : (2,)
-        Work done on the molecules [energy] and number of exchanges; they are increased.
-    factor : (molecule,)
-        Working memory: factor of the velocities of air that comes from the floor to each place.
+    work
+        The `StirringWork`; its counts are increased.
     """
-    n = stirring.parcel
-    rotates = gas.rotation > 0.0
+    n, factor = stirring.parcel, work.factor
     z = columns.z
     if number and stirring.works:
         # from the floor up the pressure falls by the weight of the air below
@@ -164,8 +173,8 @@ def stir(number, stirring, order, columns, gas, column, state, counted, factor):
         if stirring.works:
             above = first + lift
             lower, upper = _mean_velocity(first, n, order, columns), _mean_velocity(above, n, order, columns)
-            counted[0] += _scale(first, n, lift, order, columns, lower, gas.mass, rotates, factor)
-            counted[0] += _scale(above, n, -lift, order, columns, upper, gas.mass, rotates, factor)
+            work.counted[0] += _scale(first, n, lift, lower, order, columns, gas, factor)
+            work.counted[0] += _scale(above, n, -lift, upper, order, columns, gas, factor)
             for i in range(first, first + n):
                 _swap(i, i + lift, order, z)
         else:
@@ -173,4 +182,4 @@ def stir(number, stirring, order, columns, gas, column, state, counted, factor):
                 one = first + i
                 _swap(one, one + lift, order, z)
                 first = np.int64(uniform(state) * places)
-        counted[1] += 1.0
+        work.counted[1] += 1.0

@@ -16,7 +16,7 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
-from atmosbox.engine.core.walls import PISTON, bounce_off
+from atmosbox.engine.core.walls import PISTON, resolve_wall_hit
 
 __all__ = ["WAITS", "Axis", "bounce", "fall", "fold", "glide", "mirror", "turn_round", "wait_at_walls"]
 
@@ -247,7 +247,7 @@ def bounce(p, step, air, state, counters, features):
             break
         before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
         high = wall & 1 == 1
-        velocity, spin, change = bounce_off(
+        velocity, spin, change = resolve_wall_hit(
             wall, step.start + (dt - left), (vx, vy, vz), spin, (mass, rotation), walls, False, state
         )
         vx, vy, vz = velocity

@@ -9,7 +9,7 @@ from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.pair import nearest_image, resolve
 from atmosbox.engine.core.random import uniform
 from atmosbox.engine.core.state import Motion
-from atmosbox.engine.core.walls import bounce_off
+from atmosbox.engine.core.walls import resolve_wall_hit
 
 __all__ = ["hit", "kind_of", "meet", "motion_at", "size_and_radius", "slots_of", "write"]
 
@@ -116,7 +116,7 @@ def hit(i, wall, t, at, gas, modes):
     mass, radius, rotation = kind_of(i, gas, modes)
     spin = gas.kinds.rotational_energy[i] if modes.rotation else 0.0
     before = 0.5 * mass * (at.vx * at.vx + at.vy * at.vy + at.vz * at.vz) + spin
-    velocity, spin, change = bounce_off(
+    velocity, spin, change = resolve_wall_hit(
         wall, walls.epoch[0] + t, (at.vx, at.vy, at.vz), spin, (mass, rotation), walls, box.planar, tallies.random
     )
     vx, vy, vz = velocity

@@ -251,15 +251,13 @@ class Reference:
                 self.position[event.first, axis] = self.length[axis] if event.second % 2 == 0 else 0.0
 
     def _hit(self, i: int, wall: int) -> None:
-        axis, across = wall // 2, [other for other in range(3) if other != wall // 2]
+        axis = wall // 2
         inward = 1.0 if wall % 2 == 0 else -1.0
         self.position[i, axis] = self.place(wall) + inward * 0.5 * self.diameter[i]
-        normal, first, second, self.rotational_energy[i] = resolve_wall_hit(
-            self.walls, wall, self.time, self.velocity[i, axis], *self.velocity[i, across],
-            self.rotational_energy[i], self.mass[i], self.rotation[i], self.planar, self.random,
+        self.velocity[i], self.rotational_energy[i], _ = resolve_wall_hit(
+            wall, self.time, tuple(self.velocity[i]), self.rotational_energy[i], (self.mass[i], self.rotation[i]),
+            self.walls, self.planar, self.random,
         )  # fmt: skip
-        self.velocity[i, axis] = normal
-        self.velocity[i, across] = first, second
 
     def _meet(self, i: int, j: int) -> None:
         r = self.position[i] - self.position[j]

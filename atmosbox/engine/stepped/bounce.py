@@ -23,7 +23,7 @@ import numpy as np
 
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.motion import time_to_ceiling, time_to_leave, time_to_leave_in_gravity
-from atmosbox.engine.core.walls import SPECULAR, bounce_off
+from atmosbox.engine.core.walls import SPECULAR, resolve_wall_hit
 from atmosbox.engine.stepped.flight import EULER, PARABOLA, SEMI_IMPLICIT
 
 __all__ = ["CLAMP", "FLIP", "FOLD", "MIRROR", "REWIND", "bounce"]
@@ -155,7 +155,7 @@ def bounce(p, step, gas, modes):
         before = 0.5 * mass * (vx * vx + vy * vy + vz * vz) + spin
         now = step.time + step.length - left
         high = wall & 1 == 1
-        velocity, spin, change = bounce_off(
+        velocity, spin, change = resolve_wall_hit(
             wall, now, (vx, vy, vz), spin, (mass, rotation), walls, box.planar, tallies.random
         )
         vx, vy, vz = velocity

@@ -96,11 +96,11 @@ def _plan(i, t, at, gas, modes):
         entry = np.int64(vicinity.entry[q])
         j = entry >> 1
         other = motion_at(j, t, gas, modes)
-        rx, ry, rz = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, gas.box, modes)
-        ux, uy, uz = at.vx - other.vx, at.vy - other.vy, at.vz - other.vz
+        r = nearest_image(at.x - other.x, at.y - other.y, at.z - other.z, gas.box, modes)
+        u = at.vx - other.vx, at.vy - other.vy, at.vz - other.vz
         if modes.mixed:
             well = well_of(i, j, gas, modes)
-        after, which = time_to_crossing(rx, ry, rz, ux, uy, uz, well, is_inside(entry), time)
+        after, which = time_to_crossing(r, u, well, is_inside(entry), time)
         if after < time:
             time, what = after, CONTACT + which
             partner = j
