@@ -4,16 +4,11 @@ import contextlib
 import signal
 from collections import Counter
 
-import pytest
-import typer
-from typer import testing
-
-from atmosbox.cli import app
+from tests import in_process
 
 CASES = Counter()
 """Number of cases, by what was fuzzed and by their outcome."""
 STATUSES = (0, 1, 2, 3, 130)
-COMMAND = typer.main.get_command(app)  # built once: this takes thirty times as long as refusing a word
 _LONGEST = 20.0
 
 
@@ -45,9 +40,8 @@ def fuzz_case(kind):
 
 def typed(kind, *words):
     """Type a command in this process; return its result after checking that a failure, if any, was one sentence."""
-    with fuzz_case(kind), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(testing, "_get_command", lambda app: COMMAND)
-        result = testing.CliRunner().invoke(app, [*words])
+    with fuzz_case(kind):
+        result = in_process.typed(*words)
     said = f"{words}: {result.exception!r}\n{result.output}"
     assert result.exit_code in STATUSES, said
     assert result.exception is None or isinstance(result.exception, SystemExit), said

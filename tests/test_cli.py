@@ -18,11 +18,10 @@ from typing import get_args
 import pytest
 import typer
 import xarray as xr
-from typer.testing import CliRunner
 
 import atmosbox
 from atmosbox import scenarios, version
-from atmosbox.cli import app, check, terminal
+from atmosbox.cli import check, terminal
 from atmosbox.cli.option import Format, Theme, _completed
 from atmosbox.cli.output_name import FIGURES
 from atmosbox.cli.request import gather
@@ -33,6 +32,8 @@ from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Discs
 from atmosbox.simulation import runner
 from atmosbox.text import progress, report, table
+from tests.few_frames import cut
+from tests.in_process import typed
 from tests.test_restart import OFTEN
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,13 +48,21 @@ posix = pytest.mark.skipif(os.name == "nt", reason="signals, pipes and terminals
 
 def atmosbox_in_process(*words, **environment):
     """Run a command in this process; the width of output that is not a terminal is unlimited."""
-    return CliRunner().invoke(app, list(words), env={"COLUMNS": None, **environment})
+    return typed(*words, **{"COLUMNS": None, **environment})
 
 
 def command_line(*words, **options):
     """Return the arguments of `subprocess.run` for a command in a separate process."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), **options.pop("env", {})}
     return {"args": [sys.executable, "-m", "atmosbox", *words], "env": environment, "text": True, **options}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_frames():
+    """The runs of the scene in this process have a twentieth of its frames, the ends of which take most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        cut(patch, {SCENE: (60, 20)})
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -117,9 +126,11 @@ def test_the_help_of_a_command_has_examples_that_use_options_that_exist_at_every
 
 def test_what_must_be_there_at_once_waits_for_nothing_heavy(folder):
     code = (
-        "import sys\nimport atmosbox\nfrom atmosbox import errors, scenarios\nfrom atmosbox.scene import settings\n"
+        "import sys\nimport typer\n"
+        "import atmosbox\nfrom atmosbox import errors, scenarios\nfrom atmosbox.scene import settings\n"
         "assert 'numpy' not in sys.modules\n"
         "from atmosbox.cli import app\n"
+        "app = typer.main.get_command(app)  # built once for all words\n"
         "for words in ['--help'], ['run', '--help'], ['--version'], ['list']:\n"
         "    app(words, standalone_mode=False)\n"
         "for name in scenarios.names():\n"
@@ -571,40 +582,40 @@ def test_a_stopped_run_tells_a_program_the_file_it_left(folder, monkeypatch, opt
     assert text == f"{SCENE}.part.nc"
 
 
-def press_ctrl_c_inside(monkeypatch, home, name, call):
-    """Simulate Ctrl-C in the n-th call of a function."""
+def raise_inside(monkeypatch, home, name, call, number=signal.SIGINT):
+    """Send this process a signal in the n-th call of a function."""
     original, calls = getattr(home, name), []
 
     def pressed(*args, **kwargs):
         calls.append(args)
         if len(calls) == call:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(number)
         return original(*args, **kwargs)
 
     monkeypatch.setattr(home, name, pressed)
 
 
-def test_ctrl_c_while_a_frame_ends_keeps_the_frames_of_all_instruments(folder, monkeypatch):
-    press_ctrl_c_inside(monkeypatch, Discs, "end_frame", 10)
-    assert atmosbox_in_process(*SHORT).exit_code == 130
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=posix)])
+def test_a_signal_while_a_frame_ends_keeps_the_frames_of_all_instruments(folder, monkeypatch, number, status):
+    raise_inside(monkeypatch, Discs, "end_frame", 10, number)
+    assert atmosbox_in_process(*SHORT).exit_code == status
     kept = output.read(f"{SCENE}.part.nc")
     assert kept.sizes["elapsed_time"] == 10
     assert kept.attrs["atmosbox_status"] == "interrupted"
 
 
 def test_ctrl_c_while_the_finished_file_is_written_keeps_it(folder, monkeypatch):
-    press_ctrl_c_inside(monkeypatch, checkpoint.Checkpoint, "finish", 1)
+    raise_inside(monkeypatch, checkpoint.Checkpoint, "finish", 1)
     assert atmosbox_in_process(*SHORT).exit_code == 130
     assert [path.name for path in folder.iterdir()] == [f"{SCENE}.nc"]
     assert output.read(f"{SCENE}.nc").attrs["atmosbox_status"] == "complete"
 
 
 @posix
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_stops_a_run_and_what_is_complete_is_kept(folder, number, status):
+def test_ctrl_c_stops_a_process_and_what_is_complete_is_kept(folder):
     # a shell makes background processes ignore Ctrl-C, and their children inherit that
     def listen():
-        signal.signal(number, signal.SIG_DFL)
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
 
     command = command_line(stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     command["args"] = [sys.executable, "-c", OFTEN, *LONG, "--out", "x.nc"]
@@ -613,11 +624,11 @@ def test_a_signal_stops_a_run_and_what_is_complete_is_kept(folder, number, statu
         deadline = time.monotonic() + 300.0  # the engine may have to be compiled
         while not Path("x.part.nc").exists() and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.05)
-        process.send_signal(number)
+        process.send_signal(signal.SIGINT)
         out, told = process.communicate(timeout=60)
     finally:
         process.kill()
-    assert process.returncode == status, told
+    assert process.returncode == 130, told
     assert out == ""
     assert "Traceback" not in told
     assert "atmosbox plot x.part.nc" in told

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from atmosbox import scenarios
 from atmosbox.simulation import runner
 from tests import fuzz_case
+from tests.in_process import COMMAND
 
 NAMES = sorted({p.name for name in scenarios.names() for p in scenarios.load(name).Settings.describe()})
 
@@ -79,7 +80,7 @@ def test_no_words_break_the_command_line(folder, scene, words):
 
 # The commands that start no server and compute nothing, with all their options.
 COMMANDS = {
-    name: fuzz_case.COMMAND.commands[name].params
+    name: COMMAND.commands[name].params
     for name in ("list", "info", "plot", "view", "compare", "export", "animate", "check", "sweep")
 }
 SPARED = {"extremes", "version", "help"}

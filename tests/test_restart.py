@@ -13,13 +13,13 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from atmosbox.cli import app
 from atmosbox.errors import FileError, SettingError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import restart, runner
+from tests.few_frames import FRAMES, cut
+from tests.in_process import typed
 
 RUNS = {
     "discs": ("elastic-collisions", {"duration": "5 s"}, None),
@@ -73,6 +73,15 @@ def content(path):
             values = np.asarray(each[...])
             held[name] = values.tolist() if values.dtype == object else values.tobytes(), each.dimensions, said
     return held
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_frames():
+    """The runs in this process have few frames, but for those that are compared with runs in another one."""
+    with pytest.MonkeyPatch.context() as patch:
+        fewer = {scene: frames for scene, frames in FRAMES.items() if scene != "temperature"}
+        cut(patch, fewer | {"elastic-collisions": (60, 20), "mountains": (24, None)})
+        yield
 
 
 @pytest.fixture(autouse=True)
@@ -214,7 +223,7 @@ def part(tmp_path, monkeypatch):
 
 
 def refused(*words):
-    result = CliRunner().invoke(app, [*map(str, words)])
+    result = typed(*words)
     assert result.exit_code == 2, result.output
     assert result.stderr.startswith("error: ")
     assert result.stderr.count("\n") == 1
@@ -277,7 +286,7 @@ def test_the_state_of_a_scene_of_ones_own_needs_its_path_typed(tmp_path, monkeyp
     with pytest.raises(runner.Interrupted):
         runner.execute(prepared, checkpoint=Checkpoint("x.nc"), progress=stopping([0.5]))
     assert "atmosbox run ./mine.py --resume x.part.nc" in refused("run", "--resume", "x.part.nc")
-    assert CliRunner().invoke(app, ["run", "./mine.py", "--resume", "x.part.nc"]).exit_code == 0
+    assert typed("run", "./mine.py", "--resume", "x.part.nc").exit_code == 0
     Path("x.nc").unlink()
 
 
@@ -318,9 +327,9 @@ def test_a_run_too_short_for_its_headlines_is_kept_nevertheless(tmp_path, monkey
 def test_a_finished_run_goes_on_for_longer(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = ["--set", "molecules=60", "--set", "duration=0.2ns"]
-    assert CliRunner().invoke(app, ["run", "temperature", *words, "--keep-state", "--out", "x.nc"]).exit_code == 0
+    assert typed("run", "temperature", *words, "--keep-state", "--out", "x.nc").exit_code == 0
     assert "give --extend 2" in refused("run", "--resume", "x.nc", "--force")
-    assert CliRunner().invoke(app, ["run", "--resume", "x.nc", "--extend", "3", "--out", "long.nc"]).exit_code in (0, 3)
+    assert typed("run", "--resume", "x.nc", "--extend", "3", "--out", "long.nc").exit_code in (0, 3)
     short, long = read("x.nc"), read("long.nc")
     frames = short.sizes["elapsed_time"]
     assert long.sizes["elapsed_time"] == 3 * frames

@@ -18,11 +18,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from typer.testing import CliRunner
 
 from atmosbox import scenarios
-from atmosbox.cli import app
-from atmosbox.cli.check import conventions
+from atmosbox.cli import check
 from atmosbox.errors import DiskFullError, FileError, SettingError, UnitError, UnknownSettingError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.journal import Journal
@@ -33,8 +31,11 @@ from atmosbox.file.run_states import RunStates
 from atmosbox.simulation import continuation, runner
 from atmosbox.sweep import SweepInterrupted, member, member_seed, parse_vary, plan, sweep
 from atmosbox.sweep.result import assemble, mean_and_error
+from tests import in_process
+from tests.few_frames import cut
 
 ROOT = Path(__file__).resolve().parents[1]
+CHECKER = shutil.which(check.CHECKER, path=Path(sys.executable).parent)
 
 SCENE = '''"""Discs, some of which have trouble."""
 
@@ -50,6 +51,7 @@ from atmosbox.scenarios.elastic_collisions import headlines, panels, theory
 from atmosbox.scene.settings import setting
 
 title = "Discs"
+discs.FRAMES, discs.SETTLE = 60, 20
 assert headlines and panels and theory
 
 
@@ -95,6 +97,14 @@ if "HOLD" in os.environ:
 QUICK = {"duration": 2.0}
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_frames():
+    """The runs of discs have the few frames that they have in `SCENE`."""
+    with pytest.MonkeyPatch.context() as patch:
+        cut(patch, {"elastic-collisions": (60, 20)})
+        yield
+
+
 @pytest.fixture
 def scene(tmp_path):
     """The path of a user's own scene that writes a file for each run that it begins."""
@@ -116,7 +126,7 @@ def saved(file):
 
 
 def typed(*words):
-    return CliRunner().invoke(app, ["sweep", *map(str, words)])
+    return in_process.typed("sweep", *words)
 
 
 def stop_after(runs, total):
@@ -298,20 +308,20 @@ def test_a_sweep_holds_what_single_runs_find(tmp_path):
     assert not list(tmp_path.glob("*.part*"))
 
 
-def test_the_same_seed_gives_the_same_file_in_whatever_order_and_by_however_many(tmp_path, monkeypatch):
+def test_the_same_seed_gives_the_same_file_in_whatever_order(tmp_path, monkeypatch):
+    """Nor does it matter how many processes compute it, as the sweep that is killed below shows."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     grid = plan("elastic-collisions", ["molecules=10,20"], settings=QUICK, members=2)
-    for name, jobs in (("one", 1), ("two", 2)):
-        assert sweep(grid, tmp_path / f"{name}.nc", jobs=jobs).computed == 4
+    for name in ("one", "two"):
+        assert sweep(grid, tmp_path / f"{name}.nc", jobs=1).computed == 4
     # HDF5 itself notes the second in which a file was made: all else is the same
     first = read(tmp_path / "one.nc")
     assert first.identical(read(tmp_path / "two.nc"))
-    records = [importlib.import_module("atmosbox.sweep.member").run(task) for task in grid.tasks()[::-1]]
-    backwards = assemble(grid, records)
+    backwards = assemble(grid, [member.run(task) for task in grid.tasks()[::-1]])
     assert backwards.drop_attrs().identical(first.drop_attrs())
 
 
-@pytest.mark.skipif(shutil.which("compliance-checker", path=Path(sys.executable).parent) is None, reason="no checker")
+@pytest.mark.skipif(CHECKER is None, reason="no checker")
 def test_the_file_keeps_to_the_conventions_with_words_switches_units_and_failures(tmp_path):
     types = ["pressure=500,1000", "start=equal,maxwell", "temperature=0,20"]
     grid = plan("temperature", types, members=2)
@@ -327,9 +337,9 @@ def test_the_file_keeps_to_the_conventions_with_words_switches_units_and_failure
     assert found.member_reason.astype(str).values[1, 1, 1].tolist() == ["It stalled.", ""]
     assert np.isnan(found.mean_temperature.values[1, 1, 1])
     write(assemble(plan("atmosphere", ["height=5,10", "duration=1,2"]), records[:1]), tmp_path / "column.nc")
-    for name in ("grid", "column"):
-        kept = conventions(tmp_path / f"{name}.nc")
-        assert kept.passed, kept.sentence
+    words = ["-t", check.CONVENTION, "-c", "strict", file, tmp_path / "column.nc"]
+    done = subprocess.run([CHECKER, *map(str, words)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_a_failed_member_is_missing_with_its_reason_and_the_others_are_not_lost(scene, tmp_path):
@@ -584,21 +594,23 @@ def test_a_killed_sweep_goes_on_within_its_runs_computes_nothing_twice_and_leave
         env={**os.environ, "PYTHONPATH": str(ROOT), "HOLD": "1"}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
     )  # fmt: skip
     deadline = time.monotonic() + 120.0
+    held = [out / "discs.part.states" / f"{point}-1.part.nc" for point in (3, 4)[:jobs]]
     while process.poll() is None and time.monotonic() < deadline:
-        if len(saved(file)) == 2 and RunStates(file).begun == jobs:
+        if len(saved(file)) == 2 and all(state.exists() for state in held):
             break
         time.sleep(0.02)
     process.send_signal(signal.SIGKILL)
     _, said = process.communicate()
     before = {record["seed"] for record in saved(file)}
-    assert (len(before), RunStates(file).begun) == (2, jobs), said
+    assert len(before) == 2, said
+    assert all(state.exists() for state in held), said
     workers = {int(path.name.split("-")[2]) for path in tmp_path.glob("run-*")}
     while any(Path(f"/proc/{pid}").exists() for pid in workers) and time.monotonic() < deadline:
         time.sleep(0.05)
     assert not any(Path(f"/proc/{pid}").exists() for pid in workers)
     journal = file.with_name("discs.part.jsonl")
     journal.write_bytes(journal.read_bytes() + b'{"point": 1, "mem')
-    done = CliRunner().invoke(app, [*words, "1"])
+    done = in_process.typed(*words, "1")
     assert done.exit_code == 0, done.output
     assert f"2 of 4 runs are saved in {journal} and {jobs} begun" in done.stderr
     assert all(begun(scene)[seed] == 1 for seed in before)

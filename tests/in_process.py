@@ -1,0 +1,18 @@
+"""Commands in the process of the test; the command line is built once, which takes longer than most commands."""
+
+import pytest
+import typer
+from typer import testing
+
+from atmosbox.cli import app
+
+__all__ = ["COMMAND", "typed"]
+
+COMMAND = typer.main.get_command(app)
+
+
+def typed(*words, **environment):
+    """Type a command, and return its result."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(testing, "_get_command", lambda app: COMMAND)
+        return testing.CliRunner().invoke(app, [*map(str, words)], env=environment)
