@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.simulation import runner
 from atmosbox.sweep import plan, sweep
+from tests.few_frames import cut
 from tests.fuzz_case import typed
 
 ODD_TEXTS = ["", "x", "[" * 3000, "{}", "null", '{"scene": 3}', "\x00", "é" * 500, "nan", "9" * 400, '"', "run.nc"]
@@ -42,6 +43,7 @@ def files(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(place)
         patch.setattr(runner, "_BREATH", 0.0)
+        cut(patch, {"temperature": (60, 10), "elastic-collisions": (60, 20)})
         runner.run("temperature", molecules=50, duration="0.1 ns", save_molecules=True, out="molecules.nc")
         runner.run("lifting-dry", molecules=50, ascent=30.0, out="lift.nc")
         prepared = runner.prepare("elastic-collisions", {"duration": "5 s"})

@@ -15,9 +15,18 @@ import atmosbox as ab
 from atmosbox import errors
 from atmosbox.interface import inline_page, notebook
 from atmosbox.interface.wording import python_words
+from tests.few_frames import cut
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENE = "elastic-collisions"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_frames():
+    """Runs have few frames: their ends took most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        cut(patch, {SCENE: (60, 20), "temperature": (60, 10)})
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +76,9 @@ def test_the_figure_of_a_run_is_drawn_from_the_dataset_and_from_its_file(tmp_pat
     file = tmp_path / "lifted.nc"
     ab.run("lifting-dry", molecules=200, out=file)
     one, other = ab.plot(lifted), ab.plot(file, out=tmp_path / "lifted.svg")
-    assert one._repr_png_()[1:4] == b"PNG"
-    assert one._repr_png_()[1000:] == other._repr_png_()[1000:]
+    picture = one._repr_png_()
+    assert picture[1:4] == b"PNG"
+    assert picture[1000:] == other._repr_png_()[1000:]
     assert (tmp_path / "lifted.svg").exists()
 
 

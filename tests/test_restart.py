@@ -105,6 +105,7 @@ def stopping(shares):
 def test_a_run_that_was_stopped_goes_on_bit_for_bit(name, tmp_path, monkeypatch):
     scene, settings, engine = RUNS[name]
     monkeypatch.setattr(runner, "_BREATH", 0.0)
+    cut(monkeypatch, {"temperature": (60, 10)})
     prepared = runner.prepare(scene, settings, engine=engine, save_molecules=name in ("walls", "drops"))
     runner.execute(prepared, checkpoint=Checkpoint(tmp_path / "whole.nc"), command="a test")
     checkpoint = Checkpoint(tmp_path / "stopped.nc", every_seconds=0.0)
@@ -326,6 +327,7 @@ def test_a_run_too_short_for_its_headlines_is_kept_nevertheless(tmp_path, monkey
 
 def test_a_finished_run_goes_on_for_longer(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    cut(monkeypatch, {"temperature": (60, 10)})
     words = ["--set", "molecules=60", "--set", "duration=0.2ns"]
     assert typed("run", "temperature", *words, "--keep-state", "--out", "x.nc").exit_code == 0
     assert "give --extend 2" in refused("run", "--resume", "x.nc", "--force")

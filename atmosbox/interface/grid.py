@@ -75,9 +75,9 @@ def sweep(
     Examples
     --------
     >>> import atmosbox as ab
-    >>> swept = ab.sweep("elastic-collisions", {"molecules": [20, 40]}, members=2, duration="2 s", jobs=1)
+    >>> swept = ab.sweep("elastic-collisions", {"molecules": [20, 40]}, duration="2 s", jobs=1)
     >>> dict(swept.sizes)
-    {'molecules': 2, 'member': 2}
+    {'molecules': 2, 'member': 1}
     """
     from atmosbox.sweep.conduct import sweep as conduct
     from atmosbox.sweep.plan import plan

@@ -105,10 +105,10 @@ def sweep(
     --------
     >>> from atmosbox.simulation.runner import LEDGER_LIMIT
     >>> from atmosbox.sweep.plan import plan
-    >>> discs = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0}, members=2)
+    >>> discs = plan("elastic-collisions", ["molecules=20,40"], settings={"duration": 5.0})
     >>> swept = sweep(discs, jobs=1)
     >>> dict(swept.dataset.sizes), swept.failures, swept.ledger < LEDGER_LIMIT
-    ({'molecules': 2, 'member': 2}, (), True)
+    ({'molecules': 2, 'member': 1}, (), True)
     """
     if jobs is not None and jobs < 1:
         raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {local.cores()}")
