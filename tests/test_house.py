@@ -1,6 +1,5 @@
 """The project itself: what an import costs, what the README promises, and the tiers of this suite."""
 
-import ast
 import doctest
 import importlib
 import inspect
@@ -53,28 +52,6 @@ def test_the_version_is_written_once_and_cited_rightly():
     assert "version" in project["dynamic"]
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"\nversion: {atmosbox.__version__}\n" in citation
-
-
-def test_every_library_the_package_imports_is_a_dependency():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    declared = {re.match(r"[\w-]+", line).group().lower() for line in project["dependencies"]}
-    imported = set()
-    for path in [*ROOT.glob("atmosbox/**/*.py"), *ROOT.glob("scenarios/*.py")]:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                imported |= {alias.name.split(".")[0] for alias in node.names}
-            elif isinstance(node, ast.ImportFrom) and not node.level:
-                imported.add(node.module.split(".")[0])
-    used = {name.lower() for name in imported - sys.stdlib_module_names - {"atmosbox"}}
-    used = {{"markdown_it": "markdown-it-py"}.get(name, name).replace("_", "-") for name in used}
-    carried = {"llvmlite", "rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
-    extras = {
-        re.match(r"[\w-]+", line).group().lower()
-        for extra in ("movie", "cluster", "export")
-        for line in project["optional-dependencies"][extra]
-    }
-    assert used - carried == declared | extras
-    assert declared.isdisjoint(extras)
 
 
 def test_the_examples_in_the_docstrings_of_scenarios_hold():

@@ -6,7 +6,10 @@ code lives on.
 """
 
 import ast
+import functools
+import re
 import sys
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -146,26 +149,51 @@ def refusal(importer, name, late):
     return f"not allowed to {home}"
 
 
-def violations(root):
-    """Return one line for every import in a checkout that the layers forbid."""
-    lines = []
+@functools.cache
+def imports(root):
+    """Return the imports of every file in a checkout, by its path."""
+    found = {}
     for path in sorted([*root.glob("atmosbox/**/*.py"), *root.glob("scenarios/**/*.py")]):
         place = path.relative_to(root)
         parts = place.with_suffix("").parts
         module = parts if parts[0] == "atmosbox" else ("atmosbox", *parts)
+        visitor = Imports(".".join(module[:-1]))
+        visitor.visit(ast.parse(path.read_text(encoding="utf-8"), filename=str(path)))
+        found[place.as_posix()] = module, visitor.found
+    return found
+
+
+def violations(root):
+    """Return one line for every import in a checkout that the layers forbid."""
+    lines = []
+    for place, (module, found) in imports(root).items():
         if layer_of(module) not in LAYERS:
-            lines.append(f"{place.as_posix()}: belongs to no layer, give it one in LAYERS")
+            lines.append(f"{place}: belongs to no layer, give it one in LAYERS")
             continue
-        imports = Imports(".".join(module[:-1]))
-        imports.visit(ast.parse(path.read_text(encoding="utf-8"), filename=str(path)))
-        for line, name, late in imports.found:
+        for line, name, late in found:
             if why := refusal(module, name, late):
-                lines.append(f"{place.as_posix()}:{line}: {name}: {why}")
+                lines.append(f"{place}:{line}: {name}: {why}")
     return lines
 
 
 def test_every_import_keeps_to_the_layers():
     assert violations(ROOT) == []
+
+
+def test_every_library_the_package_imports_is_a_dependency():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = {re.match(r"[\w-]+", line).group().lower() for line in project["dependencies"]}
+    imported = {name.split(".")[0] for _, found in imports(ROOT).values() for _, name, _ in found}
+    used = {name.lower() for name in imported - sys.stdlib_module_names - {"atmosbox", "a computed name"}}
+    used = {{"markdown_it": "markdown-it-py"}.get(name, name).replace("_", "-") for name in used}
+    carried = {"llvmlite", "rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
+    extras = {
+        re.match(r"[\w-]+", line).group().lower()
+        for extra in ("movie", "cluster", "export")
+        for line in project["optional-dependencies"][extra]
+    }
+    assert used - carried == declared | extras
+    assert declared.isdisjoint(extras)
 
 
 def test_every_layer_of_the_table_has_a_file():

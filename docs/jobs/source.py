@@ -118,30 +118,37 @@ def room(folder: Path, without: frozenset[Path] = frozenset()) -> frozenset[str]
     return frozenset(found)
 
 
-def _imports(tree: ast.Module) -> set[str]:
+@functools.cache
+def _imports(source: str) -> frozenset[str]:
     """Return all modules that a file names in an import."""
     found = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    return found
+    return frozenset(found)
 
 
-def scenarios_named(name: str, source: str, known: Iterable[str]) -> list[str]:
-    """Return the scenarios that a job names, in its own name or in a text of its file; all if there is none.
+@functools.cache
+def _words(source: str) -> frozenset[str]:
+    """Return all words in the texts of a file."""
+    texts = [n.value for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
+    return frozenset(re.findall(r"[\w-]+", " ".join(texts)))
+
+
+def scenarios_named(name: str, sources: Iterable[str], known: Iterable[str]) -> list[str]:
+    """Return the scenarios that a job names, in its own name or in a text of its files; all if there is none.
 
     Examples
     --------
     >>> known = ["temperature", "temperature-large", "lifting-dry"]
-    >>> scenarios_named("scene-temperature-large", "", known), scenarios_named("gas", "'temperature'", known)
+    >>> scenarios_named("scene-temperature-large", [], known), scenarios_named("gas", ["'temperature'"], known)
     (['temperature-large'], ['temperature'])
     """
     known = list(known)
     own = [each for each in known if name == each or name.endswith(f"-{each}")]
-    texts = [n.value for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
-    words = set(re.findall(r"[\w-]+", " ".join(texts)))
+    words = frozenset().union(*map(_words, sources))
     return own or [each for each in known if each in words] or known
 
 
@@ -159,13 +166,13 @@ def digest(name: str, file: Path, root: Path = ROOT) -> str:
         source = (jobs / f"{each}.py").read_text(encoding="utf-8")
         texts.append(source)
         members |= statements(source, name)
-        found = _imports(ast.parse(source))
+        found = _imports(source)
         waiting += [module.split(".")[1] for module in found if module.startswith("jobs.")]
         imported |= {module for module in found if module.startswith("atmosbox.")}
     standing = {path.stem for path in package.iterdir() if path.is_dir() or path.suffix == ".py"}
     rooms = {name, *(module.split(".")[1] for module in imported)} & standing - {"scenarios", "__init__"}
     scenes = {path.stem.replace("_", "-"): path for path in (root / "scenarios").glob("[!_]*.py")}
-    named = scenarios_named(name, "\n".join(texts), sorted(scenes))
+    named = scenarios_named(name, texts, sorted(scenes))
     for scene in named:
         members |= room(scenes[scene])
     without = frozenset(package / part for part, by in MET_BY.items() if rooms.union(named).isdisjoint(by))
