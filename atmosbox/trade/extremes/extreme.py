@@ -149,7 +149,7 @@ GRID = (1.0 + 2.0 * np.stack(np.meshgrid(*[np.arange(4.0)] * 3), axis=-1).reshap
 SPEEDS = RNG.standard_normal(GRID.shape).astype("f4")
 ORBIT = orbit(1.5, 0.1)
 COLD, DOWN = HeatBath(1e-300), (*SMOOTH[:5],)
-MIXED: dict[str, Any] = {"seed": 8, "diameter": 0.7, "walls": (HeatBath(1.2), HeatBath(0.8, 0.5), *SMOOTH[:4])}
+MIXED: dict[str, Any] = {"seed": 8, "diameter": 0.7, "walls": (*OPEN[:4], HeatBath(1.2), HeatBath(0.8, 0.5))}
 
 
 def drawn(range: float, warmth: float) -> Probe:
@@ -277,7 +277,7 @@ FAMILIES: Mapping[str, tuple[Extreme, ...]] = {
             energy(gas(100, 6.0, 6.0, 6e8, top=60.0, gravity=1.0), 100.0)),
         Extreme("cold-floor", "floor at kT = 10⁻³⁰⁰",
             "Cool the floor so far that bounces pile up without end: all lie down, or it is refused.",
-            cooled(gas(50, 10.0, gravity=1.0, walls=(*SMOOTH[:4], COLD, SMOOTH[5])), (100.0,), "warm it")),
+            cooled(gas(50, 10.0, gravity=1.0, walls=(*OPEN[:4], COLD, SMOOTH[5])), (100.0,), "warm it")),
     ),
     "contacts": (
         Extreme("hair-gap", "gap of 10⁻¹⁵ σ",
