@@ -54,6 +54,14 @@ def test_the_version_is_written_once_and_cited_rightly():
     assert f"\nversion: {atmosbox.__version__}\n" in citation
 
 
+def test_python_without_assertions_leaves_out_nothing_but_what_tells_types():
+    for path in [*ROOT.glob("atmosbox/**/*.py"), *ROOT.glob("scenarios/*.py")]:
+        source = path.read_text(encoding="utf-8")
+        assert "__debug__" not in source, path
+        for told in re.findall(r"^ *assert (.*)", source, re.MULTILINE):
+            assert re.fullmatch(r"isinstance\([\w., ]+\)|\w+ is not None", told), (path, told)
+
+
 def test_the_examples_in_the_docstrings_of_scenarios_hold():
     for module in map(scenarios.load, scenarios.names()):
         assert doctest.testmod(module, optionflags=doctest.NORMALIZE_WHITESPACE).failed == 0, module
