@@ -39,8 +39,7 @@ def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Non
     >>> with told(prepare("temperature", {}), print):
     ...     pass
     """
-    expected = expected_seconds(prepared)
-    sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
+    expected, sentence = _USUAL, ""
     spent, began, depth = 0.0, 0.0, 0
     over = threading.Event()
     teller: threading.Thread | None = None
@@ -51,11 +50,13 @@ def told(prepared: Prepared, tell: Callable[[float, str], None]) -> Iterator[Non
                 tell(min((spent + time.process_time() - began) / expected, _NEVER_DONE), sentence)
 
     def watch(name: str, begins: bool) -> None:
-        nonlocal spent, began, depth, teller
+        nonlocal expected, sentence, spent, began, depth, teller
         if begins:
             began = began if depth else time.process_time()
             depth += 1
             if teller is None:
+                expected = expected_seconds(prepared)
+                sentence = f"compiling the engine, once on this computer: about {expected:.0f} s"
                 tell(0.0, sentence)
                 teller = threading.Thread(target=go_on_telling, daemon=True)
                 teller.start()
