@@ -48,7 +48,7 @@ LATER = {
         *("water-at-95", "step-of-a-quarter", "bouncing-ball", "stack-at-rest", "three-walls-at-once", "two-molecules"),
         *("touching-drops", "one-molecule-of-water", "all-water", "water-at-minus-60", "drying-pool"),
         *("no-molecules", "one-molecule", "ball-at-rest", "count-of-pi", "hot-and-cold", "mass-ratio", "size-ratio"),
-        *("strong-gravity", "crushing-gravity", "tall-column"),
+        *("strong-gravity", "crushing-gravity", "tall-column", "edge-for-ever"),
         *("crushing-piston", "piston-on-points", "supersonic-piston", "fleeing-piston"),
         # tests/physics tests wells and curved drops in smaller boxes
         *("drop-of-pure-water", "drop-of-salt", "drop-in-tenfold-vapour", "supersaturation-10"),
@@ -69,8 +69,8 @@ LATER = {
 
 Most need kernels of their own, because no scene has such a box on this engine: the daily cases use the kernels of
 scenes, between smooth walls and heat baths, periodic, in gravity on a floor, with a mist. The others are dear, and a
-cheaper case asks the same. Empty boxes, pistons, unlike molecules, balls in gravity and the heat between walls are
-tried elsewhere, too: test_extremes, engine/test_stepped, physics/test_piston, test_column and test_dsmc_transport.
+cheaper case asks the same. Empty boxes, edges, pistons, unlike molecules, balls in gravity and the heat between walls
+are tried elsewhere, too: test_extremes, engine/test_stepped, physics/test_piston, test_column and test_dsmc_transport.
 """
 
 

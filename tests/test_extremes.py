@@ -163,13 +163,25 @@ def test_a_piston_that_would_crush_the_molecules_is_refused_before_it_does(numbe
     assert box.ledger() <= 1e-10
 
 
+def lone(place, velocity):
+    """Return a box with a molecule that meets nobody: a box of one alone would need kernels of its own."""
+    return ParcelSet([place, [8, 2, 8]], [velocity, [0, 0, 0]], length=(10, 10, 10))
+
+
 def test_a_clock_that_has_run_for_long_has_lost_none_of_its_digits():
     # a lone molecule comes back to its place after each period, 18 in time; a float of 1e9 has 1e-7 left
-    box = ParcelSet([[3, 5, 5]], [[1.0, 0, 0]], length=(10, 10, 10))
+    box = lone([3, 5, 5], [1.0, 0, 0])
     periods = 18 * 1_000_000
     within(box, float(periods), 20_000_000)
     assert box.snapshot().position[0, 0] == pytest.approx(3.0, abs=1e-7)
     assert box.wall_hits[:2].tolist() == [1_000_000, 1_000_000]
+
+
+def test_a_molecule_that_runs_into_an_edge_ten_thousand_times_keeps_its_diagonal():
+    box = within(lone([2, 2, 5], [1.0, 1.0, 0.0]), 90_000.0)
+    assert box.snapshot().position[0] == pytest.approx([2, 2, 5], abs=1e-6)
+    assert box.snapshot().velocity[0] == pytest.approx([1, 1, 0], abs=1e-12)
+    assert box.wall_hits.tolist() == [5000] * 4 + [0, 0]
 
 
 @pytest.mark.parametrize("collision_number", [1.0, math.inf])
