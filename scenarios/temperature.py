@@ -83,11 +83,14 @@ def _start(settings: Settings, *, ideal: bool) -> tuple[Scale, float, float, flo
     wanted = si.pressure / scale.pressure
     density, factor = wanted, 1.0
     for _ in range(200):
+        before = density, factor
         density *= math.sqrt(wanted / (density * factor))
         possible = min(density, 0.9)
         side = (settings.molecules / possible) ** (1.0 / 3.0)
         excess = float(law.compressibility_factor(law.packing_fraction(possible, 1.0))) - 1.0
         factor = 1.0 + (0.0 if ideal else excess * law.contact_share((side,) * 3, 1.0, settings.molecules))
+        if (density, factor) == before:
+            break
     return scale, density, rounded((settings.molecules / density) ** (1.0 / 3.0)), factor
 
 

@@ -75,7 +75,10 @@ def size_of_parcel(
         sides = side * np.array([1.0, 1.0, flatness])
         excess = float(law.gas_pressure(density, 1.0, 1.0)) - density
         excess *= 0.0 if ideal else law.contact_share(sides, 1.0, molecules)
+        before = density
         density *= wanted / (density + excess)
+        if density == before:
+            break
     return rounded(density), rounded(sides), rounded(excess / density**2)
 
 

@@ -8,6 +8,7 @@ import math
 import os
 import statistics
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from atmosbox.simulation.accuracy.measured import load
@@ -70,7 +71,7 @@ def expected_time(prepared: Prepared) -> ExpectedTime | None:
     seconds = _measured_seconds(prepared)
     if seconds is None:
         return None
-    paces = _paces()
+    paces = _paces(cache_home())
     return ExpectedTime(seconds * statistics.median(paces), True) if paces else ExpectedTime(seconds, False)
 
 
@@ -85,13 +86,12 @@ def remember_pace(prepared: Prepared, seconds: float) -> None:
         return
     new = home / f"pace.{os.getpid()}"
     with contextlib.suppress(OSError):
-        new.write_text(json.dumps([*_paces(), round(seconds / expected, 3)][-_KEPT:]), encoding="ascii")
+        new.write_text(json.dumps([*_paces(home), round(seconds / expected, 3)][-_KEPT:]), encoding="ascii")
         new.replace(home / _FILE)
 
 
-def _paces() -> list[float]:
+def _paces(home: Path | None) -> list[float]:
     """Return the ratios of measured to expected time of the last runs on this computer."""
-    home = cache_home()
     try:
         held = json.loads((home / _FILE).read_text(encoding="ascii")) if home else []
     except (OSError, ValueError):

@@ -53,7 +53,7 @@ def latent(temperature: FloatArray) -> FloatArray:
 
 def saturation(temperature: FloatArray) -> FloatArray:
     """Return the saturation vapour pressure [Pa], infinite above the critical point."""
-    t = np.clip(temperature, COLDEST, CRITICAL_TEMPERATURE)
+    t = np.minimum(np.maximum(temperature, COLDEST), CRITICAL_TEMPERATURE)
     exponent = BINDING * (1.0 / TRIPLE_TEMPERATURE - 1.0 / t) - EXCESS * np.log(t / TRIPLE_TEMPERATURE)
     pressure: FloatArray = np.where(temperature > CRITICAL_TEMPERATURE, np.inf, TRIPLE_PRESSURE * np.exp(exponent))
     return pressure
@@ -109,7 +109,6 @@ def root(
         raise ValueError("the answer would lie above the critical point of water, where there is no liquid.")
     x = high
     for _ in range(200):
-        value, derivative = function(x)
         low, high = np.where(value < 0.0, x, low), np.where(value < 0.0, high, x)
         new = x - value / derivative
         new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
@@ -117,6 +116,7 @@ def root(
         x = new
         if done:
             break
+        value, derivative = function(x)
     return x
 
 
@@ -151,7 +151,8 @@ def temperature_of_entropy(target: FloatArray, pressure: FloatArray, water: Floa
 
         def excess(y: FloatArray) -> tuple[FloatArray, FloatArray]:
             t = TRIPLE_TEMPERATURE * np.exp(y)
-            return _saturated_entropy(p, t, w, c) - s, heat_of_saturated(p, t, w, c)
+            vapor = saturated_vapor(p, t)
+            return _saturated_entropy(p, vapor, t, w, c) - s, heat_of_saturated(vapor, t, w, c)
 
         bounds = [np.log(t / TRIPLE_TEMPERATURE) for t in (clear[cloudy], dewpoint_of(e[cloudy]))]
         temperature[cloudy] = TRIPLE_TEMPERATURE * np.exp(root(excess, *bounds))
@@ -165,18 +166,17 @@ def _x_log_y(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _saturated_entropy(
-    pressure: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray
+    pressure: FloatArray, vapor: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray
 ) -> FloatArray:
-    vapor = saturated_vapor(pressure, temperature)
     y = np.log(temperature / TRIPLE_TEMPERATURE)
     dry = np.log(pressure / (1.0 + vapor) / REFERENCE_PRESSURE)
     total: FloatArray = (heat + LIQUID_HEAT * water) * y - dry + vapor * latent(temperature)
     return total
 
 
-def heat_of_saturated(pressure: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
+def heat_of_saturated(vapor: FloatArray, temperature: FloatArray, water: FloatArray, heat: FloatArray) -> FloatArray:
     """Return the heat capacity at constant pressure of saturated air with all its water, including the latent heat."""
-    vapor, warm = saturated_vapor(pressure, temperature), latent(temperature)
+    warm = latent(temperature)
     total: FloatArray = heat + VAPOR_HEAT * vapor + LIQUID_HEAT * (water - vapor) + vapor * (1.0 + vapor) * warm * warm
     return total
 
@@ -184,7 +184,7 @@ def heat_of_saturated(pressure: FloatArray, temperature: FloatArray, water: Floa
 def saturated_slope(pressure: FloatArray, temperature: FloatArray, liquid: FloatArray, heat: FloatArray) -> FloatArray:
     """Return d ln T / d ln p of saturated air that is lifted with this liquid, whether new liquid stays or leaves."""
     vapor = saturated_vapor(pressure, temperature)
-    capacity = heat_of_saturated(pressure, temperature, vapor + liquid, heat)
+    capacity = heat_of_saturated(vapor, temperature, vapor + liquid, heat)
     slope: FloatArray = (1.0 + vapor) * (1.0 + vapor * latent(temperature)) / capacity
     return slope
 

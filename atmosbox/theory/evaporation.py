@@ -118,7 +118,7 @@ def evaporation_equilibrium(
         def excess(x: FloatArray) -> tuple[FloatArray, FloatArray]:
             v = _water.saturated_vapor(p_wet, x)
             held = (c_wet + VAPOR_HEAT * v + LIQUID_HEAT * (w_wet - v)) * x - (w_wet - v) * _water.BINDING
-            return held - h_wet, _water.heat_of_saturated(p_wet, x, w_wet, c_wet)
+            return held - h_wet, _water.heat_of_saturated(v, x, w_wet, c_wet)
 
         t[wet] = _water.root(excess, np.maximum(all_vapor[wet], _water.COLDEST), _water.dewpoint_of(e[wet]))
     v = np.where(wet, np.minimum(_water.saturated_vapor(p, t), water), water)

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legval
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.theory._array import FloatArray, as_floats
 
@@ -19,6 +19,7 @@ _SHAPES = 8
 """Highest degree of the spherical harmonics of the direction."""
 
 
+@functools.lru_cache(maxsize=16)
 def diffusivity_factor(mass: tuple[float, float], share: float = 0.5) -> float:
     r"""Return the mutual diffusion coefficient of thin gases of hard spheres over its first approximation.
 
@@ -98,13 +99,19 @@ def mixing_wave(mass: tuple[float, float], wave_number: float, times: ArrayLike)
     >>> mixing_wave((1.0, 10.0), k, [math.log(2.0) / slower]).round(3).tolist()
     [0.505]
     """
-    collide, stream, norm = _equation(float(mass[1] / mass[0]))
+    rates, height = _decaying_parts(float(mass[1] / mass[0]), float(wave_number))
+    return np.asarray((np.exp(np.multiply.outer(as_floats(times), rates)) @ height).real)
+
+
+@functools.lru_cache(maxsize=4)
+def _decaying_parts(mass_ratio: float, wave_number: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return the rates of the exponentials whose sum is the wave, and their heights."""
+    collide, stream, norm = _equation(mass_ratio)
     scale = 1.0 / np.sqrt(norm)
     rates, modes = np.linalg.eig(-(1j * wave_number * stream + collide) * np.outer(scale, scale))
     opposed = np.zeros(len(norm), np.complex128)
     opposed[0], opposed[_ORDER] = 1.0 / scale[0], -1.0 / scale[_ORDER]
-    height = (opposed @ modes) * np.linalg.solve(modes, opposed)
-    return np.asarray((np.exp(np.multiply.outer(as_floats(times), rates)) @ height).real)
+    return rates, (opposed @ modes) * np.linalg.solve(modes, opposed)
 
 
 @functools.lru_cache(maxsize=4)

@@ -12,6 +12,8 @@ same side. Three parts follow from the molecules.
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,6 +42,12 @@ def along_frames(ascent: MoistAscent, pressure: Array, frames: int, samples: int
     ideal
         Whether molecules have no volume.
     """
+    return _along_frames(ascent, tuple(pressure.tolist()), frames, samples, ideal)
+
+
+@functools.lru_cache(maxsize=2)
+def _along_frames(ascent: MoistAscent, pressure: tuple[float, ...], frames: int, samples: int, ideal: bool) -> Cloud:
+    """Return the parcel of `along_frames`, which instruments and headlines of a run both need."""
     logs = np.log(pressure)
     middle = (np.arange(len(logs)) + 0.5) / frames
     last = 1.5 * logs[-1] - 0.5 * logs[-2] if len(logs) > 1 else logs[-1]

@@ -127,16 +127,7 @@ class DropGrowth:
 
     def path(self, time: Array) -> tuple[Array, Array]:
         """Return the numbers of molecules in a drop of each kind, ``(kind, time)``, and the humidity, ``(time,)``."""
-        from scipy import integrate  # loads slowly
-
-        def slope(_: float, number: Array) -> Array:
-            held = np.maximum(number, 0.0)
-            return self.rates(held, self.humidity(held))
-
-        start = np.full(len(self.kinds), float(self.water))
-        found = integrate.solve_ivp(slope, (0.0, float(time[-1])), start, "LSODA", time, rtol=1e-8, atol=1e-8)
-        number = np.maximum(found.y, 0.0)
-        return number, self.humidity(number)
+        return _path(self, tuple(time.tolist()))
 
     def scatter(self, time: Array, number: Array, humidity: Array) -> tuple[Array, Array, Array]:
         r"""Return how far fluctuations spread the drops of the first kind: two variances and a time, each ``(time,)``.
@@ -164,6 +155,21 @@ class DropGrowth:
             together[k] = _relaxed(together[k - 1], noise / kind.count, 2.0 * back[k], step)
             apart[k] = _relaxed(apart[k - 1], noise * (1.0 - 1.0 / kind.count), 2.0 * flux[k] * steep[k], step)
         return together, apart, 1.0 / np.abs(back)
+
+
+@functools.lru_cache(maxsize=2)
+def _path(growth: DropGrowth, time: tuple[float, ...]) -> tuple[Array, Array]:
+    """Return the path of `DropGrowth.path`, which curves and headlines of a run both need."""
+    from scipy import integrate  # loads slowly
+
+    def slope(_: float, number: Array) -> Array:
+        held = np.maximum(number, 0.0)
+        return growth.rates(held, growth.humidity(held))
+
+    start = np.full(len(growth.kinds), float(growth.water))
+    found = integrate.solve_ivp(slope, (0.0, time[-1]), start, "LSODA", time, rtol=1e-8, atol=1e-8)
+    number = np.maximum(found.y, 0.0)
+    return number, growth.humidity(number)
 
 
 def _relaxed(value: float, gained: float, rate: float, step: float) -> float:

@@ -60,7 +60,9 @@ class MoistBox:
         density, factor = wanted, 1.0
         for _ in range(100):
             factor = 1.0 if self.ideal else float(law.compressibility_factor(law.packing_fraction(density, 1.0)))
-            density = math.sqrt(density * wanted / factor)
+            before, density = density, math.sqrt(density * wanted / factor)
+            if density == before:
+                break
         return density, factor
 
     @property
