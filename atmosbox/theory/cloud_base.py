@@ -59,24 +59,25 @@ def measured_cloud_base(
     """
     p, v, c = (as_floats(each).ravel() for each in (pressure, vapor, condensed))
     noise = as_floats(covariance)
+    water = c + v
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = c / (c + v)
-    cloudy = np.flatnonzero(share > least)
-    clear = np.flatnonzero(~(share > least))
+        share = c / water
+    cloudy = share > least
     full = np.flatnonzero(share > MOST)
     end = int(full[0]) if full.size else len(p)
-    clear = clear[clear < end]
-    if not cloudy.size or not clear.size or least > 0.5 * MOST:
+    clear = np.flatnonzero(~cloudy[:end])
+    if not cloudy.any() or not clear.size or least > 0.5 * MOST:
         return None
-    near = np.arange(int(clear[-1]) + 1, end)
-    if near.size < 8 or not np.all(np.isfinite(share[near])):
+    near = slice(int(clear[-1]) + 1, end)
+    if len(p[near]) < 8 or not np.isfinite(share[near]).all():
         return None
     # the amount of water is known: convert the noise of the vapour to that of its share of the water
-    scale = np.outer(1.0 / (c + v)[near], 1.0 / (c + v)[near])
-    middle = float(np.log(p[near]).mean())
-    x = np.log(p[near]) - middle
-    rows = np.stack([np.ones_like(x), x, x * x])
-    weight = 1.0 / (np.diag(noise)[near] * np.diag(scale))
+    scale = 1.0 / water[near]
+    logs = np.log(p[near])
+    middle = float(logs.mean())
+    x = logs - middle
+    rows = np.array([np.ones_like(x), x, x * x])
+    weight = 1.0 / (np.diag(noise)[near] * (scale * scale))
     solve = np.linalg.solve(rows * weight @ rows.T, rows * weight)
     a, b, d = solve @ share[near]
     inside = b * b - 4.0 * a * d
@@ -86,5 +87,5 @@ def measured_cloud_base(
     slope = b + 2.0 * d * root
     gain = np.array([1.0, root, root * root]) @ solve / slope
     found = float(np.exp(middle + root))
-    error = found * float(np.sqrt(gain @ (noise[np.ix_(near, near)] * scale) @ gain))
+    error = found * float(np.sqrt(gain @ (noise[near, near] * np.outer(scale, scale)) @ gain))
     return CloudBase(found, error) if found <= 1.05 * p[0] and np.isfinite(error) else None
