@@ -29,6 +29,8 @@ import pytest
 from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "agg")
+# One thread, as for the command line: threads of linear algebra wait for each other, and the workers have the cores.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # No deadline, since a kernel's first call compiles it; and no random seed, so that two runs test the same.
 settings.register_profile("atmosbox", deadline=None, derandomize=True)

@@ -18,10 +18,15 @@ terminate.
 
 import atexit
 import importlib
+import os
 import pkgutil
 import signal
 import sys
 import warnings
+
+# The matrices of the theory are small: several threads only wait for each other, and the last digit would depend on
+# their number. OpenBLAS reads this when numpy is loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from atmosbox.cli.application import app
 
