@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
@@ -33,13 +33,18 @@ class Pen:
     """
 
     figure: Figure
+    known: dict[tuple[str, float, str], float] = field(default_factory=dict, repr=False)
+    """Widths that were already measured [pt]."""
 
     def width(self, text: str, size: float, weight: str = "normal") -> float:
         """Return the width of a line of text [pt]."""
-        renderer = self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
-        font = FontProperties(size=size, weight=weight)
-        width, _, _ = renderer.get_text_width_height_descent(text, font, ismath=False)
-        return float(width) * 72 / self.figure.dpi
+        asked = text, size, weight
+        if asked not in self.known:  # a page is laid out several times
+            renderer = self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+            font = FontProperties(size=size, weight=weight)
+            width, _, _ = renderer.get_text_width_height_descent(text, font, ismath=False)
+            self.known[asked] = float(width) * 72 / self.figure.dpi
+        return self.known[asked]
 
     def wrap(self, text: str, width: float, size: float, weight: str = "normal") -> str:
         """Return text broken into lines of at most a width [pt].

@@ -355,7 +355,8 @@ def _write_title(pen: Pen, plate: Plate, edge: float, height: float, look: Theme
     extent, point = plate.axes.get_window_extent(), pen.figure.dpi / 72
     title = pen.wrap(plate.panel.title, (extent.x1 - edge) / point, look.title, "bold")
     left = (edge - extent.x0) / extent.width
-    plate.axes.set_title(title, loc="left", x=left, pad=height, fontsize=look.title, weight="bold")
+    # With y given, matplotlib does not look for ticks that the title would have to avoid.
+    plate.axes.set_title(title, loc="left", x=left, y=1.0, pad=height, fontsize=look.title, weight="bold")
     plate.note.set_position(((edge - extent.x0) / point, height - _GAP * look.text))
 
 
