@@ -99,17 +99,19 @@ def save(
     chosen = pace(count, fps=fps, seconds=seconds, smooth=smooth, along=None if smooth else _along(dataset))
     with style(look):
         sheet = Sheet(dataset, look, held, chosen.frames)
+        samples: dict[int, Picture] = {}
 
         def pictures() -> Iterator[Picture]:
-            for done, frame in enumerate(chosen.frames, 1):
-                yield sheet.picture(int(frame))
+            for done, frame in enumerate(map(int, chosen.frames), 1):
+                yield samples[frame] if frame in samples else sheet.picture(frame)
                 if progress is not None:
                     progress(done / chosen.frames.size)
 
         if kind == "gif":
             some = np.linspace(0, chosen.frames.size - 1, min(_CHOSEN_FROM, chosen.frames.size)).round().astype(int)
-            samples = [sheet.picture(int(chosen.frames[each])) for each in some]
-            write_whole(path, encode_gif(pictures(), samples, chosen.fps))
+            wanted = chosen.frames[some].tolist()
+            samples |= {frame: sheet.picture(frame) for frame in wanted}
+            write_whole(path, encode_gif(pictures(), [samples[frame] for frame in wanted], chosen.fps))
         else:
             with whole_file(path) as temporary:
                 encode_mp4(pictures(), temporary, chosen.fps)

@@ -145,10 +145,10 @@ def draw_skewt(
     >>> axes.get_yscale(), [label for _, label in entries]
     ('log', ['air'])
     """
+    marks = levels(dataset, panel)
     skewed, axes = skewed_axes(figure, spot)
     entries, _ = draw_lines(axes, panel, dataset, slender(theme), only)
     put_background(skewed, axes, theme)
-    marks = levels(dataset, panel)
     put_levels(axes, marks, theme)
     return axes, entries + shade_energy(skewed, panel, dataset, marks, SHADE_ORDER)
 

@@ -105,10 +105,10 @@ def pdf(sheet: Worksheet, paper: str = "a4") -> Printed:
     check_paper(paper)
     load_fonts()
     for room in ROOM:
-        pages = _laid_out(sheet, paper, room, 0).pages
-        if pages <= MOST_PAGES:
+        printed = _laid_out(sheet, paper, room, MOST_PAGES)
+        if printed.pages <= MOST_PAGES:
             break
-    return _laid_out(sheet, paper, room, pages)
+    return printed if printed.pages == MOST_PAGES else _laid_out(sheet, paper, room, printed.pages)
 
 
 @functools.cache

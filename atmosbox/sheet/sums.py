@@ -7,6 +7,7 @@ of Python. The package ``uncertainties`` propagates standard errors through a su
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from typing import Any, Protocol, runtime_checkable
@@ -184,6 +185,13 @@ def _syntax(text: str) -> None:
             raise SecurityError(f"a {type(node).__name__.lower()} is more than a sum")
 
 
+@functools.lru_cache(1000)
+def _compiled(text: str, setting: bool) -> jinja2.Template:
+    """Return a text whose sums can be worked out; its sums are compiled once, before and after the runs."""
+    _syntax(text)
+    return (_SETTINGS if setting else _TEXTS).from_string(text)
+
+
 def check(text: str) -> None:
     """Refuse a text whose sums cannot be parsed or are more than sums; no sum is worked out.
 
@@ -234,8 +242,7 @@ def filled(text: str, names: Mapping[str, Facts], *, setting: bool = False) -> s
     '25.80 ± 0.90 °C, noise 8.6 K'
     """
     try:
-        _syntax(text)
-        return (_SETTINGS if setting else _TEXTS).from_string(text).render(names)
+        return _compiled(text, setting).render(names)
     except ConfigError:
         raise
     except (jinja2.TemplateError, ArithmeticError, ValueError, TypeError, LookupError, RecursionError) as error:

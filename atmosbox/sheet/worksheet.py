@@ -121,12 +121,10 @@ def worksheet(
     alone = _Filling(path, trials(first, ()))
     changes = [Change(**alone.all(each.model_dump(), f"change {n}")) for n, each in enumerate(words.change, 1)]
     runs = trials(first, changes)
-    if path != WORDS:
+    due = len(runs) if answers else 0 if words.row or lab else 1
+    if due and path != WORDS:
         _Filling(path, runs).sheet(words)  # a mistake is refused before time is spent on a run
-    if answers:
-        runs = execute(runs, progress)
-    elif not words.row and not lab:
-        runs = (*execute(runs[:1], progress), *runs[1:])
+    runs = (*execute(runs[:due], progress), *runs[due:])
     return _written(path, words, runs, answers, lab)
 
 
