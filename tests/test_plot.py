@@ -383,6 +383,11 @@ def small(values, panel=TEMPERATURE, **variables):
     return finished("temperature", "A box", 10, [panel], held | variables, coords)
 
 
+def alone(run, panel=0):
+    """Return a run with one of its panels."""
+    return run.assign_attrs(atmosbox_panels=to_json([panels_of(run)[panel]]))
+
+
 def all_axes(drawing):
     return [axes for outer in drawing.axes for axes in (outer, *outer.child_axes)]
 
@@ -634,16 +639,17 @@ def test_a_reference_is_broad_and_pale_under_the_theory_that_it_coincides_with(r
         assert dark + 0.4 < pale < 0.8  # distinct from each other and from white paper in grey print too
 
 
-def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so(runs):
-    run = runs["atmosphere"].copy(deep=True)
+def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so(runs, drawings):
+    run = alone(runs["atmosphere"].copy(deep=True), 2)
     run["layer_temperature_se"][-3:] = np.nan
     drawing = plot.figure(run)
-    (hollow,) = [line for line in drawing.axes[2].lines if line.get_markerfacecolor() == "white"]
+    (axes,) = drawing.axes
+    (hollow,) = [line for line in axes.lines if line.get_markerfacecolor() == "white"]
     assert hollow.get_ydata() == pytest.approx(run.height[-3:] / 1000)
-    (bars,) = [each for each in drawing.axes[2].containers if isinstance(each, ErrorbarContainer)]
+    (bars,) = [each for each in axes.containers if isinstance(each, ErrorbarContainer)]
     assert hollow.get_zorder() > bars[0].get_zorder()
     assert any(text.endswith("hollow: not known") for text in written(drawing))
-    assert not any("hollow" in text for text in written(plot.figure(runs["atmosphere"])))
+    assert not any("hollow" in text for text in written(drawings["atmosphere", "notes"]))
 
 
 def test_a_curve_that_goes_up_and_down_often_is_thin_and_its_legend_is_not():
@@ -656,7 +662,7 @@ def test_a_curve_that_goes_up_and_down_often_is_thin_and_its_legend_is_not():
 
 
 def test_the_axis_of_pressure_begins_at_1000_hpa_where_the_data_nearly_do(runs):
-    run = runs["lifting-dry"].isel(elapsed_time=slice(3, None))
+    run = alone(runs["lifting-dry"].isel(elapsed_time=slice(3, None)))
     axes = plot.figure(run).axes[0]
     assert run.parcel_pressure.max() < 99000.0
     assert "1000" in [text.get_text() for text in tick_texts(axes.yaxis)]
@@ -701,7 +707,7 @@ def test_the_trails_of_discs_end_at_the_discs_and_fade_backwards(runs, drawings)
 
 
 def test_discs_that_leap_between_frames_have_no_trails(runs):
-    run = runs["elastic-collisions"].isel(elapsed_time=slice(0, None, 60))
+    run = alone(runs["elastic-collisions"].isel(elapsed_time=slice(0, None, 60)))
     place = run.disc_position.values[:, :, :2]
     leap = np.median(np.linalg.norm(np.diff(place, axis=0), axis=2), axis=0) > 0.1 * float(run.box_length)
     assert 0 < leap.sum() < leap.size
@@ -713,7 +719,7 @@ def test_discs_that_leap_between_frames_have_no_trails(runs):
 
 
 def test_a_few_very_fast_discs_do_not_take_all_the_colours(runs):
-    run = runs["elastic-collisions"].copy(deep=True)
+    run = alone(runs["elastic-collisions"].copy(deep=True))
     run["disc_velocity"][:, :6] *= 300.0
     (discs,) = [each for each in plot.figure(run).axes[0].collections if isinstance(each, EllipseCollection)]
     shades = discs.norm(np.linalg.norm(run.disc_velocity[-1].values, axis=1))
@@ -722,7 +728,7 @@ def test_a_few_very_fast_discs_do_not_take_all_the_colours(runs):
 
 
 def test_the_rims_of_many_small_discs_leave_their_colours_to_be_seen(runs):
-    run = runs["elastic-collisions"].copy(deep=True)
+    run = alone(runs["elastic-collisions"].copy(deep=True))
     run["disc_diameter"] = run.disc_diameter / 20
     drawing = plot.figure(run, "slides")
     axes = drawing.axes[0]
@@ -733,13 +739,13 @@ def test_the_rims_of_many_small_discs_leave_their_colours_to_be_seen(runs):
 
 @pytest.mark.parametrize(("heavy", "words"), [(3.74, "3.7 ×"), (1080.0, "1100 ×"), (123456.0, "120\u2009000 ×")])
 def test_the_ratio_of_masses_is_written_without_exponent(runs, heavy, words):
-    run = runs["elastic-collisions"].copy(deep=True)
+    run = alone(runs["elastic-collisions"].copy(deep=True))
     run["disc_mass"] = xr.where(run.disc_mass > 2 * AIR, heavy * AIR, AIR)
     assert any(words in text for text in written(plot.figure(run)))
 
 
 def test_a_box_of_unknown_length_is_as_large_as_the_room_that_discs_have_taken(runs):
-    axes = plot.figure(runs["elastic-collisions"].drop_vars("box_length")).axes[0]
+    axes = plot.figure(alone(runs["elastic-collisions"]).drop_vars("box_length")).axes[0]
     assert axes.get_xlim() == pytest.approx((0.0, 20.0), abs=0.5)
 
 
@@ -844,7 +850,7 @@ def test_a_difference_of_temperatures_in_celsius_is_in_kelvin():
 
 def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart():
     for decades in [0.05, 0.3, 0.7, 1.0, 2.5, 8.0, 30.0]:
-        for low in [1e-20, 3.0, 1e24]:
+        for low in [1e-20, 3.0]:
             for length in [100.0, 300.0]:
                 limits, inch = (low, low * 10**decades), length / 72
                 drawing = Figure(figsize=(2 * inch, 2 * inch), dpi=72)
@@ -852,8 +858,8 @@ def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart():
                 axes.tick_params(labelsize=8.0)
                 for axis, pressure in ((axes.xaxis, False), (axes.yaxis, True)):
                     tick.put_ticks(axis, log=True, length=length, size=8.0, pressure=pressure)
-                drawing.draw_without_rendering()
                 for axis, ends in ((axes.xaxis, ("x0", "x1")), (axes.yaxis, ("y0", "y1"))):
+                    axis.get_tightbbox()  # puts the numbers at their places
                     boxes = [text.get_window_extent() for text in tick_texts(axis)]
                     assert 2 <= len(boxes) <= 18
                     places = sorted(tuple(getattr(box, end) for end in ends) for box in boxes)
@@ -863,43 +869,54 @@ def test_the_numbers_of_a_logarithmic_axis_are_few_and_apart():
 # The file
 
 
-def test_the_same_run_gives_the_same_bytes_in_another_process(tmp_path, runs):
-    stored = tmp_path / "run.nc"
-    runs["elastic-collisions"].to_netcdf(stored)
+MINE = {"font.size": 30.0, "lines.linewidth": 9.0, "svg.hashsalt": "x", "savefig.dpi": 50}
+"""A user's own settings of matplotlib."""
+
+
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory, runs):
+    """The figures of two runs, in each format, drawn by another process; and the libraries that it had loaded."""
+    folder = tmp_path_factory.mktemp("elsewhere")
+    runs["elastic-collisions"].to_netcdf(folder / "svg.nc")
+    for kind in ("png", "pdf"):
+        small([280.0, 290.0]).to_netcdf(folder / f"{kind}.nc")
     code = (
-        "import sys, xarray\nfrom atmosbox import plot\n"
-        "run = xarray.load_dataset(sys.argv[1], decode_times=False)\n"
-        "for path in sys.argv[2:]: plot.save(run, path)"
+        "import sys\nfrom atmosbox import plot\nprint(*sys.modules)\n"
+        f"import matplotlib, xarray\nmatplotlib.rcParams.update({MINE})\n"
+        "for kind in plot.FORMATS: plot.save(xarray.load_dataset(f'{kind}.nc', decode_times=False), f'far.{kind}')"
     )
-    run = xr.load_dataset(stored, decode_times=False)
-    first = [plot.save(run, tmp_path / f"first.{suffix}") for suffix in plot.FORMATS]
-    second = [path.with_stem("second") for path in first]
-    environment = os.environ | {"PYTHONHASHSEED": "7", "MPLBACKEND": "svg", "TZ": "Asia/Tokyo"}
-    command = [sys.executable, "-c", code, str(stored), *map(str, second)]
-    subprocess.run(command, check=True, env=environment, cwd=Path(__file__).resolve().parents[1])
-    for one, other in zip(first, second, strict=True):
-        assert one.read_bytes() == other.read_bytes()
+    root = str(Path(__file__).resolve().parents[1])
+    environment = {"PYTHONHASHSEED": "7", "MPLBACKEND": "svg", "TZ": "Asia/Tokyo", "PYTHONPATH": root}
+    done = subprocess.run(
+        [sys.executable, "-c", code], check=True, env=os.environ | environment, cwd=folder, stdout=subprocess.PIPE
+    )
+    return folder, set(done.stdout.decode().split())
 
 
-@pytest.mark.parametrize("suffix", plot.FORMATS)
-def test_the_users_own_matplotlib_settings_neither_change_a_figure_nor_are_changed(tmp_path, suffix):
-    run = small([280.0, 290.0])
-    first = plot.save(run, tmp_path / f"first.{suffix}")
-    with matplotlib.rc_context({"font.size": 30.0, "lines.linewidth": 9.0, "svg.hashsalt": "x", "savefig.dpi": 50}):
+@pytest.mark.parametrize("kind", plot.FORMATS)
+def test_the_same_run_gives_the_same_bytes_in_another_process_whatever_the_users_own_settings(elsewhere, kind):
+    folder, _ = elsewhere
+    near = plot.save(xr.load_dataset(folder / f"{kind}.nc", decode_times=False), folder / f"near.{kind}")
+    assert near.read_bytes() == (folder / f"far.{kind}").read_bytes()
+
+
+def test_drawing_needs_no_window_and_no_pyplot_and_metpy_only_for_a_skew_t(elsewhere):
+    assert not elsewhere[1] & {"matplotlib.pyplot", "metpy", "pint"}
+
+
+def test_the_users_own_matplotlib_settings_are_not_changed():
+    with matplotlib.rc_context(MINE):
         before = dict(matplotlib.rcParams)
-        second = plot.save(run, tmp_path / f"second.{suffix}")
+        plot.figure(small([280.0, 290.0]))
         assert dict(matplotlib.rcParams) == before
-    assert first.read_bytes() == second.read_bytes()
 
 
-def test_drawing_does_not_change_the_run(runs):
-    for run in runs.values():
-        copy = run.copy(deep=True)
-        plot.figure(run)
-        xr.testing.assert_identical(run, copy)
+def test_drawing_does_not_change_the_run(runs, drawings):
+    for scene, make in SCENES.items():
+        xr.testing.assert_identical(runs[scene], make())
 
 
-def test_each_format_is_what_it_says(tmp_path):
+def test_each_format_is_what_it_says_and_carries_the_settings_of_its_run(tmp_path):
     run = small([280.0, 290.0])
     png = plot.save(run, tmp_path / "figure.png").read_bytes()
     assert png.startswith(b"\x89PNG")
@@ -907,16 +924,12 @@ def test_each_format_is_what_it_says(tmp_path):
     svg = plot.save(run, tmp_path / "figure.SVG").read_text(encoding="utf-8")
     assert "<svg" in svg
     assert "dc:date" not in svg
+    assert "&quot;seed&quot;: 1" in svg or '"seed": 1' in svg
     pdf = plot.save(run, tmp_path / "figure", "pdf")
     assert pdf.name == "figure.pdf"
     assert pdf.read_bytes().startswith(b"%PDF")
     assert b"/CIDFontType2" in pdf.read_bytes()  # TrueType, whose text can be searched
     assert b"CreationDate" not in pdf.read_bytes()
-
-
-def test_a_figure_carries_the_settings_of_its_run(tmp_path):
-    svg = plot.save(small([280.0, 290.0]), tmp_path / "figure.svg").read_text(encoding="utf-8")
-    assert "&quot;seed&quot;: 1" in svg or '"seed": 1' in svg
 
 
 def test_an_unknown_format_is_refused_with_those_that_are_known(tmp_path):
@@ -969,11 +982,6 @@ def test_a_file_that_cannot_be_drawn_is_refused_in_a_sentence():
         with pytest.raises(FileError, match=words.replace("[", r"\[")) as refusal:
             plot.figure(run)
         assert str(refusal.value).endswith(".")
-
-
-def test_drawing_needs_no_window_and_no_pyplot():
-    code = "import sys; import atmosbox.plot; assert 'matplotlib.pyplot' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).resolve().parents[1])
 
 
 @pytest.mark.parametrize("scale", ["linear", "log"])

@@ -157,10 +157,8 @@ def test_many_values_of_two_settings_become_fields_with_contours_of_theory():
     [
         (["temperature=20"], {}, "notes"),
         (["temperature=0,20"], {"members": 1}, "slides"),
-        (["start=equal,maxwell", "molecules=100"], {}, "notes"),
         (["start=equal,maxwell", "temperature=0:40:2"], {"theory": False}, "slides"),
         (["molecules=10,100,1000,10000", "pressure=1:1000:4log"], {"theory": False}, "slides"),
-        (["molecules=10:100:4", "temperature=0:40:4"], {"law": by_temperature}, "notes"),
     ],
 )
 def test_every_kind_of_sweep_can_be_drawn_the_same_to_the_byte(tmp_path, vary, words, theme):
