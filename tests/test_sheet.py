@@ -246,6 +246,8 @@ def test_no_break_parts_a_question_from_its_answer_or_the_runs_of_a_quantity(ans
     assert pages >= 6
     each = [" ".join(page.replace("\xa0", " ").split()) for page in text_of_pdf(content)[0]]
 
+    assert f"{pages} / {pages}" in each[-1]
+
     def where(text):
         return {number for number, page in enumerate(each) if text in page}
 
