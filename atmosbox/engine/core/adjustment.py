@@ -78,7 +78,8 @@ class Adjustable(Account):
         Examples
         --------
         >>> from atmosbox.engine import HeatBath, ParcelSet
-        >>> box = ParcelSet([[1, 1, 1]], [[1, 0, 0]], length=(2, 2, 2), walls=(HeatBath(1.0),) * 6)
+        >>> pair = [[1, 1, 1], [3, 3, 3]], [[1, 0, 0], [0, 1, 0]]
+        >>> box = ParcelSet(*pair, length=(4, 4, 4), walls=(HeatBath(1.0),) * 6)
         >>> box.set_wall_kT(2.0, wall=4)
         >>> box.wall_kT().tolist()
         [1.0, 1.0, 1.0, 1.0, 2.0, 1.0]
@@ -116,7 +117,7 @@ class Adjustable(Account):
         Examples
         --------
         >>> from atmosbox.engine import HeatBath, ParcelSet, Specular
-        >>> box = ParcelSet([[1, 1, 1]], [[1, 0, 0]], length=(2, 2, 2))
+        >>> box = ParcelSet([[1, 1, 1], [3, 3, 3]], [[1, 0, 0], [0, 1, 0]], length=(4, 4, 4))
         >>> box.set_wall(1, HeatBath(2.0))
         >>> box.wall_kT().tolist()
         [nan, 2.0, nan, nan, nan, nan]
@@ -161,11 +162,12 @@ class Adjustable(Account):
         --------
         The potential energy of a molecule one unit above the floor rises by one unit when gravity is doubled:
 
-        >>> from atmosbox.engine import ParcelSet
-        >>> box = ParcelSet([[2, 2, 1]], [[0, 0, 0]], length=(4, 4, 4), gravity=1.0)
+        >>> from atmosbox.engine import ParcelSet, Periodic, Specular
+        >>> column = {"length": (6, 6, 6), "walls": (Periodic(),) * 4 + (Specular(),) * 2}
+        >>> box = ParcelSet([[2, 2, 1], [4, 4, 1]], [[0, 0, 0]] * 2, gravity=1.0, **column)
         >>> box.set_gravity(2.0)
         >>> box.gravity_work, box.energy()[2], box.ledger()
-        (1.0, 2.0, 0.0)
+        (2.0, 4.0, 0.0)
         """
         gravity = number(gravity, "gravity", least=0.0)
         if gravity == self._gravity:

@@ -30,12 +30,13 @@ class DropParcelSet(MoistParcelSet):
     A nucleus catches a vapour molecule that hits it, and the molecule evaporates again:
 
     >>> from atmosbox.engine.liquid.reservoir import Substance
-    >>> water = Substance(mass=1.0, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+    >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
     >>> drops = Drops(water, nuclei=5.0, position=((3.0, 3.0, 3.0),))
-    >>> box = DropParcelSet([[1, 1, 1]], [[1, 1, 1]], length=(6, 6, 6), rotation=3.0, liquid=drops)
+    >>> facts = {"length": (6, 6, 6), "mass": [0.62, 1.0], "rotation": [3.0, 2.0]}
+    >>> box = DropParcelSet([[1, 1, 1], [5, 5, 5]], [[1, 1, 1], [0, 0, 1]], liquid=drops, **facts)
     >>> box.advance(100.0)
     >>> box.condensed > 0, box.number + box.liquid, box.ledger() < 1e-12
-    (True, 1, True)
+    (True, 2, True)
     """
 
     def _draw(self, speed: float) -> None:

@@ -102,8 +102,9 @@ class MoistAccount(Parcel):
         --------
         >>> from atmosbox.engine.liquid.moist_parcelset import MoistParcelSet
         >>> from atmosbox.engine.liquid.reservoir import Substance
-        >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
-        >>> box = MoistParcelSet([], [], length=(1, 1, 1), liquid=Pool(water, number=5, kT=1.0))
+        >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+        >>> liquid = Pool(water, number=5, kT=1.0)
+        >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)
         >>> box.set_open_pool(0.0)
         >>> box.advance(300.0)
         >>> box.evaporated, box.liquid

@@ -40,11 +40,12 @@ class MoistParcelSet(MoistAccount, ParcelSet):
     A molecule leaves the liquid because that is hot enough; the total energy stays the same:
 
     >>> from atmosbox.engine.liquid.reservoir import Mist, Substance
-    >>> water = Substance(mass=1.0, diameter=0.1, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
-    >>> box = MoistParcelSet([], [], length=(1, 1, 1), liquid=Mist(water, number=1, kT=1.0))
+    >>> water = Substance(mass=0.62, diameter=1.0, binding_energy=2.0, heat_capacity=9.0, volatility=1.0)
+    >>> liquid = Mist(water, number=1, kT=1.0)
+    >>> box = MoistParcelSet([[2, 2, 2]], [[1, 0, 0]], length=(4, 4, 4), rotation=2.0, liquid=liquid)
     >>> box.advance(300.0)
     >>> box.evaporated > 0, box.number + box.liquid, box.ledger() < 1e-12
-    (True, 1, True)
+    (True, 2, True)
     """
 
     engine: ClassVar[str] = "exact"

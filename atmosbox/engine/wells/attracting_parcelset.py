@@ -54,9 +54,9 @@ class AttractingParcelSet(ParcelSet):
     --------
     Two molecules that meet at a relative speed of 2 are captured, collide, move apart, and leave the well again:
 
-    >>> pair = AttractingParcelSet(
-    ...     [[4, 5, 5], [7, 5, 5]], [[1, 0, 0], [-1, 0, 0]], length=(10, 10, 10), well=SquareWell(1.5, 1.0)
-    ... )
+    >>> from atmosbox.engine.core.walls import Periodic
+    >>> box = {"length": (10, 10, 10), "walls": (Periodic(),) * 6, "well": SquareWell(1.5, 1.0)}
+    >>> pair = AttractingParcelSet([[4, 5, 5], [7, 5, 5]], [[1, 0, 0], [-1, 0, 0]], **box)
     >>> pair.advance(0.8)
     >>> pair.number_of_wells, pair.energy()[2], round(float(pair.snapshot().velocity[0, 0]), 6)
     (1, -1.0, 1.414214)
@@ -262,7 +262,9 @@ class AttractingParcelSet(ParcelSet):
 
         Examples
         --------
-        >>> box = AttractingParcelSet([[4, 5, 5], [5.2, 5, 5]], [[0, 0, 0]] * 2, length=(10,) * 3, well=SquareWell())
+        >>> from atmosbox.engine.core.walls import Periodic
+        >>> facts = {"length": (10, 10, 10), "walls": (Periodic(),) * 6, "well": SquareWell()}
+        >>> box = AttractingParcelSet([[4, 5, 5], [5.2, 5, 5]], [[0, 0, 0]] * 2, **facts)
         >>> box.set_strength(0.5)
         >>> box.well_energy, box.attraction_work, box.ledger()
         (-0.5, 0.5, 0.0)
