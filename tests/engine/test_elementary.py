@@ -13,7 +13,7 @@ from atmosbox.engine.core.jit import COMPILED, kernel
 from atmosbox.engine.core.random import START, RandomNumbers, gaussian_pair, new_state, normal, uniform
 
 RNG = np.random.default_rng(1)
-MANY = 3000
+MANY = 1500
 
 
 def units(found, true):
