@@ -87,7 +87,7 @@ def test_the_ledger_closes_with_every_wall_gravity_rotation_and_a_driven_piston(
 @many_molecules
 def test_a_run_is_the_same_on_any_number_of_threads_and_however_it_is_cut():
     runs = []
-    for threads in (1, 2, 3, 7):
+    for threads in (1, 2, 7):
         gas = everything(threads=threads)
         gas.advance(30.0)
         runs.append(counters(gas))
@@ -119,7 +119,9 @@ def test_points_that_never_meet_fly_as_in_the_exact_engine_and_keep_their_names(
     small = 1e-7  # so that there are cells, and no collisions
     gas = box(number, side, walls=walls, gravity=gravity, diameter=small, dt=0.2)
     start = gas.snapshot()
-    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=gravity, diameter=small)
+    # under a piston with next to no gravity instead of none: it needs no further kernels
+    weak = gravity or 1e-300 * isinstance(walls[5], Piston)
+    exact = ParcelSet(*start[1:3], length=(side,) * 3, walls=walls, gravity=weak, diameter=small)
     gas.advance(75.0)  # far enough to be put in the order of cells twice
     exact.advance(gas.time)
     assert gas.steps > 65

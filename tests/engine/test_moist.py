@@ -75,7 +75,7 @@ def moist(liquid, air=20, vapour=10, *, sides=(5.5, 5.5, 6.0), kT=1.0, seed=9, *
         "length": sides,
         "seed": seed,
     }
-    velocity = rng.standard_normal((air + vapour, 3)) * np.sqrt(kT / mass)[:, None]
+    velocity = options.pop("velocity", rng.standard_normal((air + vapour, 3)) * np.sqrt(kT / mass)[:, None])
     return MoistParcelSet(options.pop("position", position), velocity, liquid=liquid, **facts | options)
 
 
@@ -318,15 +318,17 @@ def test_a_run_is_the_same_to_the_last_byte_however_it_is_cut(name):
 
 @many_events
 def test_cutting_changes_nothing_while_all_water_is_in_the_liquid():
-    # no air, and only sometimes vapour: often no molecule has a next event
+    # only sometimes vapour, and air that rests in a corner where nothing meets it: often no molecule has a next event
     def new():
-        return moist(Mist(water(1e-4), number=8, nuclei=10.0, area=100.0), 0, 0, seed=3)
+        corner = {"position": [[5e-4] * 3], "diameter": [1e-3], "velocity": np.zeros((1, 3))}
+        return moist(Mist(water(1e-4), number=8, nuclei=10.0, area=100.0), 1, 0, seed=3, **corner)
 
     whole = new()
     end = 40.5 * whole._epoch_length
     whole.advance(end)
     assert whole.evaporated > 20
     assert whole.vapour == 0
+    assert not whole.snapshot().velocity.any()
     for pieces in (7, 81, 1000):
         parcel = new()
         for time in np.linspace(0.0, end, pieces)[1:]:
@@ -570,12 +572,11 @@ def test_dry_air_never_hears_of_water():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     contacts, names = done.stdout.split(" ", 1)
     assert contacts == "1"
-    assert "atmosbox.engine.exact.exact" in names
-    for module in ("liquid", "phase", "moist", "moist_parcelset"):
-        assert f"atmosbox.engine.{module}'" not in names
+    assert "'atmosbox.engine.exact.exact'" in names
+    assert "'atmosbox.engine.liquid" not in names
 
 
 def test_the_kernels_of_dry_air_have_no_phases():
-    parcel = ParcelSet([[1, 2, 2]], [[1, 0, 0]], length=(4, 4, 4))
+    parcel = ParcelSet([[1, 2, 2], [3, 2, 2]], np.zeros((2, 3)), length=(4, 4, 4))
     assert (parcel._modes.phases, parcel._modes.pool) == (False, False)
     assert isinstance(parcel._present, slice)

@@ -43,7 +43,7 @@ CROWDS = (2, 8, 12, 16)  # in a box without walls few molecules have few events
 FAMILIES = {
     "equal": Family(numbers=(1, 2, 3, 4, 6, 8, 10, 12)),
     "equal, gravity, piston": Family(gravity=True, piston=True),
-    "points, gravity, piston": Family(points=True, gravity=True, piston=True),
+    "points": Family(points=True),
     "mixed": Family(mixed=True),
     "equal, periodic": Family(periodic="xyz", sides=(5.2, 6.0), numbers=CROWDS),
     "mixed, periodic, rotation": Family(mixed=True, rotation=True, periodic="xyz", sides=(2.0, 3.9), numbers=CROWDS),

@@ -53,7 +53,7 @@ BOXES = {
         walls=(Periodic(),) * 4 + (HeatBath(Ramp(1.0, 3.0, 0.0, 30.0)), Specular()),
     ),
     "mixture": lambda: ParcelSet(
-        *gas(), length=(12.0,) * 3, mass=[1.0, 3.0] * 32, diameter=[1.0, 0.2] * 32, walls=(Periodic(),) * 6,
+        *gas(), length=(12.0,) * 3, mass=[1.0, 3.0] * 32, diameter=[1.0, 0.2] * 32,
     ),
     "lift": lambda: ParcelSet(*gas(), **lifted()),
     "mist": lambda: MoistParcelSet(*gas(), mass=[1.0, 0.62] * 32, liquid=Mist(WATER, number=9, kT=1.0), **lifted()),
