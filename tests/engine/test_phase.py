@@ -8,7 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import HeatBath, Mist, Periodic, Piston, Pool, Specular, Substance, random_positions
+from atmosbox.engine import (
+    FollowPressure,
+    HeatBath,
+    Mist,
+    Periodic,
+    Piston,
+    Pool,
+    Specular,
+    Substance,
+    random_positions,
+)
 from atmosbox.engine.core.jit import COMPILED
 from atmosbox.engine.exact.cells import overlapped
 from atmosbox.engine.exact.rows import MOST, name_in
@@ -24,11 +34,12 @@ WATER = Substance(MASS, DIAMETER, 8.0, 9.0, 0.1 * math.exp(8.0))
 WALLS = {
     "mist": (HeatBath(1.0),) * 6,
     "pool": (*(HeatBath(1.0),) * 4, Specular(), HeatBath(1.0)),
+    "lifted mist": (*SMOOTH[:5], Piston()),
     "periodic": TURNING,
     "mist under a piston": (*TURNING[:4], Specular(), Piston(-0.05)),
     "pool under a piston": (*TURNING[:4], Specular(), Piston(-0.05)),
 }
-OWN_KERNELS = ("periodic", "pool under a piston")  # no scene has such a box
+OWN_KERNELS = ("periodic", "mist under a piston", "pool under a piston")  # no scene has such a box
 by_name = pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.validate if name in OWN_KERNELS else ()) for name in WALLS]
 )
@@ -38,6 +49,10 @@ def box(name, *, air=20, vapour=10, sides=(5.5, 5.5, 6.0), number=30, seed=9, su
     """Return a box of air and vapour at random places, with its liquid."""
     rng = np.random.default_rng(seed)
     walls = options.pop("walls", WALLS[name])
+    driver = None
+    if name == "lifted mist":  # compiled code lifts molecules of one size
+        substance = Substance(MASS, 1.0, 8.0, 9.0, 0.1 * math.exp(8.0))
+        driver = FollowPressure([0.0, 100.0], [0.3, 0.6], mean_free_time=0.5)
     facts = {"number": number, "nuclei": 50.0} | options
     liquid = Pool(substance, **facts) if "pool" in name else Mist(substance, **{"area": 60.0} | facts)
     mass = np.r_[np.full(vapour, MASS), np.ones(air)]
@@ -49,6 +64,7 @@ def box(name, *, air=20, vapour=10, sides=(5.5, 5.5, 6.0), number=30, seed=9, su
         rng.standard_normal((air + vapour, 3)) / np.sqrt(mass)[:, None],
         length=sides,
         walls=walls,
+        driver=driver,
         mass=mass,
         diameter=diameter,
         rotation=rotation,
@@ -151,7 +167,7 @@ def test_who_comes_back_does_not_overlap_anybody(name, monkeypatch):
         away = place - place[newest]
         length = np.array([*parcel.length[:2], parcel.length[2]])
         away -= np.where(parcel.periodic, length * np.rint(away / length), 0.0)
-        gap = np.sqrt(np.sum(away**2, axis=1)) - 0.5 * (parcel.diameter + DIAMETER)
+        gap = np.sqrt(np.sum(away**2, axis=1)) - 0.5 * (parcel.diameter + parcel.diameter[newest])
         gap[newest] = 0.0
         assert gap.min() > -1e-9
         if "pool" in name:
