@@ -519,14 +519,18 @@ def test_a_small_box_full_of_a_few_condenses():
 
 
 @many_events
-def test_a_gas_at_rest_that_a_piston_wakes_meets_the_mist():
+def test_a_gas_almost_at_rest_that_a_piston_wakes_meets_the_mist():
     liquid = Mist(water(1e-20, diameter=1.0), nuclei=50.0, area=600.0)
-    # it knows no pressure yet, and so would be at the floor after an interval, of 40
-    fall = FollowPressure([0.0, 1.0], [1.0, 1.0], mean_free_time=160.0)
-    parcel = moist(liquid, 10, 10, sides=(5.0, 5.0, 20.0), walls=LIFTED, kT=0.0, driver=fall)
-    parcel.advance(30.0)
+    # the ceiling rests, and then comes down so fast that molecules become a thousand times as fast as they were
+    fall = FollowPressure([0.0, 10.0, 30.0], [6e-8, 6e-8, 5e-7], mean_free_time=20.0)
+    parcel = moist(liquid, 10, 10, sides=(5.0, 5.0, 20.0), walls=LIFTED, kT=1e-6, driver=fall)
+    parcel.advance(10.0)
+    assert parcel.condensed == 0
+    parcel.advance(16.0)
+    # at the speed that molecules had before, the next to meet the mist would do so after 20
+    assert parcel.condensed > 3
+    parcel.advance(60.0)
     assert parcel.contacts > 20
-    assert parcel.condensed > 0
     is_lawful(parcel, 10)
 
 
