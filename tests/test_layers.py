@@ -270,6 +270,17 @@ def test_no_name_of_a_file_means_two_things():
     assert twins == set()
 
 
+def test_no_kernel_takes_more_than_eight_arguments():
+    kernels = {
+        f"{path.stem}.{node.name}": len(node.args.args)
+        for path in ROOT.glob("atmosbox/engine/**/*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and any("kernel" in ast.unparse(each) for each in node.decorator_list)
+    }
+    assert "pair.soonest_image" in kernels
+    assert {name: number for name, number in kernels.items() if number > 8} == {}
+
+
 def test_rooms_stand_on_floors():
     """The imports between packages have no cycle, so the packages can be put in an order."""
     standing = {name: set(f"{row.parts} {row.lazily}".split()) & set(LAYERS) for name, row in LAYERS.items()}
