@@ -49,19 +49,28 @@ window.Worker = class extends Worker {
 
 
 class Lab:
-    """The page of a scene in a browser; a fault in it fails the test."""
+    """The page of a scene in a tab of the browser; a fault in it fails the test."""
 
-    def __init__(self, browser, path, **options):
-        self.faults = []
-        viewport = {"width": 1280, "height": 720}
-        self.context = browser.new_context(**{"viewport": viewport, "reduced_motion": "reduce", **options})
-        self.context.set_offline(True)
-        self.page = self.context.new_page()
-        self.page.add_init_script(KEEPS_FRAME)
-        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
-        self.page.on("console", lambda said: self.faults.append(said.text) if said.type == "error" else None)
-        self.page.goto(path.as_uri())
-        self.page.wait_for_selector("body[data-ready]", timeout=30_000)
+    def __init__(self, tab, path):
+        self.page, self.faults = tab, []
+        tab.on("pageerror", self._failed)
+        tab.on("console", self._said)
+        tab.goto(path.as_uri())
+        tab.wait_for_selector("body[data-ready]", timeout=30_000)
+
+    def _failed(self, error):
+        self.faults.append(str(error))
+
+    def _said(self, said):
+        if said.type == "error":
+            self.faults.append(said.text)
+
+    def close(self):
+        """Stop the page, whose tab is free for the next one."""
+        self.page.goto("about:blank")
+        self.page.remove_listener("pageerror", self._failed)
+        self.page.remove_listener("console", self._said)
+        assert not self.faults
 
     def ask(self, **message):
         """Send a message to the engine."""
@@ -100,8 +109,32 @@ class Lab:
         return self.page.wait_for_selector("#notes .note").inner_text()
 
 
+@pytest.fixture(scope="module")
+def new_tab(browser):
+    """A function that opens a tab without a network."""
+    opened = []
+
+    def make(**options):
+        viewport = {"width": 1280, "height": 720}
+        opened.append(browser.new_context(**{"viewport": viewport, "reduced_motion": "reduce", **options}))
+        opened[-1].set_offline(True)
+        tab = opened[-1].new_page()
+        tab.add_init_script(KEEPS_FRAME)
+        return tab
+
+    yield make
+    for each in opened:
+        each.close()
+
+
+@pytest.fixture(scope="module")
+def usual_tab(new_tab):
+    """The tab that shows one page after the other: to start one takes longer than to load a page."""
+    return new_tab()
+
+
 @pytest.fixture
-def lab(browser, tmp_path):
+def lab(new_tab, usual_tab, tmp_path):
     """A function that opens the page of a scene."""
     opened = []
 
@@ -109,13 +142,12 @@ def lab(browser, tmp_path):
         prepared = prepare(scene, SCENES[scene] | settings, engine="exact")
         path = save_lab(prepared, tmp_path / "lab.html", others=others, force=True)
         assert path.stat().st_size <= 1_500_000
-        opened.append(Lab(browser, path, **options))
+        opened.append(Lab(new_tab(**options) if options else usual_tab, path))
         return opened[-1]
 
     yield show
     for each in opened:
-        each.context.close()
-        assert not each.faults
+        each.close()
 
 
 def parts_of(frame):

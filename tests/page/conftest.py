@@ -100,12 +100,12 @@ def site(tmp_path_factory):
     return address
 
 
-@pytest.fixture
-def opened(browser, site):
-    """Return a function that opens a page without a network; any error in the page fails the test."""
-    contexts, faults = [], []
+@pytest.fixture(scope="module")
+def new_tab(browser):
+    """Return a function that opens a tab of some size without a network."""
+    opened = []
 
-    def page(name, size=(1280, 720), scheme="light", before=""):
+    def make(size=(1280, 720), scheme="light"):
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]},
             color_scheme=scheme,
@@ -113,20 +113,48 @@ def opened(browser, site):
             has_touch=size[0] < 600,
             reduced_motion="reduce",
         )
-        contexts.append(context)
-        shown = context.new_page()
-        shown.set_default_timeout(15_000)
-        shown.on("pageerror", lambda error: faults.append(str(error)))
-        shown.on("console", lambda said: faults.append(said.text) if said.type == "error" else None)
-        shown.on("request", lambda asked: faults.append(asked.url) if is_outside(asked.url) else None)
-        shown.add_init_script(before)
-        shown.goto(site(name))
-        shown.wait_for_selector("body[data-ready]")
-        return shown
+        opened.append(context)
+        tab = context.new_page()
+        tab.set_default_timeout(15_000)
+        return tab
+
+    yield make
+    for context in opened:
+        context.close()
+
+
+@pytest.fixture(scope="module")
+def usual_tab(new_tab):
+    """Return the tab that shows one page after the other: to start one takes longer than to load a page."""
+    return new_tab()
+
+
+@pytest.fixture
+def opened(new_tab, usual_tab, site):
+    """Return a function that opens a page without a network; any error in the page fails the test."""
+    tabs, faults = [], []
+    heard = {
+        "pageerror": lambda error: faults.append(str(error)),
+        "console": lambda said: faults.append(said.text) if said.type == "error" else None,
+        "request": lambda asked: faults.append(asked.url) if is_outside(asked.url) else None,
+    }
+
+    def page(name, before="", **look):
+        tab = new_tab(**look) if look or before else usual_tab
+        tabs.append(tab)
+        for event, hear in heard.items():
+            tab.on(event, hear)
+        if before:
+            tab.add_init_script(before)
+        tab.goto(site(name))
+        tab.wait_for_selector("body[data-ready]")
+        return tab
 
     yield page
-    for context in contexts:
-        context.close()
+    for tab in tabs:
+        tab.goto("about:blank")
+        for event, hear in heard.items():
+            tab.remove_listener(event, hear)
     assert faults == []
 
 

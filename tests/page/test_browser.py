@@ -188,7 +188,7 @@ def test_a_projector_shows_all_at_once(opened):
 
 
 def test_a_phone_needs_no_scrolling_sideways_and_has_the_bar_at_hand(opened):
-    page = opened("warm", PHONE)
+    page = opened("warm", size=PHONE)
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE[0]
     bar = page.locator("#play").bounding_box()
     assert bar["y"] + bar["height"] <= PHONE[1]
