@@ -1,5 +1,6 @@
 """How the site is made of the pages: `python -m sphinx -W docs site`."""
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -14,6 +15,8 @@ import atmosbox  # noqa: E402
 
 del os.environ["NUMBA_DISABLE_JIT"]  # but notebooks do, which run in a process of their own
 os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE.parent), os.environ.get("PYTHONPATH", "")])
+
+gc.set_threshold(200_000)  # pages are trees that stay: to look through them again and again finds nothing
 
 project = "atmosbox"
 author = "The atmosbox developers"

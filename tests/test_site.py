@@ -15,8 +15,10 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 from docutils import nodes
+from typer.testing import CliRunner
 
 from atmosbox import scenarios
+from atmosbox.cli import app
 from atmosbox.file.netcdf import read
 from atmosbox.lab.wasm_module import SCENES
 from atmosbox.simulation.preparation import prepare
@@ -36,7 +38,8 @@ SHOWN = ["elastic-collisions"]
 """Scenes in the gallery of this test; each takes seconds."""
 PARTS = ["Run it", "What to notice, what to try", "Settings", "What is modelled, left out, exaggerated", "Theory"]
 PARTS += ["What it does not show", "Questions"]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", "MPLBACKEND": "agg"}
+PLAIN = {"COLUMNS": "100", "NO_COLOR": "1"}
+ENVIRONMENT = {**os.environ, **PLAIN, "PYTHONPATH": str(ROOT), "MPLBACKEND": "agg"}
 
 
 class Page(HTMLParser):
@@ -83,7 +86,7 @@ def site(request, tmp_path_factory):
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", str(folder / "trees")]
     if not request.config.getoption("--validate"):
         command += ["-D", "nb_execution_mode=off"]
-    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", "-D", "gallery_film=1"]
+    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", "-D", "gallery_film=1", "-D", "source_in_colour=0"]
     command += [str(DOCS), str(folder / "site")]
     done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=False)
     said = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("[IPKernelApp] WARNING")]
@@ -234,7 +237,7 @@ def test_no_number_in_a_sentence_begins_a_line():
         assert re.findall(r"^\s*<!-- number:.*", text, re.MULTILINE) == [], page
 
 
-def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path):
+def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path, monkeypatch):
     text = (DOCS / "own-scene.md").read_text(encoding="utf-8")
     (scene,) = re.findall(r"<!-- table:own-scene.source -->\n```python\n(.*?)```", text, re.DOTALL)
     assert scene.rstrip() == (DOCS / "examples" / "my_scene.py").read_text(encoding="utf-8").rstrip()
@@ -242,13 +245,11 @@ def test_the_own_scene_page_can_be_followed_letter_by_letter(tmp_path):
     blocks = [block.splitlines() for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)]
     typed = [line for block in blocks for line in block]
     assert [line.split()[:2] for line in typed] == [["atmosbox", verb] for verb in ("run", "plot", "run")]
+    monkeypatch.chdir(tmp_path)
     said = []
     for line in typed:
-        command = [sys.executable, "-m", "atmosbox", *shlex.split(line)[1:]]
-        done = subprocess.run(
-            command, cwd=tmp_path, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=False
-        )
-        assert done.returncode == 0, done.stderr
+        done = CliRunner().invoke(app, shlex.split(line)[1:], env=PLAIN)
+        assert done.exit_code == 0, done.output
         said.append(done.stdout)
     (printed,) = re.findall(r"<!-- table:own-scene.run -->\n```console\n(.*?)```", text, re.DOTALL)
     command, header, row, *_ = printed.splitlines()
