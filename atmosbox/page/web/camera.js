@@ -27,6 +27,7 @@ export class Camera {
     this.controls.addEventListener("change", changed);
     this.controls.addEventListener("start", () => { this.place = null; });
     this.place = box.planar ? 1 : 0;
+    this.free = [1, 1]; // until the size of the picture is known
   }
 
   // Size of the space that the picture must show: the largest box of the run, with the piston on its ceiling. Two boxes
