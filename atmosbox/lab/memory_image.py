@@ -79,7 +79,10 @@ def _address(array: NDArray[Any]) -> int:
 
 
 def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
-    """Return the pieces of memory, as first address and end, that hold all arrays; views of one buffer share one."""
+    """Return the pieces of memory, as first address and end, that hold all arrays; views of one buffer share one.
+
+    They are in the order of the arrays, for where Python puts them is chance.
+    """
     spans = sorted((np.lib.array_utils.byte_bounds(each) for each in arrays if each.size), key=lambda s: (s[0], -s[1]))
     found: list[tuple[int, int]] = []
     for low, high in spans:
@@ -87,7 +90,8 @@ def _pieces_of_memory(arrays: list[NDArray[Any]]) -> list[tuple[int, int]]:
             found[-1] = found[-1][0], max(found[-1][1], high)
         else:
             found.append((low, high))
-    return found
+    turn = [_address(each) for each in arrays if each.size]
+    return sorted(found, key=lambda piece: next(k for k, at in enumerate(turn) if piece[0] <= at < piece[1]))
 
 
 def image(works: Works, named: Mapping[str, Any]) -> Image:

@@ -32,6 +32,14 @@ def test_the_command_that_is_saved_begins_the_same_run(scene, settings):
     assert (begun.settings, begun.engine) == (prepared.settings, prepared.engine)
 
 
+def test_the_same_scene_gives_the_same_memory_wherever_python_keeps_its_arrays():
+    prepared, kept, images = prepare("elastic-collisions", {}), [], []
+    for number in range(4):
+        images.append(lab_plan(prepared)[1])
+        kept.append(np.zeros(37 + 101 * number))  # so that the next arrays lie elsewhere
+    assert all(image == images[0] for image in images)
+
+
 @pytest.mark.validate
 @pytest.mark.parametrize("scene", ["diffusion", "evaporation", "lifting-dry", "lifting-moist", "lifting-sounding"])
 def test_a_page_of_as_many_molecules_as_a_run_has_is_no_larger_than_promised(scene):

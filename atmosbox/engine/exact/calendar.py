@@ -25,9 +25,10 @@ def new_calendar(molecules: int) -> Calendar:
     groups = -(-max(molecules, 1) // 8)
     depth = max(1, (groups - 1).bit_length())
     leaf = -(-(2 ** (depth + 1)) // 8) * 8
-    buffer = np.full(leaf + 8 * groups + 8, np.inf)
+    size = leaf + 8 * groups
+    buffer = np.full(size + 8, np.inf)
     start = -(buffer.ctypes.data // 8) % 8
-    return Calendar(buffer[start:], np.zeros(max(8, 2 ** (depth + 1)), np.uint32), leaf, 2**depth, depth)
+    return Calendar(buffer[start : start + size], np.zeros(max(8, 2 ** (depth + 1)), np.uint32), leaf, 2**depth, depth)
 
 
 @kernel
