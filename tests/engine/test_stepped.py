@@ -124,10 +124,11 @@ def test_a_run_is_the_same_however_it_is_cut(name):
 @many_steps
 @boxes_but("all at once")
 def test_a_run_has_the_same_bits_on_any_number_of_threads(name):
-    boxes = [gas(300, delta=0.03, threads=threads, **BOXES[name]) for threads in (1, 2, 3)]
+    # threads that wait for each other take processor time: few steps
+    boxes = [gas(300, delta=0.03, threads=threads, **BOXES[name]) for threads in (1, 3)]
     for box in boxes:
-        box.advance(3.0)
-    assert boxes[0].contacts > 100
+        box.advance(1.5)
+    assert boxes[0].contacts > 50
     assert len({state(box) for box in boxes}) == 1
 
 
@@ -411,8 +412,8 @@ def test_more_pairs_than_there_was_room_for_change_nothing():
     )
     cramped._pairs = np.zeros((2, 7, 2), np.uint32)
     for box in (roomy, cramped):
-        box.advance(5.0)
-    assert roomy.contacts > 10_000
+        box.advance(1.0)
+    assert roomy.contacts > 2000
     assert state(roomy) == state(cramped)
 
 
