@@ -345,7 +345,7 @@ class ParcelSet(Parcel):
             gravity=self.gravity > 0.0,
             rotation=self._rotates,
             mixed=len(self._kinds.table) > 1,
-            spanning=grid.spanning,
+            spanning=bool(grid.spanning),
             periodic=any(self._periodic),
             piston=bool(self._walls.law[5] == PISTON),
             phases=not isinstance(self._present, slice),
