@@ -169,7 +169,7 @@ def draw_adiabats(found: Findings, keeps: list[Any], rains: list[Any], settings:
             axes.set_yticks([], minor=True)
         left.set(title="In a cloud, air cools half as fast", xlabel="temperature (°C)")
         right.set(title="Which adiabat is it?", xlabel="difference from the reversible adiabat (K)", xlim=(-1.75, 0.75))
-        left.legend(loc="upper right")
+        left.legend(loc="lower left")
         right.legend(loc="center left", bbox_to_anchor=(0.0, 0.42))
         explain(
             drawing,
@@ -305,6 +305,6 @@ def draw_mountains(found: Findings, runs: dict[bool, Any]) -> None:
         tall.plot(wet.environment_temperature - 273.15, ground, "-.", color=ENVIRONMENT_COLOURS[0], label="environment")
         warm.set(xlabel="share of the way (%)", ylabel="temperature (°C)", title="It arrives warmer than it left")
         tall.set(xlabel="temperature (°C)", ylabel="height (km)", title="5 K per kilometre up, 10 K down")
-        warm.legend(loc="lower left")
+        warm.legend(loc="upper center")
         tall.legend(loc="upper right")
         save(found, drawing, "mountains-rain")

@@ -108,7 +108,7 @@ def draw_equation_of_state(found: Findings, points: np.ndarray) -> None:
         left.plot(packing, 1.0 + 4.0 * packing, ":", color="#595959", label="1 + 4φ, a thin gas")
         left.plot(points[:, 0], points[:, 1], "o", label="molecules")
         left.set(
-            title="Spheres that take up room press harder",
+            title="Excluded volume raises the pressure",
             xlabel="packing fraction φ",
             ylabel="Z = p / n k T",
             xlim=(0.0, 0.51),

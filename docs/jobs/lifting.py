@@ -102,7 +102,7 @@ def finite_speed(found: Findings) -> None:
 def adiabat_of_spheres(pressure: float) -> float:
     """Return the temperature [K] at which spheres as wide as those of the scene arrive at a pressure [Pa].
 
-    Lifted infinitely slowly, they still take up room, and so deviate from T ~ p^(2/7) to second order in their
+    Lifted infinitely slowly, their excluded volume still makes them deviate from T ~ p^(2/7) to second order in their
     packing fraction.
     """
     volume = scenarios.load("lifting-dry").Settings().si.diameter ** 3

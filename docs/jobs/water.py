@@ -1,6 +1,7 @@
 """Water at rest: the curve of saturation, and the balance of a few molecules."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from jobs.drawing import BLUE, explain, save, sheet
@@ -113,7 +114,7 @@ def isolated_box(seed: int) -> tuple[MoistParcelSet, Scale]:
     scale = Scale(DRY_AIR.diameter, DRY_AIR.molecule_mass, BOLTZMANN * 293.15)
     small, vapour = 1e-3, WATERS // 2
     side = (vapour / float(theory.saturation_vapor_pressure(293.15) / scale.pressure)) ** (1.0 / 3.0)
-    gas = moist_air(AIR + vapour, vapour, rng)
+    gas, substance = moist_air(AIR + vapour, vapour, rng), replace(water(scale), diameter=small)
     box = MoistParcelSet(
         rng.uniform(small, side - small, (AIR + vapour, 3)),
         gas.velocity,
@@ -123,7 +124,7 @@ def isolated_box(seed: int) -> tuple[MoistParcelSet, Scale]:
         rotation=gas.rotation,
         rotational_energy=gas.rotational_energy,
         liquid=Mist(
-            water(scale, small), number=WATERS - vapour, kT=1.0, nuclei=NUCLEI, area=20.0 * side * side
+            substance, number=WATERS - vapour, kT=1.0, nuclei=NUCLEI, area=20.0 * side * side
         ),
         seed=seed,
     )  # fmt: skip
