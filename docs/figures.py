@@ -8,8 +8,9 @@
     python docs/figures.py --list              name the jobs, with --stale those that are stale and how long they take
 
 The exit status is 1 if a run disagrees with theory, if a page quotes what no job computes, if a job computes
-what no page quotes, or, with --check, if a page would change. The numbers are those of fixed seeds: they come out the
-same, to the last digit, on processors of one kind; on another kind molecules go other ways, and the last digits differ.
+what no page quotes, with --check, if a page would change, or, with --list --stale, if a job is stale. The numbers are
+those of fixed seeds: they come out the same, to the last digit, on processors of one kind; on another kind molecules go
+other ways, and the last digits differ.
 A job is stale if the code that its numbers depend on has changed since (jobs/source.py says what that is). There is no
 way to call it fresh but to run it.
 """
@@ -115,7 +116,7 @@ def main(words: list[str] | None = None) -> int:
         for name in chosen:
             took = known.get(name, {}).get("seconds")
             print(f"{name:<24} took {took} s" if given.stale and took is not None else name)
-        return 0
+        return 1 if given.stale and chosen else 0
     faults: list[str] = []
     for name in chosen:
         kept, failures = run(name, not given.check)
