@@ -133,3 +133,23 @@ def browser():
         chromium = playwright.chromium.launch(executable_path=path, args=BROWSER_FLAGS)
         yield chromium
         chromium.close()
+
+
+@pytest.fixture(scope="module")
+def new_tab(browser):
+    """A function that opens a tab of some size, with the options of a browser's context."""
+    opened = []
+
+    def make(size=(1280, 720), **options):
+        opened.append(browser.new_context(viewport={"width": size[0], "height": size[1]}, **options))
+        return opened[-1].new_page()
+
+    yield make
+    for context in opened:
+        context.close()
+
+
+@pytest.fixture(scope="module")
+def usual_tab(new_tab):
+    """The tab in which a file shows one page after the other: to start a tab takes longer than to load a page."""
+    return new_tab()

@@ -110,27 +110,15 @@ class Lab:
 
 
 @pytest.fixture(scope="module")
-def new_tab(browser):
+def new_tab(new_tab):
     """A function that opens a tab without a network."""
-    opened = []
 
     def make(**options):
-        viewport = {"width": 1280, "height": 720}
-        opened.append(browser.new_context(**{"viewport": viewport, "reduced_motion": "reduce", **options}))
-        opened[-1].set_offline(True)
-        tab = opened[-1].new_page()
+        tab = new_tab(**{"offline": True, "reduced_motion": "reduce", **options})
         tab.add_init_script(KEEPS_FRAME)
         return tab
 
-    yield make
-    for each in opened:
-        each.close()
-
-
-@pytest.fixture(scope="module")
-def usual_tab(new_tab):
-    """The tab that shows one page after the other: to start one takes longer than to load a page."""
-    return new_tab()
+    return make
 
 
 @pytest.fixture
@@ -500,7 +488,7 @@ def test_a_box_that_runs_for_long_takes_no_more_memory(lab):
 
 
 def test_on_a_phone_nothing_is_wider_than_the_screen(lab):
-    shown = lab("temperature", {"molecules": 50}, viewport={"width": 390, "height": 844}, has_touch=True)
+    shown = lab("temperature", {"molecules": 50}, size=(390, 844), has_touch=True)
     assert shown.page.evaluate("document.documentElement.scrollWidth") <= 390
     shown.page.tap("#play")
     shown.page.wait_for_selector("body[data-playing=true]")

@@ -10,26 +10,6 @@ from atmosbox.page import live_page
 from atmosbox.simulation.preparation import prepare
 
 
-@pytest.fixture(scope="module")
-def new_tab(browser):
-    """Return a function that opens a tab of some size for a reader."""
-    opened = []
-
-    def make(size=(1280, 720), **reader):
-        opened.append(browser.new_context(viewport={"width": size[0], "height": size[1]}, **reader))
-        return opened[-1].new_page()
-
-    yield make
-    for context in opened:
-        context.close()
-
-
-@pytest.fixture(scope="module")
-def usual_tab(new_tab):
-    """Return the tab that shows one page after the other: to start one takes longer than to load a page."""
-    return new_tab()
-
-
 @pytest.fixture
 def visit(new_tab, usual_tab, serve, tmp_path):
     """Return a function that opens the page of a scene with a reader's settings; a fault in it fails the test."""
@@ -107,7 +87,7 @@ def test_moving_the_slider_makes_the_measured_temperature_follow_and_the_recordi
     late = made.air_temperature.values[turned + 25 :]
     assert late.size > 80
     # 100 molecules scatter by sqrt(2 / 300) of T, 47 K; a gas so thin forgets its energy in a frame, the time to a
-    # wall, so that there are 25 looks at least, and 4 errors of their mean are 38 K
+    # wall, so that there are 25 samples at least, and 4 errors of their mean are 38 K
     assert late.mean() == pytest.approx(573.15, abs=38.0)
     assert made.air_temperature.values[: turned - 5].mean() < 373.15
 

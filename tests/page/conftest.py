@@ -101,32 +101,15 @@ def site(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def new_tab(browser):
+def new_tab(new_tab):
     """Return a function that opens a tab of some size without a network."""
-    opened = []
 
-    def make(size=(1280, 720), scheme="light"):
-        context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]},
-            color_scheme=scheme,
-            offline=True,
-            has_touch=size[0] < 600,
-            reduced_motion="reduce",
-        )
-        opened.append(context)
-        tab = context.new_page()
+    def make(size=(1280, 720), **options):
+        tab = new_tab(size, offline=True, has_touch=size[0] < 600, reduced_motion="reduce", **options)
         tab.set_default_timeout(15_000)
         return tab
 
-    yield make
-    for context in opened:
-        context.close()
-
-
-@pytest.fixture(scope="module")
-def usual_tab(new_tab):
-    """Return the tab that shows one page after the other: to start one takes longer than to load a page."""
-    return new_tab()
+    return make
 
 
 @pytest.fixture

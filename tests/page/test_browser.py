@@ -203,7 +203,7 @@ def test_the_page_takes_the_colours_that_the_reader_prefers_and_d_turns_them(ope
         text = page.evaluate("getComputedStyle(document.body).backgroundColor")
         return sum(int(part) for part in text[4:-1].split(",")) / 765
 
-    light, dark = opened("warm"), opened("warm", scheme="dark")
+    light, dark = opened("warm"), opened("warm", color_scheme="dark")
     assert lightness(light) > 0.9
     assert lightness(dark) < 0.2
     assert picture(light) != picture(dark)
