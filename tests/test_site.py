@@ -86,7 +86,7 @@ def site(request, tmp_path_factory):
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", str(folder / "trees")]
     if not request.config.getoption("--validate"):
         command += ["-D", "nb_execution_mode=off"]
-    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", "-D", "gallery_film=1", "-D", "source_in_colour=0"]
+    command += ["-D", f"gallery_scenes={','.join(SHOWN)}", "-D", "gallery_film=1"]
     command += [str(DOCS), str(folder / "site")]
     done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, capture_output=True, encoding="utf-8", check=False)
     said = [line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("[IPKernelApp] WARNING")]

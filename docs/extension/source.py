@@ -2,8 +2,7 @@
 
 Every Python file of atmosbox and of its scenes has a page, and so has every other file that a page links to; a folder
 has a page that lists what is in it, each file with the first sentence of its docstring. They are plain pages, without
-the navigation, which is larger than most of the files. With the option ``-D source_in_colour=0`` of Sphinx their code
-is in one colour, which is quicker.
+the navigation, which is larger than most of the files.
 """
 
 import ast
@@ -18,7 +17,7 @@ from docutils import nodes
 from extension.definition import ROOT, Place, place, place_of_member, sources
 from pygments import highlight
 from pygments.formatters import HtmlFormatter
-from pygments.lexers import TextLexer, get_lexer_for_filename
+from pygments.lexers import get_lexer_for_filename
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
@@ -153,8 +152,6 @@ def write_pages(app: Sphinx) -> Iterator[tuple[str, dict[str, Any], str]]:
             body = listing(path, page, shown)
         else:
             lexer = get_lexer_for_filename(path.name, stripnl=False)
-            if not app.config.source_in_colour:
-                lexer = TextLexer(stripnl=False)
             body = highlight(path.read_text(encoding="utf-8"), lexer, look)
         static = posixpath.relpath("_static", posixpath.dirname(page))
         text = PAGE.substitute(
@@ -177,7 +174,6 @@ def begin(app: Sphinx) -> None:
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx."""
-    app.add_config_value("source_in_colour", True, "html", bool)
     app.connect("builder-inited", begin)
     app.add_transform(SourceLinks)
     app.connect("missing-reference", lead_to_source)
