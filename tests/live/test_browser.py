@@ -19,14 +19,16 @@ def visit(new_tab, usual_tab, serve, tmp_path):
         "console": lambda said: faults.append(said.text) if said.type == "error" else None,
     }
 
-    def page(scene, settings, *, ahead=0.0, **reader):
+    def page(scene, settings, *, ahead=0.0, before="", **reader):
         session = Session(prepare(scene, settings), folder=tmp_path)
         while session.state()["frame"] < ahead * session.setup.frames:
             session.obey({"type": "play"})
             session.run(0.1)
         site = serve(session, document=live_page())
         site.__enter__()
-        tab = new_tab(**reader) if reader else usual_tab
+        tab = new_tab(**reader) if reader or before else usual_tab
+        if before:
+            tab.add_init_script(before)
         opened.append((tab, site))
         for event, hear in heard.items():
             tab.on(event, hear)
@@ -55,6 +57,12 @@ def play_to(page, time):
             return
         page.wait_for_timeout(100)
     raise AssertionError(f"the box has only come to {page.locator('#time').inner_text()}")
+
+
+def test_a_parcel_that_has_risen_is_drawn_although_the_page_does_not_know_its_own_size_yet(visit):
+    page = visit("lifting-dry", {"molecules": 50}, ahead=0.5, before="window.ResizeObserver = class { observe() {} };")
+    page.wait_for_selector("body[data-playing=true]")
+    play_to(page, time_of(page) + 0.5)
 
 
 def test_moving_the_slider_makes_the_measured_temperature_follow_and_the_recording_opens(visit, tmp_path):
