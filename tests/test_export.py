@@ -1,4 +1,4 @@
-"""Runs for other programs: molecules as extended XYZ and GSD, numbers as CSV, each read by another program."""
+"""Runs for other programs: molecules as extended XYZ, numbers as CSV, each read by another program."""
 
 import csv
 import io
@@ -9,7 +9,7 @@ import pytest
 import atmosbox as ab
 from atmosbox.errors import FileError
 from atmosbox.file.spreadsheet import tables
-from atmosbox.file.trajectory import extended_xyz, gsd_file
+from atmosbox.file.trajectory import extended_xyz
 from tests.few_frames import cut
 from tests.in_process import typed
 
@@ -43,14 +43,6 @@ def with_ase(content):
     import ase.io
 
     return ase.io.read(io.StringIO(content.decode()), index=":", format="extxyz")
-
-
-def with_gsd(content, tmp_path):
-    import gsd.hoomd
-
-    path = tmp_path / "run.gsd"
-    path.write_bytes(content)
-    return gsd.hoomd.open(str(path))
 
 
 def test_velocities_are_saved_and_carry_the_kinetic_energy(box):
@@ -90,22 +82,6 @@ def test_a_column_of_kilometres_is_in_si_and_says_so(column):
     assert frame.pbc.tolist() == [law == 1 for law in column.wall_law.values[::2]]
 
 
-@pytest.mark.parametrize("made", ["box", "cloud"])
-def test_gsd_holds_the_same_with_its_middle_at_the_origin(made, request, tmp_path):
-    run = request.getfixturevalue(made)
-    with with_gsd(gsd_file(run), tmp_path) as frames:
-        assert len(frames) == run.sizes["elapsed_time"]
-        last = frames[-1]
-        there = np.isfinite(run.molecule_position.values[-1, :, 0])
-        assert there.sum() == last.particles.N
-        side = 1e10 * run.box_side.values[-1]
-        np.testing.assert_allclose(last.configuration.box[:3], side, rtol=1e-6)
-        place = 1e10 * run.molecule_position.values[-1][there] - 0.5 * side
-        np.testing.assert_allclose(last.particles.position, place, atol=1e-3)
-        assert (np.abs(last.particles.position) <= 0.5 * side + 1e-3).all()
-        np.testing.assert_allclose(last.particles.velocity, 1e-2 * run.molecule_velocity.values[-1][there], rtol=1e-5)
-
-
 def test_a_spreadsheet_has_the_same_numbers_under_their_units(box):
     made = {name: list(csv.reader(io.StringIO(text.decode()))) for name, text in tables(box).items()}
     assert set(made) == {"headlines", "elapsed_time", "speed"}
@@ -131,7 +107,6 @@ def test_the_command_writes_what_is_asked_for_and_replaces_nothing(tmp_path, mon
         return typed("export", "box.nc", *words)
 
     assert export().stdout == "box.extxyz\n"
-    assert export("-o", "moving.gsd").stdout == "moving.gsd\n"
     assert export("--format", "csv").stdout.split() == [
         f"box-{name}.csv" for name in tables(ab.open(tmp_path / "box.nc"))
     ]
@@ -143,7 +118,7 @@ def test_a_run_without_molecules_or_velocities_says_what_to_do(box):
     with pytest.raises(FileError, match="--save-molecules"):
         extended_xyz(bare)
     with pytest.raises(FileError, match="speeds and no velocities"):
-        gsd_file(box.drop_vars("molecule_velocity"))
+        extended_xyz(box.drop_vars("molecule_velocity"))
 
 
 def test_cf_xarray_finds_one_variable_for_a_standard_name(tmp_path):

@@ -29,7 +29,7 @@ LAYERS = {
     "engine": Layer("", "numpy numba llvmlite"),
     "errors": Layer(),
     "theory": Layer("", "numpy scipy", lazily="metpy"),
-    "file": Layer("version errors", "numpy xarray netCDF4", lazily="gsd"),
+    "file": Layer("version errors", "numpy xarray netCDF4"),
     "scenarios": Layer("errors"),
     "scene": Layer("engine errors theory", "numpy scipy pydantic", lazily="metpy pint xarray file"),
     "a scenario": Layer("engine errors theory scene", "numpy", lazily="xarray"),
@@ -189,7 +189,7 @@ def test_every_library_the_package_imports_is_a_dependency():
     carried = {"llvmlite", "rich", "pil", "ipython"}  # by numba, typer and matplotlib, and by a notebook
     extras = {
         re.match(r"[\w-]+", line).group().lower()
-        for extra in ("movie", "cluster", "export")
+        for extra in ("movie", "cluster")
         for line in project["optional-dependencies"][extra]
     }
     assert used - carried == declared | extras

@@ -13,13 +13,12 @@ from atmosbox.cli.output_name import beside
 from atmosbox.cli.terminal import say
 from atmosbox.text.progress import progress
 
-Exported = Literal["extxyz", "gsd", "csv"]
+Exported = Literal["extxyz", "csv"]
 """The formats of other programs."""
 
 
 @command(
     "atmosbox export temperature.nc --format extxyz",
-    "atmosbox export temperature.nc -o box.gsd",
     "atmosbox export lifting-dry.nc --format csv",
 )
 def export(
@@ -27,9 +26,7 @@ def export(
     out: Annotated[str | None, out_option("The file.  [default: beside FILE, by its name]")] = None,
     format: Annotated[
         Exported | None,
-        typer.Option(
-            help="extxyz and gsd hold the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."
-        ),
+        typer.Option(help="extxyz holds the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."),
     ] = None,
     force: Force = False,
     verbose: Verbose = False,
@@ -54,11 +51,11 @@ def export(
             write_whole(place, content)
         say("\n".join(map(str, paths)))
         return
-    place, kind = named(path, format, get_args(Exported), force=force, what="box")
+    place, _ = named(path, format, get_args(Exported), force=force, what="box")
     with progress("export", quiet=False) as show:
         show(0.0, "writing the molecules")
-        from atmosbox.file.trajectory import extended_xyz, gsd_file
+        from atmosbox.file.trajectory import extended_xyz
 
-        content = extended_xyz(dataset) if kind == "extxyz" else gsd_file(dataset)
+        content = extended_xyz(dataset)
     write_whole(place, content)
     say(str(place))

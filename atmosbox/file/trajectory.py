@@ -1,14 +1,12 @@
 """The molecules of a saved run for programs that show trajectories: OVITO and VMD.
 
-Extended XYZ is a text format that OVITO, VMD and ASE read; GSD is the binary format of HOOMD. Both are written in
-angstrom, picoseconds and dalton if the box is small, and in metres and kilograms if it is larger than a micrometre.
+Extended XYZ is a text format that OVITO, VMD and ASE read. It is written in angstrom, picoseconds and dalton if the
+box is small, and in metres and kilograms if it is larger than a micrometre.
 """
 
 from __future__ import annotations
 
 import io
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,7 +18,7 @@ from atmosbox.file.molecules import Molecules, molecules
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["extended_xyz", "gsd_file"]
+__all__ = ["extended_xyz"]
 
 _SMALL = 1e-6  # m; a box that is larger is written in metres
 _DALTON = 1.66053906892e-27  # kg, CODATA 2022
@@ -111,56 +109,3 @@ def extended_xyz(dataset: xr.Dataset) -> bytes:
             numbers = " ".join(f"{number:.7g}" for number in (*place[k], *motion[k], mass[k], radius[k]))
             text.write(f"{names[k]} {numbers} {k + 1}\n")
     return text.getvalue().encode()
-
-
-def gsd_file(dataset: xr.Dataset) -> bytes:
-    """Return the molecules of a run as a GSD file of the schema ``hoomd``.
-
-    The middle of the box is at the origin, as the schema demands. A molecule that is in the liquid is left out of the
-    frame.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A run with its molecules.
-
-    Returns
-    -------
-    bytes
-        The file.
-
-    Raises
-    ------
-    FileError
-        If the run holds no molecules or no velocities, or the library ``gsd`` is not installed.
-
-    References
-    ----------
-    https://gsd.readthedocs.io/en/stable/schema-hoomd.html
-    """
-    held = molecules(dataset)
-    velocity, unit = _velocity(dataset, held), _units(held)
-    try:
-        import gsd.hoomd
-    except ImportError as error:
-        fix = "type pip install 'atmosbox[export]', or give --format extxyz"
-        raise FileError(f"A GSD file needs the library gsd: {fix}.") from error
-    water = np.zeros(len(held.mass), bool) if held.water is None else held.water
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "run.gsd"
-        with gsd.hoomd.open(name=str(path), mode="w") as file:
-            for frame in range(len(held.time)):
-                there = np.isfinite(held.position[frame, :, 0])
-                side = held.side[frame] * unit.length
-                made = gsd.hoomd.Frame()
-                made.configuration.step = frame
-                made.configuration.box = [*side, 0.0, 0.0, 0.0]
-                made.particles.N = int(there.sum())
-                made.particles.types = list(_NAMES)
-                made.particles.typeid = water[there].astype(np.uint32)
-                made.particles.position = held.position[frame][there] * unit.length - 0.5 * side
-                made.particles.velocity = velocity[frame][there] * unit.velocity
-                made.particles.mass = held.mass[there] * unit.mass
-                made.particles.diameter = held.diameter[there] * unit.length
-                file.append(made)
-        return path.read_bytes()

@@ -30,44 +30,14 @@ def machine(name: str) -> str:
 @job("speed", quick=True)
 def speed(found: Findings) -> None:
     """Make the tables of what the benchmarks have measured."""
-    paces, features = results("engine"), results("features")
     rows = [
         [CASES[r["case"]], f"{r['packing_fraction']:g}", f"{r['molecules']:,}",
          f"{r['collisions_per_second'] / 1e3:.0f}", f"{r['ratio']:.2f}", f"{r['bytes_per_molecule']:.0f}"]
-        for r in paces
+        for r in results("engine")
     ]  # fmt: skip
     head = ["gas", "packing fraction", "molecules", "thousand collisions per CPU second", "over the pace without rows"]
     found.table([*head, "bytes per molecule"], rows)
     found.number("machine", machine("engine"))
-    off = features["off"]
-    rows = []
-    for name, each in features["on"].items():
-        idle = off.get(each["shows"])
-        rows.append(
-            [
-                name,
-                f"{each['ns']:.0f}",
-                ratio(each),
-                ratio(idle) if idle else "–",
-                f"{each['bytes']:.0f}",
-                each["lines"],
-            ]
-        )
-    head = ["gas", "nanoseconds per collision", "over the plain gas", "off: engine as it is over one without it"]
-    found.table([*head, "bytes per molecule", "lines of code"], rows, key="features")
-    rows = [
-        [name, f"{each['ns']:.0f}", ratio(each), f"{each['bytes']:.0f}", each["lines"]]
-        for name, each in features["instruments"].items()
-    ]
-    head = ["instrument", "nanoseconds per collision", "over the scene without it", "bytes per molecule and frame"]
-    found.table([*head, "more lines of code"], rows, key="instruments")
-    found.number("control", ratio(off["nothing"]))
-    found.number("points", features["lines_of_points"])
-
-
-def ratio(each: dict[str, float]) -> str:
-    """Return a ratio with its standard error."""
-    return f"{each['ratio']:.3f} ± {each['error']:.3f}"
 
 
 @job("waiting", quick=True)
