@@ -1,38 +1,44 @@
 """The figure of a sweep: curves, families of curves, fields, words, and sweeps that cannot be drawn."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import xarray as xr
 
 from atmosbox.errors import FileError
 from atmosbox.file.netcdf import read, write
 from atmosbox.plot import save
 from atmosbox.plot.sweep_figure import figure, is_sweep
 from atmosbox.sweep import plan
-from atmosbox.sweep.result import assemble
+from atmosbox.sweep.result import join
 
 LABELS = {"mean_temperature": ("K", "degC", "temperature"), "mean_pressure": ("Pa", "hPa", "pressure")}
+
+
+def measured(headlines):
+    """Return what a run has measured: value, standard error and theory by name, with unit, shown unit and label."""
+    made = {}
+    for name, (value, error, theory, unit, shown, label) in headlines.items():
+        made[name] = ((), value, {"units": unit, "display_units": shown, "long_name": label})
+        made |= {f"{name}_se": error, f"{name}_tolerance": 0.0}
+        made |= {} if theory is None else {f"{name}_theory": theory}
+    return xr.Dataset({**made, "ledger": 1e-15}, attrs={"names": list(headlines)})
 
 
 def swept(vary, members=4, law=lambda values: (300.0, 1e5), theory=True, settings=None):
     """Return a sweep whose runs scatter about a law of the settings."""
     grid = plan("temperature", vary, members=members, settings=settings)
     rng = np.random.default_rng(1)
-    records = []
-    for task in grid.tasks():
-        answers = law(grid.values(task.point))
-        headlines = []
-        for (name, (unit, shown, label)), answer in zip(LABELS.items(), answers, strict=True):
-            error = 0.01 * answer
-            headlines.append(
-                {
-                    "name": name, "value": answer + error * rng.normal(), "standard_error": error,
-                    "theory": answer if theory else None, "tolerance": 0.0, "reason": "none", "unit": unit,
-                    "display_unit": shown, "label": label,
-                }
-            )  # fmt: skip
-        about = {"point": task.point, "member": task.member, "seed": task.settings["seed"], "status": "complete"}
-        records.append({**about, "ledger": 1e-15, "headlines": headlines})
-    return assemble(grid, records, history=["then: atmosbox sweep"])
+    rows = {}
+    for task in grid.tasks(Path()):
+        rows[task.point, task.member] = measured(
+            {
+                name: (answer + 0.01 * answer * rng.normal(), 0.01 * answer, answer if theory else None, *words)
+                for (name, words), answer in zip(LABELS.items(), law(grid.values(task.point)), strict=True)
+            }
+        )
+    return join(grid, rows, {}, "then: atmosbox sweep")
 
 
 def by_temperature(values):
@@ -77,19 +83,14 @@ SLAB = {
 def slabs(names=tuple(SLAB), vary="temperature=111.4K,123.8K,136.2K"):
     """Return a sweep over slabs of liquid with the results of six real runs."""
     grid = plan("attraction", [vary], members=1, settings={"start": "slab", "density": 1.0})
-    records = []
-    for task in grid.tasks():
-        headlines = [
-            {
-                "name": name, "value": SLAB[name][2][task.point - 1], "standard_error": SLAB[name][3][task.point - 1],
-                "theory": None, "tolerance": 0.0, "reason": "none", "unit": SLAB[name][0],
-                "display_unit": SLAB[name][1], "label": name,
-            }
-            for name in names
-        ]  # fmt: skip
-        about = {"point": task.point, "member": task.member, "seed": task.settings["seed"], "status": "complete"}
-        records.append({**about, "ledger": 1e-15, "headlines": headlines})
-    return assemble(grid, records, history=["then: atmosbox sweep"])
+    rows = {}
+    for task in grid.tasks(Path()):
+        found = {}
+        for name in names:
+            unit, shown, values, errors = SLAB[name]
+            found[name] = (values[task.point - 1], errors[task.point - 1], None, unit, shown, name)
+        rows[task.point, task.member] = measured(found)
+    return join(grid, rows, {}, "then: atmosbox sweep")
 
 
 def test_vapour_pressures_are_drawn_over_one_over_temperature_with_the_slope_of_each_run():
@@ -185,4 +186,4 @@ def test_what_cannot_be_drawn_is_said():
     with pytest.raises(FileError, match="at most two settings"):
         figure(swept(["temperature=0,20", "molecules=10,20", "start=equal,maxwell"]))
     with pytest.raises(FileError, match="no run of this sweep has measured anything"):
-        figure(assemble(plan("temperature", ["temperature=0,20"]), []))
+        figure(join(plan("temperature", ["temperature=0,20"]), {}, {}))

@@ -29,7 +29,7 @@ from atmosbox.text.table import measurement, number, table, wrapped
 if TYPE_CHECKING:
     import xarray as xr
 
-    from atmosbox.sweep import Plan, SweepInterrupted, Swept
+    from atmosbox.sweep import Plan, Swept
 
 _MOST_NAMED = 5
 """Largest number of failures that are printed one by one."""
@@ -76,12 +76,11 @@ def sweep(
 ) -> None:
     """Run a scene with many settings: how its numbers depend on them.
 
-    Every run is saved as it ends, and its state before that. A stopped sweep continues where it was when the same
-    command is typed again. The file has the settings that vary as dimensions; `atmosbox plot` draws
-    it.
+    Every run is a file in a folder beside the one that joins them. A stopped sweep goes on where it was when the same
+    command is typed again, and runs that are there are not repeated. `atmosbox plot` draws the joined file.
     """
     from atmosbox.scene.spelling import assignments
-    from atmosbox.sweep import SweepInterrupted, plan
+    from atmosbox.sweep import SweepInterrupted, folder_of, plan
     from atmosbox.sweep import sweep as run
 
     with prints_to_stderr():
@@ -112,7 +111,7 @@ def sweep(
                 command=typed(ctx),
             )
     except SweepInterrupted as stop:
-        _say_interrupted(stop, grid, path)
+        tell(f"stopped: {stop.saved} of {grid.runs} runs are saved in {folder_of(path)}, type the same again to go on")
         raise typer.Exit(stop.exit_code) from stop
     _say(grid, swept, path, as_json=as_json, quiet=quiet)
     _judge(grid, swept, path)
@@ -140,11 +139,11 @@ def _describe(grid: Plan, path: Path, *, as_json: bool, quiet: bool) -> None:
     if quiet:
         say(str(path))
         return
-    rows = [[*grid.typed(point), grid.refused.get(point, "")] for point in range(1, grid.points + 1)]
+    rows = [list(grid.typed(point)) for point in range(1, grid.points + 1)]
     lines = [
         f"{grid.scene}: {grid.title}",
         "",
-        *table([*names, "refused" if grid.refused else ""], rows, width()),
+        *table(names, rows, width()),
         "",
         f"runs: {grid.runs}, {grid.members} at each of {grid.points} points",
         f"file: {path} (not written: this is a dry run)",
@@ -185,55 +184,35 @@ def records(grid: Plan, dataset: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def lines(grid: Plan, dataset: xr.Dataset, columns: int) -> list[str]:
-    """Return a table of the points: the mean of the members with its standard error, and theory beside it."""
+    """Return a table for each headline: at each point the mean of the members with its standard error, and theory."""
     from atmosbox.scene.conversion import from_si
     from atmosbox.sweep import FEWEST
 
-    names = _headlines(dataset)
-    header = [axis.name for axis in grid.axes]
-    for name in names:
-        attributes = dataset[name].attrs
-        shown = attributes["display_units"]
-        header.append(f"{attributes['long_name']}{'' if shown == '1' else f' [{shown}]'}")
-        header += ["theory"] if f"{name}_theory" in dataset else []
-    body = []
-    for point in range(1, grid.points + 1):
-        cells = [*grid.typed(point)]
-        for name in names:
-            unit = str(dataset[name].attrs["display_units"])
-            mean, error = (float(dataset[key].values.ravel()[point - 1]) for key in (name, f"{name}_se"))
-            scaled = from_si(mean, unit), from_si(error, unit, difference=True)
-            cells.append(measurement(*scaled) if math.isfinite(mean) else "-")
-            if f"{name}_theory" in dataset:
-                answer = float(dataset[f"{name}_theory"].values.ravel()[point - 1])
-                cells.append(number(from_si(answer, unit)) if math.isfinite(answer) else "-")
-        body.append(cells)
-    words = "a single run ± its standard error"
+    made = []
+    for name in _headlines(dataset):
+        unit = str(dataset[name].attrs["display_units"])
+        known = f"{name}_theory" in dataset
+        parts = [name, f"{name}_se", *([f"{name}_theory"] if known else [])]
+        rows = []
+        for point, found in enumerate(zip(*(dataset[part].values.ravel() for part in parts), strict=True), start=1):
+            mean, error = from_si(float(found[0]), unit), from_si(float(found[1]), unit, difference=True)
+            cells = [measurement(mean, error) if math.isfinite(mean) else "no run"]
+            cells += [number(from_si(float(answer), unit)) for answer in found[2:]]
+            rows.append([*grid.typed(point), *cells])
+        shown = "" if unit == "1" else f" [{unit}]"
+        made += [f"{dataset[name].attrs['long_name']}{shown}"]
+        made += [*table([*(axis.name for axis in grid.axes), "measured", *["theory"] * known], rows, columns), ""]
+    words = "measured: a single run ± its standard error"
     if grid.members > 1:
         source = "own error bars" if grid.members < FEWEST else "scatter"
-        words = f"mean of {grid.members} runs ± its standard error, from their {source}"
-    return [*table(header, body, columns), "", *wrapped(words, columns)]
+        words = f"measured: mean of {grid.members} runs ± its standard error, from their {source}"
+    return [*made, *wrapped(words, columns)]
 
 
 def _headlines(dataset: xr.Dataset) -> list[str]:
     from atmosbox.file.provenance import parameters
 
     return [str(name) for name in parameters(dataset)["sweep"]["headlines"]]
-
-
-def _say_interrupted(stop: SweepInterrupted, grid: Plan, path: Path) -> None:
-    """Print what has been saved of a sweep that was stopped, and how to continue it."""
-    from atmosbox.file.output_path import part_path
-    from atmosbox.text.report import next_command
-
-    if stop.swept is None:
-        tell("stopped before the first run was complete: type the same again to go on")
-        return
-    saved = stop.swept.computed + stop.swept.recalled
-    tell(
-        f"stopped: {saved} of {grid.runs} runs are saved, type the same again to go on; to see them: "
-        f"{next_command('plot', part_path(path))}"
-    )
 
 
 def _judge(grid: Plan, swept: Swept, path: Path) -> None:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from atmosbox.errors import SettingError, UnitError
+from atmosbox.errors import SettingError, UnitError, UnknownSettingError
 from atmosbox.scene.conversion import from_si, to_si
 from atmosbox.scene.parameter import Parameter, Value
-from atmosbox.scene.quantity import typed
+from atmosbox.scene.settings import SceneSettings
 from atmosbox.scene.spelling import field_name
 
 __all__ = ["LONGEST", "Axis", "parse_vary"]
@@ -58,12 +58,8 @@ class Axis:
         """The numbers in SI units."""
         return tuple(to_si(float(value), self.parameter.unit) for value in self.values)
 
-    def typed(self, index: int) -> str:
-        """Return a value as it is typed after ``--set name=``."""
-        return self.parameter.typed(self.values[index])
 
-
-def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tuple[Axis, ...]:
+def parse_vary(items: Iterable[str], settings: type[SceneSettings]) -> tuple[Axis, ...]:
     """Return the settings that vary, from the texts after each ``--vary``.
 
     Parameters
@@ -71,8 +67,8 @@ def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tup
     items
         ``name=a:b:n`` for n values from a to b with equal differences, ``name=a:b:nlog`` for n values with equal
         ratios, or ``name=x,y,z`` for these values. Numbers may have units as after ``--set``.
-    parameters
-        The settings of the scene by name.
+    settings
+        The settings of the scene.
 
     Returns
     -------
@@ -88,53 +84,44 @@ def parse_vary(items: Iterable[str], parameters: Mapping[str, Parameter]) -> tup
 
     Examples
     --------
-    >>> settings = {
-    ...     "molecules": Parameter("molecules", "1", 4000, 50, 10**6, kind="int"),
-    ...     "start": Parameter("start", "", "equal", choices=("equal", "maxwell"), kind="str"),
-    ... }
-    >>> grid = parse_vary(["molecules=100:10000:3log", "start=equal,maxwell"], settings)
+    >>> from atmosbox import scenarios
+    >>> grid = parse_vary(["molecules=100:10000:3log", "start=equal,maxwell"], scenarios.load("temperature").Settings)
     >>> [axis.values for axis in grid]
     [(100, 1000, 10000), ('equal', 'maxwell')]
     """
+    parameters = {p.name: p for p in settings.describe()}
     axes: list[Axis] = []
     for item in items:
         name, equals, text = (part.strip() for part in item.partition("="))
         name = field_name(name)
         if not (name and equals and text):
             lacks = "name" if equals and not name else "values" if equals else '"=" between name and values'
-            fix = f"give --vary {name}={_example(parameters[name])}" if name in parameters else _USUAL
-            raise SettingError(f"--vary {item}", None, f"has no {lacks}", fix)
+            raise SettingError(f"--vary {item}", None, f"has no {lacks}", _fix(parameters.get(name)))
         if name == "seed":
             raise SettingError("--vary seed", None, "is what the members vary already", "give --members 8 instead")
         if name in (axis.name for axis in axes):
             raise SettingError(f"--vary {name}", None, "is given twice", f"give --vary {name} once")
-        parameter = parameters[name]
         try:
-            axes.append(Axis(parameter, _values(text, parameter)))
+            if name not in parameters:
+                settings.from_user({name: text})  # raises the error that names the most similar setting
+            axes.append(Axis(parameters[name], _values(text, parameters[name])))
+        except UnknownSettingError as error:
+            error.fix = error.fix.replace("--set ", "--vary ")
+            raise
         except SettingError as error:
-            error.fix = f"give --vary {name}={_example(parameter)}"
+            error.fix = _fix(parameters[name])
             raise
     return tuple(axes)
 
 
-_USUAL = "give --vary name=a:b:n, such as --vary temperature=0degC:40degC:5"
-
-
-def _example(parameter: Parameter) -> str:
-    """Return an example of allowed values of a setting, as they are typed."""
-    if parameter.kind == "bool":
-        return "on,off"
-    if parameter.kind == "str":
-        return ",".join(parameter.choices or (str(parameter.default),))
-    default = float(parameter.default)
-    ends = sorted((default, 2.0 * default if default else 10.0))
-    low = ends[0] if parameter.low is None else max(ends[0], parameter.low)
-    high = ends[1] if parameter.high is None else min(ends[1], parameter.high)
-    if not low < high:
-        low, high = (default if end is None else end for end in (parameter.low, parameter.high))
-    whole = parameter.kind == "int"
-    first, last = (typed(int(end) if whole else end, parameter.unit) for end in (low, high))
-    return f"{first}:{last}:{min(5, int(high - low) + 1) if whole else 5}"
+def _fix(parameter: Parameter | None) -> str:
+    """Return what to type instead."""
+    if parameter is None:
+        return "give --vary name=a:b:n, such as --vary temperature=0degC:40degC:5"
+    if parameter.kind in ("int", "float"):
+        return f"give --vary {parameter.name}=a:b:n or x,y,z, such as {parameter.typed(parameter.default)}"
+    allowed = ("on", "off") if parameter.kind == "bool" else parameter.choices or (str(parameter.default),)
+    return f"give --vary {parameter.name}={','.join(allowed)}"
 
 
 def _values(text: str, parameter: Parameter) -> tuple[Value, ...]:

@@ -1,30 +1,31 @@
-"""A sweep from its first run to its file: every run is saved when it ends, and saved runs are not computed again."""
+"""A sweep from its first run to its file: each run has a file of its own, and runs that have one are not repeated."""
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable, Generator, Sequence
-from contextlib import closing
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
-from atmosbox.errors import SettingError
+from atmosbox.errors import FileError, SettingError, shown
 from atmosbox.file.checkpoint import Checkpoint
-from atmosbox.file.journal import Journal
+from atmosbox.file.netcdf import read
+from atmosbox.file.output_path import part_path, write_whole
 from atmosbox.file.provenance import history_line
-from atmosbox.file.run_states import RunStates
 from atmosbox.simulation.recording import uninterrupted
-from atmosbox.sweep import local
-from atmosbox.sweep.member import FAILED, Record
-from atmosbox.sweep.plan import Plan, Task
-from atmosbox.sweep.result import assemble
+from atmosbox.sweep import workers
+from atmosbox.sweep.plan import Plan
+from atmosbox.sweep.result import join, row
 
-__all__ = ["SweepInterrupted", "Swept", "sweep"]
+__all__ = ["SweepInterrupted", "Swept", "folder_of", "sweep"]
 
-_EVERY = 10.0
-"""Shortest time between two writings of the partial dataset [s]."""
+REQUEST = "sweep.json"
+"""The file in the folder of a sweep that tells which sweep it is."""
 
 Progress = Callable[[float, str], None]
 
@@ -36,7 +37,7 @@ class Swept(NamedTuple):
     failures: tuple[tuple[int, int, str], ...]
     """Point, member and reason of every run that failed."""
     ledger: float
-    """The largest residual of the energy ledger of any run."""
+    """The largest residual of the energy budget of any run."""
     computed: int
     """Number of runs that this call has computed."""
     recalled: int
@@ -44,12 +45,23 @@ class Swept(NamedTuple):
 
 
 class SweepInterrupted(KeyboardInterrupt):
-    """A sweep was stopped by Ctrl-C; ``swept`` holds the runs that have ended, None if there are none."""
+    """A sweep was stopped by Ctrl-C; ``saved`` is the number of runs that are complete."""
 
-    def __init__(self, swept: Swept | None, exit_code: int = 130) -> None:
+    def __init__(self, saved: int, exit_code: int = 130) -> None:
         super().__init__("the sweep was interrupted")
-        self.swept = swept
+        self.saved = saved
         self.exit_code = exit_code
+
+
+def folder_of(path: str | os.PathLike[str]) -> Path:
+    """Return the folder with the runs of a sweep, beside the file that joins them.
+
+    Examples
+    --------
+    >>> str(folder_of("condensation-sweep.nc"))
+    'condensation-sweep'
+    """
+    return Path(path).with_suffix("")
 
 
 def sweep(
@@ -63,11 +75,11 @@ def sweep(
     note: Callable[[str], None] | None = None,
     command: str = "",
 ) -> Swept:
-    """Run all members of a sweep, on the cores of this machine or on a cluster.
+    """Run all members of a sweep, on the cores of this machine or on a cluster, and join them.
 
-    Every run is saved when it ends, in ``NAME.part.jsonl`` beside the file; runs under way save their states in the
-    folder ``NAME.part.states``. The same call continues where an earlier one stopped, for whatever reason, and its
-    results are the same, bit for bit.
+    Every run writes its own netCDF file, ``NAME/POINT-MEMBER.nc`` beside NAME.nc, and saves its state on the way. The
+    same call goes on where an earlier one stopped, for whatever reason, and the results are the same, bit for bit. With
+    more members, the runs that are there are used.
 
     Parameters
     ----------
@@ -81,7 +93,7 @@ def sweep(
     scheduler
         Address of a Dask scheduler, whose workers run the members instead.
     force
-        Whether a file of that name may be replaced, and a journal of another sweep deleted.
+        Whether the file and the runs of another sweep may be replaced.
     progress
         Called with the share that is done and a short text on the present step.
     note
@@ -97,9 +109,9 @@ def sweep(
     Raises
     ------
     SweepInterrupted
-        After Ctrl-C, with the runs that have ended.
+        After Ctrl-C.
     AtmosboxError
-        If a file cannot be written, its journal belongs to another sweep, or the workers cannot be reached.
+        If a file cannot be written, the folder holds another sweep, or the workers cannot be reached.
 
     Examples
     --------
@@ -111,119 +123,113 @@ def sweep(
     ({'molecules': 2, 'member': 1}, (), True)
     """
     if jobs is not None and jobs < 1:
-        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {local.cores()}")
+        raise SettingError("jobs", jobs, "is no number of processes", f"give --jobs {workers.cores()}")
     if jobs is not None and scheduler is not None:
         raise SettingError("jobs", jobs, "is for this machine, and --scheduler for another", "leave one of them out")
-    line = history_line(command or f"atmosbox.sweep.sweep({plan.scene!r}, ...)")
+    tell, say = progress or (lambda share, word: None), note or (lambda text: None)
+    with _folder(plan, out, force) as (folder, checkpoint):
+        tasks = plan.tasks(folder)
+        waiting = [task for task in tasks if not os.path.exists(task.path)]
+        recalled = len(tasks) - len(waiting)
+        begun = sum(part_path(task.path).exists() for task in waiting)
+        if recalled or begun:
+            also = f" and {begun} begun" if begun else ""
+            say(f"{recalled} of {plan.runs} runs are saved in {folder}{also}: going on with the rest")
+        failed: dict[tuple[int, int], str] = {}
+        warned: set[str] = set()
+        ended = recalled
+
+        def watch(share: float, word: str) -> None:
+            tell(min((ended + share) / plan.runs, 1.0), word)
+
+        number = min(jobs or workers.cores(), len(waiting))
+        runs = (
+            workers.on_cluster(waiting, scheduler, watch)
+            if scheduler is not None
+            else workers.processes(waiting, number, watch)
+            if number > 1
+            else workers.here(waiting, watch)
+        )
+        try:
+            with closing(runs):
+                for done in runs:
+                    ended += 1
+                    if done.reason:
+                        failed[done.task.point, done.task.member] = done.reason
+                    for text in set(done.warnings) - warned:
+                        warned.add(text)
+                        say(f"warning: {text}")
+                    watch(0.0, "running")
+        except KeyboardInterrupt as stop:
+            saved = sum(os.path.exists(task.path) for task in tasks)
+            raise SweepInterrupted(saved, getattr(stop, "exit_code", 130)) from None
+        line = history_line(command or f"atmosbox.sweep.sweep({plan.scene!r}, ...)")
+        with uninterrupted():
+            rows = {(task.point, task.member): row(read(task.path)) for task in tasks if os.path.exists(task.path)}
+            empty = "The run was too short for any of its headlines to be measured."
+            failed |= {key: empty for key, found in rows.items() if not found.attrs["names"]}
+            if out is not None and os.path.exists(out):
+                line = f"{read(out).attrs['history']}\n{line}"
+            dataset = join(plan, rows, failed, line)
+            if checkpoint is not None:
+                checkpoint.finish(dataset)
+    tell(1.0, "done")
+    ledger = float(dataset["member_ledger"].max(skipna=True).fillna(0.0))
+    failures = tuple((*key, why) for key, why in sorted(failed.items()))
+    return Swept(dataset, failures, ledger, len(waiting), recalled)
+
+
+@contextmanager
+def _folder(plan: Plan, out: str | os.PathLike[str] | None, force: bool) -> Iterator[tuple[Path, Checkpoint | None]]:
+    """Yield the folder for the runs, and the file to write; without a file, a folder that is removed at the end."""
     if out is None:
-        return _Conductor(plan, None, None, [line], progress, note).conduct(jobs, scheduler)
-    checkpoint = Checkpoint(Path(out), _EVERY, force=force)
+        with tempfile.TemporaryDirectory(prefix="atmosbox-sweep-") as temporary:
+            yield Path(temporary), None
+        return
+    path = Path(out)
+    folder = folder_of(path)
+    checkpoint = Checkpoint(path, force=force or (folder / REQUEST).exists())
     with uninterrupted():
         checkpoint.load_libraries()
     checkpoint.begin()
     try:
-        with Journal(checkpoint.path, plan.request(), line, force=force) as journal:
-            return _Conductor(plan, journal, checkpoint, journal.history, progress, note).conduct(jobs, scheduler)
+        _take(folder, plan.request(), force)
+        yield folder, checkpoint
     finally:
         checkpoint.release()
 
 
-class _Conductor:
-    """A sweep under way."""
+def _take(folder: Path, request: Mapping[str, Any], force: bool) -> None:
+    """Make the folder of a sweep, or go on with it if it is of the same sweep.
 
-    def __init__(
-        self,
-        plan: Plan,
-        journal: Journal | None,
-        checkpoint: Checkpoint | None,
-        history: Sequence[str],
-        progress: Progress | None,
-        note: Callable[[str], None] | None,
-    ) -> None:
-        self.plan, self.journal, self.checkpoint = plan, journal, checkpoint
-        self.records: dict[tuple[int, int], Record] = {} if journal is None else dict(journal.records)
-        self.recalled = len(self.records)
-        self.history = history
-        self.tell = progress or (lambda share, word: None)
-        self.note = note or (lambda text: None)
-        self.warned: set[str] = set()
-        self.states = RunStates(None if checkpoint is None else checkpoint.path, self.records)
+    Raises
+    ------
+    FileError
+        If it holds anything else; with `force`, the runs of another sweep are removed.
+    """
+    file = folder / REQUEST
+    wanted = json.loads(json.dumps(dict(request)))
+    try:
+        folder.mkdir(exist_ok=True)
+        known = json.loads(file.read_bytes()) if file.exists() else None
+    except (OSError, ValueError) as error:
+        raise FileError(f"{folder} is in the way of the sweep's runs ({error}): move it, or give --out.") from error
+    if known == wanted:
+        return
+    if known is None and any(folder.iterdir()):
+        raise FileError(f"{folder} holds other things than a sweep: move it, or name another file with --out.")
+    if known is not None and not force:
+        raise FileError(
+            f"{folder} has the runs of another sweep, {_difference(known, wanted)}: name another file with --out, "
+            "or add --force to replace them."
+        )
+    for old in folder.glob("*.nc"):
+        old.unlink()
+    write_whole(file, json.dumps(wanted, indent=1).encode())
 
-    def conduct(self, jobs: int | None, scheduler: str | None) -> Swept:
-        """Run the members that have no record yet, and write the file."""
-        tasks = [task for task in self.plan.tasks() if (task.point, task.member) not in self.records]
-        tasks = [task._replace(state=self.states.place(task.point, task.member)) for task in tasks]
-        if self.journal is not None and (self.recalled or self.states.begun):
-            begun = f" and {self.states.begun} begun" if self.states.begun else ""
-            self.note(
-                f"{self.recalled} of {self.plan.runs} runs are saved in {self.journal.path}{begun}: going on with the "
-                "rest"
-            )
-        try:
-            if tasks:
-                with closing(self._stream(tasks, jobs, scheduler)) as stream:
-                    for record in stream:
-                        self._keep(record)
-            swept = self._swept("complete")
-        except KeyboardInterrupt as stop:
-            with uninterrupted():
-                saved = self._stopped()
-            raise SweepInterrupted(saved, getattr(stop, "exit_code", 130)) from None
-        if self.checkpoint is not None and self.journal is not None:
-            with uninterrupted():
-                self.checkpoint.finish(swept.dataset)
-                self.journal.remove()
-                self.states.close(everything=True)
-        self.tell(1.0, "done")
-        return swept
 
-    def _stream(self, tasks: list[Task], jobs: int | None, scheduler: str | None) -> Generator[Record]:
-        """Yield the records of some runs when they end, from a cluster or from this machine."""
-        if scheduler is not None:
-            from atmosbox.sweep.cluster import remote
-
-            return remote(tasks, scheduler, self._watch)
-        jobs = min(jobs or local.cores(), len(tasks))
-        return local.here(tasks, self._watch) if jobs == 1 else local.processes(tasks, jobs, self._watch)
-
-    def _watch(self, share: float, word: str) -> None:
-        self.tell(min((len(self.records) + share) / self.plan.runs, 1.0), word)
-
-    def _keep(self, record: Record) -> None:
-        """Save a run that has ended."""
-        with uninterrupted():
-            if self.journal is not None:
-                self.journal.append(record)
-            self.states.remove(record["point"], record["member"])
-            self.records[record["point"], record["member"]] = record
-        for text in record.get("warnings", ()):
-            if text not in self.warned:
-                self.warned.add(text)
-                self.note(f"warning: {text}")
-        if self.checkpoint is not None:
-            self.checkpoint(lambda: self._dataset("partial"))
-        self._watch(0.0, "running")
-
-    def _stopped(self) -> Swept | None:
-        """Write the dataset of the runs that have ended, and return it; None if there are none."""
-        self.states.close()
-        if not self.records:
-            return None
-        swept = self._swept("interrupted")
-        if self.checkpoint is not None:
-            self.checkpoint.save(swept.dataset)
-        return swept
-
-    def _dataset(self, status: str) -> xr.Dataset:
-        return assemble(self.plan, self.records.values(), history=self.history, status=status)
-
-    def _swept(self, status: str) -> Swept:
-        failed = [
-            (point, member, why)
-            for point, why in self.plan.refused.items()
-            for member in range(1, self.plan.members + 1)
-        ]
-        failed += [(*key, record["reason"]) for key, record in self.records.items() if record["status"] == FAILED]
-        ledger = max((record["ledger"] for record in self.records.values() if "ledger" in record), default=0.0)
-        computed = len(self.records) - self.recalled
-        return Swept(self._dataset(status), tuple(sorted(failed)), ledger, computed, self.recalled)
+def _difference(saved: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
+    """Return in words the first part in which two sweeps differ."""
+    name = next(name for name in [*saved, *asked] if saved.get(name) != asked.get(name))
+    before, now = ("not given" if each.get(name) is None else shown(each[name]) for each in (saved, asked))
+    return f"with {name} {before} and not {now}"

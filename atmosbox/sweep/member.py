@@ -1,87 +1,86 @@
-"""One run of a sweep, and its record."""
+"""One run of a sweep: it writes a netCDF file, or tells why it could not."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import Any
+from typing import NamedTuple
 
-from atmosbox.errors import AtmosboxError
-from atmosbox.simulation import runner
-from atmosbox.simulation.continuation import execute_from
-from atmosbox.sweep.plan import Task
+from atmosbox.errors import AtmosboxError, FileError
+from atmosbox.file.checkpoint import Checkpoint
+from atmosbox.scene.parameter import Value
+from atmosbox.simulation.preparation import Prepared, build, prepare
+from atmosbox.simulation.restart import check_alike, read_state
+from atmosbox.simulation.runner import execute
 
-__all__ = ["COMPLETE", "FAILED", "Progress", "Record", "failure", "run"]
-
-COMPLETE, FAILED = "complete", "failed"
-
-Record = dict[str, Any]
-"""The record of a run, in types that JSON can hold."""
-
-Progress = Callable[[float, str], None]
-
-_KEPT = ("name", "value", "standard_error", "theory", "tolerance", "reason", "unit", "display_unit", "label")
+__all__ = ["Done", "Task", "compile_first", "run"]
 
 
-def run(task: Task, progress: Progress | None = None) -> Record:
-    """Run one member of a sweep, from the saved state of an earlier call if there is one; a failure raises no error.
+class Task(NamedTuple):
+    """One run of a sweep, as it is sent to the process that computes it.
 
-    Parameters
-    ----------
-    task
-        The run.
-    progress
-        Called with the share that is done and a short text on the present step.
+    ``point`` and ``member`` count from 1; the last of the varied settings varies fastest from point to point. ``path``
+    is the file that the run writes.
+    """
 
-    Returns
-    -------
-    dict
-        ``point``, ``member``, ``seed`` and ``status``; for a complete run also its ``ledger``, ``headlines`` and
-        ``warnings``, for a failed one the ``reason``.
+    point: int
+    member: int
+    scene: str
+    settings: dict[str, Value]
+    engine: str | None
+    accuracy: str | None
+    path: str
+
+    def prepared(self) -> Prepared:
+        """Return the scene, ready to run."""
+        return prepare(self.scene, self.settings, engine=self.engine, accuracy=self.accuracy)
+
+
+class Done(NamedTuple):
+    """A run that has ended: the reason if it failed, empty if it is complete, and its warnings."""
+
+    task: Task
+    reason: str = ""
+    warnings: tuple[str, ...] = ()
+
+
+def run(task: Task, progress: Callable[[float, str], None] | None = None) -> Done:
+    """Run one member and write its file; go on from the state that an earlier call has saved, if there is one.
 
     Raises
     ------
-    runner.Interrupted
-        After Ctrl-C.
-
-    Examples
-    --------
-    >>> box = Task(1, 1, "elastic-collisions", {"duration": 5.0, "seed": 3}, None, None)
-    >>> made = run(box)
-    >>> made["status"], made["ledger"] < 1e-10, made["headlines"][0]["name"]
-    ('complete', True, 'energy_of_light_discs')
+    FileError
+        If the file cannot be written: then no other member can be saved either.
+    KeyboardInterrupt
+        After Ctrl-C; what is complete is saved in the part of the file.
     """
+    reason = ""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            prepared = task.prepared()
+            checkpoint, restart = Checkpoint(task.path, force=True), None
+            if checkpoint.part.exists():
+                try:
+                    restart = read_state(checkpoint.part)
+                    check_alike(restart, prepared)
+                except FileError:  # damaged, or of another version: the run begins again
+                    restart = None
+            execute(prepared, checkpoint=checkpoint, progress=progress, restart=restart)
+        except FileError:
+            raise
+        except AtmosboxError as error:
+            reason = str(error)
+        except MemoryError:
+            reason = "The computer has not enough memory for it."
+        except Exception as error:
+            reason = f"This is a bug in atmosbox or in your own scene ({type(error).__name__}: {error})."
+    return Done(task, " ".join(reason.split()), tuple(sorted({str(each.message) for each in caught})))
+
+
+def compile_first(task: Task) -> None:
+    """Build the box of a run, so that its kernels are compiled once and not by all processes at the same time."""
     try:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            prepared = runner.prepare(task.scene, task.settings, engine=task.engine, accuracy=task.accuracy)
-            outcome = execute_from(prepared, task.state, progress)
-    except AtmosboxError as error:
-        return failure(task, str(error))
-    except MemoryError:
-        return failure(task, "The computer has not enough memory for it.")
-    except Exception as error:
-        return failure(task, f"This is a bug in atmosbox or in your own scene ({type(error).__name__}: {error}).")
-    if not outcome.headlines:
-        return failure(task, "The run was too short for any of its headlines to be measured.")
-    return {
-        **_about(task, COMPLETE),
-        "ledger": outcome.ledger,
-        "headlines": [{name: getattr(each, name) for name in _KEPT} for each in outcome.headlines],
-        "warnings": sorted({str(each.message) for each in caught}),
-    }
-
-
-def failure(task: Task, reason: str) -> Record:
-    """Return the record of a run that failed.
-
-    Examples
-    --------
-    >>> failure(Task(2, 1, "temperature", {"seed": 3}, None, None), "It stalled.")["reason"]
-    'It stalled.'
-    """
-    return {**_about(task, FAILED), "reason": " ".join(reason.split())}
-
-
-def _about(task: Task, status: str) -> Record:
-    return {"point": task.point, "member": task.member, "seed": task.settings["seed"], "status": status}
+        build(task.prepared()).parcel.advance(0.0)
+    except Exception:
+        return  # the run itself tells what is wrong

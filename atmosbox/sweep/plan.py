@@ -2,44 +2,29 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from atmosbox import scenarios
-from atmosbox.errors import SettingError, UnknownSettingError
+from atmosbox.errors import SettingError
 from atmosbox.scene.parameter import Value
+from atmosbox.scene.spelling import field_name
 from atmosbox.simulation.preparation import Prepared, prepare
+from atmosbox.simulation.restart import described
 from atmosbox.sweep.axis import Axis, parse_vary
-from atmosbox.version import __version__
+from atmosbox.sweep.member import Task
 
-__all__ = ["MOST_RUNS", "Plan", "Task", "member_seed", "plan"]
+__all__ = ["MOST_RUNS", "Plan", "member_seed", "plan"]
 
 MOST_RUNS = 100_000
 """Greatest number of runs of one sweep."""
-
-
-class Task(NamedTuple):
-    """One run of a sweep, as it is sent to the process that computes it.
-
-    ``point`` and ``member`` count from 1; the last of the varied settings varies fastest from point to point. ``state``
-    is the file in which the run saves its state; None if it saves none.
-    """
-
-    point: int
-    member: int
-    scene: str
-    settings: dict[str, Value]
-    engine: str | None
-    accuracy: str | None
-    state: str | None = None
 
 
 def member_seed(seed: int, point: int, member: int) -> int:
@@ -72,25 +57,18 @@ class Plan:
     ----------
     scene
         The name of the scene, or the path of its file.
-    title
-        The title of the scene.
     axes
         The settings that vary.
     settings
         The settings that were given for all runs, in their documented units.
-    defaults
-        All settings that do not vary, in their documented units.
     members
         Number of runs at each point.
     seed
         The seed of the sweep.
     engine, accuracy
-        The engine with its options, None if the accuracy decides it or the points have different engines; and the
-        accuracy that was asked for.
-    engines
-        The engine with its options at each point; empty where the settings are refused.
-    refused
-        The reason why there is no run at a point, by the number of the point.
+        The engine with its options and the accuracy, as they were asked for.
+    prepared
+        The scene at each point.
 
     Examples
     --------
@@ -100,16 +78,18 @@ class Plan:
     """
 
     scene: str
-    title: str
     axes: tuple[Axis, ...]
     settings: Mapping[str, Value]
-    defaults: Mapping[str, Value]
     members: int
     seed: int
     engine: str | None
     accuracy: str | None
-    engines: tuple[str, ...]
-    refused: Mapping[int, str] = field(default_factory=dict)
+    prepared: list[Prepared] = field(default_factory=list)
+
+    @property
+    def title(self) -> str:
+        """The title of the scene."""
+        return str(getattr(self.prepared[0].module, "title", self.scene))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -126,6 +106,17 @@ class Plan:
         """Number of runs."""
         return self.points * self.members
 
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """The engine with its options at each point."""
+        return tuple(str(each.engine) for each in self.prepared)
+
+    @property
+    def defaults(self) -> dict[str, Value]:
+        """All settings that do not vary, in their documented units."""
+        found = {**self.prepared[0].settings.as_dict(), "seed": self.seed}
+        return {name: value for name, value in found.items() if name not in (axis.name for axis in self.axes)}
+
     def values(self, point: int) -> dict[str, Value]:
         """Return the values of the varied settings at a point; points count from 1."""
         place = np.unravel_index(point - 1, self.shape)
@@ -133,8 +124,9 @@ class Plan:
 
     def typed(self, point: int) -> tuple[str, ...]:
         """Return the values of the varied settings at a point, as they are typed."""
-        place = np.unravel_index(point - 1, self.shape)
-        return tuple(axis.typed(int(k)) for axis, k in zip(self.axes, place, strict=True))
+        return tuple(
+            axis.parameter.typed(value) for axis, value in zip(self.axes, self.values(point).values(), strict=True)
+        )
 
     def named(self, point: int) -> str:
         """Return a point as text.
@@ -146,9 +138,10 @@ class Plan:
         """
         return ", ".join(f"{axis.name}={text}" for axis, text in zip(self.axes, self.typed(point), strict=True))
 
-    def tasks(self) -> list[Task]:
+    def tasks(self, folder: Path) -> list[Task]:
         """Return the runs in the order in which they begin: the first member of every point, then the second."""
-        scene = os.path.abspath(self.scene) if self.source is not None else self.scene
+        own = self.scene not in scenarios.names()
+        scene = os.path.abspath(self.scene) if own else self.scene
         return [
             Task(
                 point,
@@ -157,36 +150,23 @@ class Plan:
                 {**self.settings, **self.values(point), "seed": member_seed(self.seed, point, member)},
                 self.engine,
                 self.accuracy,
+                str(folder.absolute() / f"{point}-{member}.nc"),
             )
             for member in range(1, self.members + 1)
             for point in range(1, self.points + 1)
-            if point not in self.refused
         ]
 
-    @functools.cached_property
-    def source(self) -> Path | None:
-        """The file of a scene that is given by its path; None for a scene that comes with atmosbox."""
-        return None if self.scene in scenarios.names() else Path(self.scene)
-
     def request(self) -> dict[str, Any]:
-        """Return all that determines the results of the sweep, by names for messages, in types that JSON can hold."""
-        words: dict[str, Any] = {"version of atmosbox": __version__, "scene": self.scene}
-        words |= {f"--vary {axis.name}": [axis.typed(k) for k in range(len(axis.values))] for axis in self.axes}
-        words["order of --vary"] = [axis.name for axis in self.axes]
+        """Return all that determines the runs, by names for messages, in types that JSON can hold."""
         types = {p.name: p for p in scenarios.load(self.scene).Settings.describe()}
+        words = described(self.prepared[0])
+        del words["settings"]
+        words |= {"scene": self.scene, "--engine": self.engines, "--accuracy": self.accuracy, "--seed": self.seed}
         words |= {f"--set {name}": types[name].typed(value) for name, value in self.settings.items()}
-        words |= {"--engine": self.engine, "--accuracy": self.accuracy}
-        words |= {"--members": self.members, "--seed": self.seed}
+        words["--vary"] = [f"{axis.name}={','.join(map(axis.parameter.typed, axis.values))}" for axis in self.axes]
         values = [*self.settings.values(), *(value for axis in self.axes for value in axis.values)]
-        files = {value for value in values if isinstance(value, str)}
-        if self.source is not None:
-            files.add(str(self.source))
-        return words | {f"content of {name}": _digest(name) for name in sorted(files) if os.path.isfile(name)}
-
-
-def _digest(path: str) -> str:
-    """Return a digest of the content of a file."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        files = sorted(value for value in values if isinstance(value, str) and os.path.isfile(value))
+        return words | {f"content of {name}": hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in files}
 
 
 def plan(
@@ -219,12 +199,12 @@ def plan(
     Returns
     -------
     Plan
-        The plan, which `sweep` runs. It includes points whose settings are refused, with the reason.
+        The plan, which `sweep` runs.
 
     Raises
     ------
     AtmosboxError
-        If the scene is unknown, a setting is refused, or no point can run.
+        If the scene is unknown, or a setting is refused at any point.
 
     Examples
     --------
@@ -233,72 +213,30 @@ def plan(
     atmosbox.errors.SettingError: --set temperature is varied, too: leave out --set temperature or --vary temperature.
     """
     text = os.fspath(scene)
-    types = {p.name: p for p in scenarios.load(scene).Settings.describe()}
-    given = {name.strip().replace("-", "_"): value for name, value in (settings or {}).items()}
-    vary = list(vary)
-    _check_known(text, types, vary, given)
-    axes = parse_vary(vary, types)
+    text = text.replace("_", "-") if text.replace("_", "-") in scenarios.names() else text
+    declared = scenarios.load(text).Settings
+    types = {p.name: p for p in declared.describe()}
+    given = {field_name(name): value for name, value in (settings or {}).items()}
+    for name, value in given.items():
+        if name not in types:
+            declared.from_user({name: value})  # raises the error that names the most similar setting
+    axes = parse_vary(vary, declared)
     if not axes:
         raise SettingError("--vary", None, "is not given", "give --vary name=a:b:n, such as --vary molecules=100,200")
     fixed = {name: types[name].parse(value) for name, value in given.items()}
     own = fixed.pop("seed", types["seed"].default)
     chosen = int(types["seed"].parse(own if seed is None else seed))
-    runs = math.prod(len(axis.values) for axis in axes) * members
     if members < 1:
         raise SettingError("members", members, "is fewer than one run at each point", "give --members 8")
-    if runs > MOST_RUNS:
-        raise SettingError("sweep", None, f"has {runs} runs, more than {MOST_RUNS}", "vary fewer values")
-    for name in fixed:
-        if name in (axis.name for axis in axes):
-            fix = f"leave out --set {name} or --vary {name}"
-            raise SettingError(f"--set {name}", None, "is varied, too", fix)
-    draft = Plan(text, text, axes, fixed, {}, members, chosen, engine, accuracy, ())
-    prepared, refused = _prepared(draft)
-    first = next(iter(prepared.values()))
-    kept = {name: value for name, value in first.settings.as_dict().items() if name not in (a.name for a in axes)}
-    return Plan(
-        first.scene,
-        getattr(first.module, "title", first.scene),
-        axes,
-        fixed,
-        kept | {"seed": chosen},
-        members,
-        chosen,
-        str(first.engine) if accuracy is None and len({str(each.engine) for each in prepared.values()}) == 1 else None,
-        accuracy,
-        tuple(str(prepared[k].engine) if k in prepared else "" for k in range(1, draft.points + 1)),
-        refused,
-    )
-
-
-def _check_known(scene: str, types: Mapping[str, Any], vary: Sequence[str], given: Mapping[str, Any]) -> None:
-    """Refuse a setting that the scene does not have; the error names the most similar one that it has."""
-    settings = scenarios.load(scene).Settings
-    for name, value in given.items():
-        if name not in types:
-            settings.from_user({name: value})
-    for item in vary:
-        name, equals, text = (part.strip() for part in item.partition("="))
-        if equals and name and name.replace("-", "_") not in types:
-            try:
-                settings.from_user({name: text})
-            except UnknownSettingError as error:
-                error.fix = error.fix.replace("--set ", "--vary ")
-                raise
-
-
-def _prepared(draft: Plan) -> tuple[dict[int, Prepared], dict[int, str]]:
-    """Return the prepared scene at each point, and the reason at each point whose settings are refused."""
-    prepared: dict[int, Prepared] = {}
-    refused: dict[int, str] = {}
-    first: SettingError | None = None
-    for point in range(1, draft.points + 1):
-        settings = {**draft.settings, **draft.values(point)}
+    for name in fixed.keys() & {axis.name for axis in axes}:
+        raise SettingError(f"--set {name}", None, "is varied, too", f"leave out --set {name} or --vary {name}")
+    made = Plan(text, axes, fixed, members, chosen, engine, accuracy)
+    if made.runs > MOST_RUNS:
+        raise SettingError("sweep", None, f"has {made.runs} runs, more than {MOST_RUNS}", "vary fewer values")
+    for point in range(1, made.points + 1):
         try:
-            prepared[point] = prepare(draft.scene, settings, engine=draft.engine, accuracy=draft.accuracy)
+            made.prepared.append(prepare(text, {**fixed, **made.values(point)}, engine=engine, accuracy=accuracy))
         except SettingError as error:
-            refused[point] = str(error)
-            first = first or error
-    if first is not None and not prepared:
-        raise first
-    return prepared, refused
+            error.problem += f" (at {made.named(point)})"
+            raise
+    return made

@@ -2,46 +2,36 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+import json
+from collections.abc import Mapping
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from atmosbox import scenarios
 from atmosbox.errors import EngineError
 from atmosbox.file.declaration import Variable, derived
 from atmosbox.file.provenance import global_attributes
-from atmosbox.scene import engines
 from atmosbox.scene.conversion import declared_unit
 from atmosbox.sweep.axis import Axis
-from atmosbox.sweep.member import COMPLETE, Record
 from atmosbox.sweep.plan import Plan, member_seed
 from atmosbox.version import __version__
 
-__all__ = ["FEWEST", "assemble", "mean_and_error"]
+__all__ = ["FEWEST", "join", "mean_and_error", "row"]
 
 FEWEST = 4
 """Least number of members whose scatter gives the standard error of their mean."""
 
 Floats = NDArray[np.float64]
 
+Key: TypeAlias = tuple[int, int]
+"""Point and member of a run, counted from 1."""
+
 _STATES = ("complete", "failed", "missing")
 _PLACES = {"height", "altitude", "depth", "level", "time", "latitude", "longitude", "lat", "lon", "x", "y", "z"}
 """Names that mean a place or a time in any file; a setting with such a name gets the suffix ``_setting``."""
 _OWN = ("member", "member_seed", "member_status", "member_ledger", "member_reason", "engine")
-
-
-class _Measured(NamedTuple):
-    """The values of one headline number in all members, ``(point, member)``."""
-
-    said: Mapping[str, Any]
-    value: Floats
-    error: Floats
-    theory: Floats
-    tolerance: Floats
 
 
 def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
@@ -78,21 +68,19 @@ def mean_and_error(value: Floats, error: Floats) -> tuple[Floats, Floats]:
     return np.where(nothing, np.nan, mean), np.where(nothing, np.nan, np.where(count < FEWEST, own, scatter))
 
 
-def assemble(
-    plan: Plan, records: Iterable[Record], *, history: Sequence[str] = (), status: str = "complete"
-) -> xr.Dataset:
+def join(plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], history: str = "") -> xr.Dataset:
     """Return the runs of a sweep as one dataset.
 
     Parameters
     ----------
     plan
         The sweep.
-    records
-        The records of its runs, in any order.
+    rows
+        The results of its runs by point and member, from `row`; others are missing.
+    failed
+        The reason of each run that failed, by point and member.
     history
-        The lines of the file's history.
-    status
-        ``complete``, ``partial`` or ``interrupted``.
+        The line that this command adds to the history of the file.
 
     Returns
     -------
@@ -100,7 +88,7 @@ def assemble(
         For each headline NAME of the scene, as functions of the varied settings: ``NAME``, the mean of the members;
         ``NAME_se``, its standard error; ``NAME_theory`` and ``NAME_tolerance`` if the scene gives them; and
         ``NAME_by_member`` with ``NAME_by_member_se``, the values of each run. Also seed, status and residual of the
-        energy ledger of every run, and the reason if a run failed.
+        energy budget of every run, and the reason if a run failed.
 
     Raises
     ------
@@ -110,37 +98,37 @@ def assemble(
     Examples
     --------
     >>> from atmosbox.sweep.plan import plan
-    >>> grid = assemble(plan("temperature", ["temperature=0degC,25degC"], members=3), [])
+    >>> grid = join(plan("temperature", ["temperature=0degC,25degC"], members=3), {}, {})
     >>> dict(grid.sizes), grid.temperature.values.tolist(), int(grid.member_status.max())
     ({'temperature': 2, 'member': 3}, [273.15, 298.15], 2)
     """
-    ordered = sorted(records, key=lambda record: (record["point"], record["member"]))
-    measured = _measured(plan, ordered)
-    taken = {name + suffix for name in measured for suffix in ("", *_SUFFIXES)} | set(_OWN)
-    names = [f"{axis.name}_setting" if axis.name in taken | _PLACES else axis.name for axis in plan.axes]
+    # The order of the headlines is that of a run that has measured as many as any
+    longest = sorted(rows.values(), key=lambda each: -len(each.attrs["names"]))
+    names = list(dict.fromkeys(name for each in longest for name in each.attrs["names"]))
+    taken = {name + suffix for name in names for suffix in ("", *_SUFFIXES)} | set(_OWN)
+    called = [f"{axis.name}_setting" if axis.name in taken | _PLACES else axis.name for axis in plan.axes]
     coords = {}
     dims: tuple[str, ...] = ()
-    for axis, own in zip(plan.axes, names, strict=True):
+    for axis, own in zip(plan.axes, called, strict=True):
         # CF takes a coordinate in pascal for a vertical axis; so a pressure is a label, not a dimension, of the grid
         dims += (f"{axis.name}_setting" if _is_pressure(axis) else own,)
         coords[own] = _coordinate(axis, own, dims[-1])
     member = Variable("member", ("member",), "1", "number of the member", "realization", dtype="i8", ledger=True)
     coords["member"] = member.holding(np.arange(1, plan.members + 1))
-    data = _about_members(plan, ordered, dims)
-    for name, found in measured.items():
-        data |= _headline(name, found, plan, dims)
-    module = scenarios.load(plan.scene)
-    used = sorted({text for text in plan.engines if text})
+    data = _about_members(plan, rows, failed, dims)
+    for name in names:
+        data |= _headline(name, rows, plan, dims)
+    used = sorted(set(plan.engines))
     parameters: dict[str, Any] = {"scene": plan.scene, "settings": dict(plan.defaults)}
     parameters |= {"engine": used[0]} if len(used) == 1 else {}
     parameters |= {"version": __version__, "save_molecules": False}
     parameters["sweep"] = {
         "vary": {axis.name: list(axis.values) for axis in plan.axes},
-        "dimensions": dict(zip(dims, names, strict=True)),
+        "dimensions": dict(zip(dims, called, strict=True)),
         "members": plan.members,
         "seed": plan.seed,
         "accuracy": plan.accuracy,
-        "headlines": list(measured),
+        "headlines": names,
     }
     varied = [axis.name.replace("_", " ") for axis in plan.axes]
     varied = [", ".join(varied[:-1]), varied[-1]] if len(varied) > 1 else varied
@@ -148,37 +136,32 @@ def assemble(
         parameters,
         title=f"{plan.title}: {' and '.join(varied)} varied",
         command="",
-        comment=" ".join((module.__doc__ or "").split()),
-        references=engines.choose(used[0]).engine.reference if used else "",
-        status=status,
+        comment=" ".join((plan.prepared[0].module.__doc__ or "").split()),
+        references=plan.prepared[0].engine.engine.reference,
+        status="complete",
     )
     if history:
-        attributes["history"] = "\n".join(history)
+        attributes["history"] = history
     return xr.Dataset(data, coords, attributes)
 
 
 _SUFFIXES = ("_se", "_theory", "_tolerance", "_by_member", "_by_member_se")
 
 
-def _measured(plan: Plan, records: Sequence[Record]) -> dict[str, _Measured]:
-    """Return the values of all members by headline, point and member."""
-    found: dict[str, _Measured] = {}
-    # The order of the headlines is that of a run that has measured as many as any
-    for record in sorted(records, key=lambda record: -len(record.get("headlines", ()))):
-        for headline in record.get("headlines", ()):
-            name = headline["name"]
-            if name not in found:
-                empty = (np.full((plan.points, plan.members), np.nan) for _ in range(4))
-                found[name] = _Measured(headline, *empty)
-            one = found[name]
-            if headline["unit"] != one.said["unit"]:
-                units = f"{one.said['unit']} and {headline['unit']}"
-                raise EngineError(f"The headline {name} is in {units} at different points: give it one unit.")
-            place = record["point"] - 1, record["member"] - 1
-            parts = ("value", "standard_error", "theory", "tolerance")
-            for array, part in zip(one[1:], parts, strict=True):
-                array[place] = math.nan if headline[part] is None else headline[part]
-    return found
+def row(run: xr.Dataset) -> xr.Dataset:
+    """Return the headlines of a run, with their names as an attribute and the residual of its energy budget."""
+    names = json.loads(run.attrs.get("atmosbox_headlines", "[]"))
+    kept = [name + suffix for name in names for suffix in ("", "_se", "_theory", "_tolerance") if name + suffix in run]
+    return run[kept].assign(ledger=run["ledger_residual"].max()).assign_attrs(names=names)
+
+
+def _gathered(name: str, rows: Mapping[Key, xr.Dataset], plan: Plan) -> Floats:
+    """Return the values of a variable in all runs, (point, member); NaN where there is none."""
+    made = np.full((plan.points, plan.members), np.nan)
+    for (point, member), found in rows.items():
+        if name in found:
+            made[point - 1, member - 1] = float(found[name])
+    return made
 
 
 def _is_pressure(axis: Axis) -> bool:
@@ -201,59 +184,63 @@ def _coordinate(axis: Axis, name: str, dim: str) -> xr.Variable:
     return made
 
 
-def _about_members(plan: Plan, records: Sequence[Record], dims: tuple[str, ...]) -> dict[str, xr.Variable]:
-    """Return seed, status and residual of the ledger of every run, and the reason if a run failed."""
+def _about_members(
+    plan: Plan, rows: Mapping[Key, xr.Dataset], failed: Mapping[Key, str], dims: tuple[str, ...]
+) -> dict[str, xr.Variable]:
+    """Return seed, status and residual of the energy budget of every run, and the reason if a run failed."""
     shape = (plan.points, plan.members)
     seed = np.array([[member_seed(plan.seed, j + 1, k + 1) for k in range(shape[1])] for j in range(shape[0])])
     status = np.full(shape, _STATES.index("missing"), dtype=np.int8)
-    ledger = np.full(shape, np.nan)
     reason = np.full(shape, "", dtype=object)
-    for point, why in plan.refused.items():
-        status[point - 1], reason[point - 1] = _STATES.index("failed"), why
-    for record in records:
-        place = record["point"] - 1, record["member"] - 1
-        status[place] = _STATES.index(record["status"])
-        if record["status"] == COMPLETE:
-            ledger[place] = record["ledger"]
-        else:
-            reason[place] = record["reason"]
+    for point, member in rows:
+        status[point - 1, member - 1] = _STATES.index("complete")
+    for (point, member), why in failed.items():
+        status[point - 1, member - 1], reason[point - 1, member - 1] = _STATES.index("failed"), why
     both = (*dims, "member")
     declared = {
         Variable("member_seed", both, "1", "seed of the run", dtype="i8", ledger=True): seed,
         Variable("member_status", both, "", "status of the run", dtype="i1", ledger=True, flags=_STATES): status,
-        Variable("member_ledger", both, "1", "residual of the energy ledger of the run"): ledger,
+        Variable("member_ledger", both, "1", "residual of the energy budget of the run"): _gathered(
+            "ledger", rows, plan
+        ),
     }
-    if any(reason.ravel()):
+    if failed:
         declared[Variable("member_reason", both, "", "why the run failed", dtype="U")] = reason.astype(str)
     made = {each.name: each.holding(values.reshape(*plan.shape, plan.members)) for each, values in declared.items()}
-    if len({text for text in plan.engines if text}) > 1:
+    if len(set(plan.engines)) > 1:
         engine = Variable("engine", dims, "", "engine and its options", dtype="U")
         made["engine"] = engine.holding(np.array(plan.engines, dtype=str).reshape(plan.shape))
     return made
 
 
-def _headline(name: str, found: _Measured, plan: Plan, dims: tuple[str, ...]) -> dict[str, xr.Variable]:
+def _headline(name: str, rows: Mapping[Key, xr.Dataset], plan: Plan, dims: tuple[str, ...]) -> dict[str, xr.Variable]:
     """Return the variables of one headline."""
-    said = found.said
-    mean, error = mean_and_error(found.value, found.error)
-    both = (*dims, "member")
-    average = Variable(name, dims, said["unit"], said["label"], comment="mean over the members")
-    own = Variable(f"{name}_by_member", both, said["unit"], f"{said['label']} in each run")
+    about = [each[name].attrs for each in rows.values() if name in each]
+    units = sorted({each["units"] for each in about})
+    if len(units) > 1:
+        raise EngineError(f"The headline {name} is in {' and '.join(units)} at different points: give it one unit.")
+    value, error, theory, known = (
+        _gathered(name + suffix, rows, plan) for suffix in ("", "_se", "_theory", "_tolerance")
+    )
+    mean, scatter = mean_and_error(value, error)
+    both, label = (*dims, "member"), str(about[0]["long_name"])
+    average = Variable(name, dims, units[0], label, comment="mean over the members")
+    own = Variable(f"{name}_by_member", both, units[0], f"{label} in each run")
     made = {
         name: average.holding(mean.reshape(plan.shape)),
-        f"{name}_se": derived(average, "_se").holding(error.reshape(plan.shape)),
-        own.name: own.holding(found.value.reshape(*plan.shape, plan.members)),
-        f"{own.name}_se": derived(own, "_se").holding(found.error.reshape(*plan.shape, plan.members)),
+        f"{name}_se": derived(average, "_se").holding(scatter.reshape(plan.shape)),
+        own.name: own.holding(value.reshape(*plan.shape, plan.members)),
+        f"{own.name}_se": derived(own, "_se").holding(error.reshape(*plan.shape, plan.members)),
     }
-    if np.isfinite(found.theory).any():
-        answer, _ = mean_and_error(found.theory, found.theory)
+    if np.isfinite(theory).any():
+        answer, _ = mean_and_error(theory, theory)
         made[f"{name}_theory"] = derived(average, "_theory").holding(answer.reshape(plan.shape))
-    known = np.isfinite(found.tolerance)
-    tolerance = np.where(known.any(axis=1), np.max(found.tolerance, axis=1, where=known, initial=0.0), np.nan)
+    there = np.isfinite(known)
+    tolerance = np.where(there.any(axis=1), np.max(known, axis=1, where=there, initial=0.0), np.nan)
     made[f"{name}_tolerance"] = derived(average, "_tolerance").holding(tolerance.reshape(plan.shape))
-    if said["reason"]:
-        made[f"{name}_tolerance"].attrs["comment"] = said["reason"]
-    made[name].attrs["display_units"] = said["display_unit"]
+    if reason := about[0].get("comment"):
+        made[f"{name}_tolerance"].attrs["comment"] = reason
+    made[name].attrs["display_units"] = about[0].get("display_units", units[0])
     made[name].attrs["ancillary_variables"] = " ".join(each for each in made if each.startswith(f"{name}_"))
     made[own.name].attrs["ancillary_variables"] = f"{own.name}_se"
     return made
