@@ -5,7 +5,7 @@ the run was made with ``--save-molecules``), and the panels of the scene. Withou
 
 The room `plot` draws the box (`plot.box_picture`) and the graphs; this room adds what only a film needs. Read in this
 order: `pace` (which frames, how fast), `running` and `graph` (graphs that grow), `film_sheet` (the layout of a
-picture), `encoder` and `film_file` (GIF and MP4).
+picture) and `film_file` (GIF and MP4).
 """
 
 from atmosbox.film.film_file import FORMATS, save

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, SettingError
 from atmosbox.file.molecules import molecules
-from atmosbox.file.output_path import named, whole_file, write_whole
-from atmosbox.film.encoder import Picture, encode_gif, encode_mp4, movie_program
+from atmosbox.file.output_path import named, whole_file
 from atmosbox.film.film_sheet import Sheet
 from atmosbox.film.pace import Pace, pace
 from atmosbox.plot.layout import panels_of
@@ -29,7 +30,21 @@ FORMATS = ("gif", "mp4")
 _SIZES = {"gif": {"notes": (800, 450), "slides": (960, 540)}, "mp4": {"notes": (1280, 720), "slides": (1280, 720)}}
 _WIDE = {"notes": 7.2, "slides": 40.0 / 3.0}  # inch
 _SMOOTH = 0.1  # if molecules move less than this from frame to frame, in sides of the box, their motion looks smooth
-_CHOSEN_FROM = 6  # greatest number of pictures from which the colours of a GIF are chosen
+_MP4 = [
+    "-f",
+    "mp4",
+    "-crf",
+    "20",
+    "-preset",
+    "medium",
+    "-movflags",
+    "+faststart",
+    "-fflags",
+    "+bitexact",
+    "-flags:v",
+    "+bitexact",
+]
+"""Options of ffmpeg: quality (18 looks like the original), playing while it loads, the same bytes each time."""
 
 
 def save(
@@ -90,32 +105,62 @@ def save(
     path, kind = named(path, format, FORMATS, force=force, what="film")
     look = sized(find(theme), kind)
     if kind == "mp4":
-        movie_program()
+        _check_movie_program()
     count = dataset.sizes.get("elapsed_time", 0)
     if count == 0:
         raise FileError("The file has no frame to film: the run was stopped before its first one; run it again.")
     held = None if graphs else molecules(dataset, otherwise=", or film its graphs alone with --graphs")
     smooth = held is not None and held.step < _SMOOTH
     chosen = pace(count, fps=fps, seconds=seconds, smooth=smooth, along=None if smooth else _along(dataset))
-    with style(look):
+    with style(look), whole_file(path) as temporary:
         sheet = Sheet(dataset, look, held, chosen.frames)
-        samples: dict[int, Picture] = {}
 
-        def pictures() -> Iterator[Picture]:
+        def pictures() -> Iterator[Image.Image]:
             for done, frame in enumerate(map(int, chosen.frames), 1):
-                yield samples[frame] if frame in samples else sheet.picture(frame)
+                yield Image.fromarray(sheet.picture(frame))
                 if progress is not None:
                     progress(done / chosen.frames.size)
 
         if kind == "gif":
-            some = np.linspace(0, chosen.frames.size - 1, min(_CHOSEN_FROM, chosen.frames.size)).round().astype(int)
-            wanted = chosen.frames[some].tolist()
-            samples |= {frame: sheet.picture(frame) for frame in wanted}
-            write_whole(path, encode_gif(pictures(), [samples[frame] for frame in wanted], chosen.fps))
+            each, lasts = pictures(), max(2, round(100.0 / chosen.fps)) * 10
+            with temporary.open("wb") as stream:
+                next(each).save(stream, format="GIF", save_all=True, append_images=each, duration=lasts, loop=0)
         else:
-            with whole_file(path) as temporary:
-                encode_mp4(pictures(), temporary, chosen.fps)
+            _write_mp4(pictures(), temporary, chosen)
     return path, chosen
+
+
+def _check_movie_program() -> None:
+    """Refuse MP4 if the extra ``movie``, which brings ffmpeg, is not installed."""
+    try:
+        import imageio_ffmpeg
+
+        imageio_ffmpeg.get_ffmpeg_exe()
+    except (ImportError, RuntimeError) as error:
+        fix = "type pip install 'atmosbox[movie]', or give --format gif"
+        raise SettingError("format", "mp4", "needs a program that is not installed", fix) from error
+
+
+def _write_mp4(pictures: Iterator[Image.Image], path: Path, chosen: Pace) -> None:
+    """Write an MP4 that browsers and presentations play; refuse one that lacks pictures, because the disk is full."""
+    import imageio_ffmpeg
+
+    first = next(pictures)
+    writer: Any = imageio_ffmpeg.write_frames(
+        str(path), first.size, fps=chosen.fps, codec="libx264", quality=None, macro_block_size=2, output_params=_MP4
+    )
+    try:
+        writer.send(None)
+        for picture in itertools.chain([first], pictures):
+            writer.send(picture.tobytes())
+        writer.close()
+        held, _ = imageio_ffmpeg.count_frames_and_secs(str(path))
+    except (OSError, RuntimeError):
+        held = 0
+    finally:
+        writer.close()
+    if held != chosen.frames.size:
+        raise FileError(f"{path.name} could not be written whole: make room on the disk, or name another place.")
 
 
 def sized(theme: Theme, kind: str) -> Theme:

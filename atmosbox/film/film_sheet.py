@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
@@ -51,11 +50,6 @@ class Sheet:
     ------
     FileError
         If the run has nothing to film.
-
-    Notes
-    -----
-    The parts that do not change are drawn once, and each picture adds only the moving parts (blitting). A picture of
-    800 molecules takes 24 ms; matplotlib's FuncAnimation, which draws everything again when it saves, takes 74 ms.
 
     Examples
     --------
@@ -106,7 +100,7 @@ class Sheet:
         title = pen.wrap(title, (share or 1.0) * wide - look.text, size, "bold")
         over = self.figure.text(left, 1.0 - 0.5 * look.text / high, title, fontsize=size, weight="bold", va="top")
         top = 1.0 - (pen.height(over) + 0.95 * look.text) / high
-        self.clock = self.figure.text(left, top, self._time(0), fontsize=look.title, va="top", animated=True)
+        self.clock = self.figure.text(left, top, self._time(0), fontsize=look.title, va="top")
         top -= (1.3 * look.title * len(self._time(0).splitlines()) + 0.4 * look.text) / high
         for text in (below, over, self.clock):
             text.set_in_layout(False)
@@ -128,23 +122,16 @@ class Sheet:
             self.stage.fit()
             spot = (left + (1.0 - _BAR) * width / 2, bottom + 0.75 * bar, _BAR * width, 0.2 * bar)
             speed_bar(self.figure, self.stage, spot, look)
-        self.background = None
 
     def picture(self, frame: int) -> NDArray[np.uint8]:
         """Return the picture of a frame, (height, width, 3)."""
-        canvas: Any = self.figure.canvas
-        artists: list[Artist] = [] if self.stage is None else self.stage.artists(frame)
+        if self.stage is not None:
+            self.stage.artists(frame)
         for graph in self.graphs:
-            artists += graph.artists(frame)
+            graph.show(frame)
         self.clock.set_text(self._time(frame))
-        for artist in artists:
-            artist.set_animated(True)
-        if self.background is None:
-            canvas.draw()
-            self.background = canvas.copy_from_bbox(self.figure.bbox)
-        canvas.restore_region(self.background)
-        for artist in [*artists, self.clock]:
-            artist.draw(canvas.get_renderer())
+        canvas: Any = self.figure.canvas
+        canvas.draw()
         return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
 
     def _time(self, frame: int) -> str:

@@ -156,8 +156,9 @@ class Graph:
     >>> dataset = xr.Dataset({"t": ("elapsed_time", [1.0, 3.0])}, coords={"elapsed_time": [0.0, 9.0]})
     >>> panel = Panel("line", "Warm", (Line("elapsed_time", "t", "air"),))
     >>> graph = Graph(Figure().add_subplot(), panel, dataset, THEMES["notes"], Running(dataset))
-    >>> len(graph.artists(1)) > 0
-    True
+    >>> graph.show(1)
+    >>> graph.axes.lines[-1].get_ydata().tolist()
+    [3.0]
     """
 
     def __init__(self, axes: Axes, panel: Panel, dataset: xr.Dataset, look: Theme, running: Running) -> None:
@@ -175,15 +176,12 @@ class Graph:
         self.time = convert(time.values, _unit(dataset, "elapsed_time"), shown, name="elapsed_time")
         self.cursor = axes.axvline(self.time[0], color=DARK, linewidth=look.line / 2, zorder=5.0)
         self.cursor.set_visible(panel.kind == "line" and all(line.x == "elapsed_time" for line in measured))
-        self.cursor.set_animated(True)
         # CAPE and CIN are shaded up to the level that the parcel has reached
         self.shades = [each for each in axes.collections if panel.kind == "skewt" and each.get_zorder() == SHADE_ORDER]
-        for shade in self.shades:
-            shade.set_animated(True)
         self.drawn: list[Artist] = []
 
-    def artists(self, frame: int) -> list[Artist]:
-        """Return the artists of a frame, from the back to the front."""
+    def show(self, frame: int) -> None:
+        """Draw the curves up to a frame in place of those that were drawn before."""
         for bars in list(self.axes.containers):
             bars.remove()
         for artist in self.drawn:
@@ -192,8 +190,15 @@ class Graph:
         before = set(self.axes.get_children())
         if self.way is not None:
             draw_way(self.axes, self.way, frame, np.array([frame]), self.look)
-            self.drawn = self._since(before)
-            return list(self.drawn)
+        else:
+            self._draw_curves(frame)
+        self.drawn = [artist for artist in self.axes.get_children() if artist not in before]
+        self.cursor.set_xdata([self.time[frame]] * 2)
+        for shade in self.shades:
+            shade.set_clip_path(self._below(frame))
+
+    def _draw_curves(self, frame: int) -> None:
+        """Draw the measured curves up to a frame."""
         so_far = self.running.at(frame) if len(self.curves) < len(self.lines) else self.dataset
         for line, index in self.lines:
             if line in self.curves:
@@ -203,16 +208,6 @@ class Graph:
             else:
                 values = curve(so_far, self.panel, replace(line, error=None))
                 draw_line(self.axes, self.panel, line, values, self.look, index)
-        self.drawn = self._since(before)
-        self.cursor.set_xdata([self.time[frame]] * 2)
-        for shade in self.shades:
-            shade.set_clip_path(self._below(frame))
-        return [*self.shades, *([self.cursor] if self.cursor.get_visible() else []), *self.drawn]
-
-    def _since(self, before: set[Artist]) -> list[Artist]:
-        """Return the artists of the axes that are not among the given ones, from the back to the front."""
-        new = [artist for artist in self.axes.get_children() if artist not in before]
-        return sorted(new, key=lambda artist: artist.get_zorder())
 
     def _below(self, frame: int) -> Rectangle:
         """Return the part of the axes below the point that the first curve has reached in a frame."""
