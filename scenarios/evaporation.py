@@ -1,13 +1,14 @@
-"""Water evaporates, and what is left of it cools.
+"""Evaporation cools the water that remains.
 
 Dry air over a pool of water, at the pressure of the air outside and without heat from anywhere. Of the molecules
 of the pool only those leave that happen to have far more energy than the mean, and the rest grows colder: first
-the pool, then the air above it. The vapour comes back to the pool, the oftener the more there is of it, and where
-as many come back as leave, the air is saturated.
+the pool, then the air above it. The more vapour there is, the more of it returns to the pool; when as many molecules
+come back as leave, the air is saturated.
 
-The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken
-from it. What the run shows is that two rates, counted independently, meet there; that the air plays no part; that
-the pool cools first and the air follows; and how much so few molecules scatter.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and that the
+air has no influence on it. That in the end as many molecules come back as leave follows from their conservation. The
+run tests the vapour pressure and the temperature at which this happens, and the energy of the molecules that leave. It
+also shows that the pool cools first and the air follows, and how much so few molecules scatter.
 
 Modelled: molecules of air and water of real size and density under a piston that keeps the pressure, hard spheres if
 they are 5,000 or fewer (of more, those that collide are drawn at random); a pool on the floor. Every molecule of

@@ -1,12 +1,12 @@
 """A parcel of moist air rises past its cloud base.
 
-Below it cools along the dry adiabat, by ten degrees in a kilometre. At the lifting condensation level its vapour
-begins to meet more liquid than leaves it, and every molecule that condenses gives up its binding energy: from
-here on the parcel cools half as fast, along the moist adiabat.
+Below it cools along the dry adiabat, by ten degrees per kilometre. At the lifting condensation level more molecules
+begin to condense than evaporate, and each that condenses releases its binding energy: from
+there on the parcel cools half as fast, along the moist adiabat.
 
-The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken from
-it. The level of the cloud base is not: it is where the parcel, cooled by the receding piston, comes to saturation.
-What the run shows is that level, both lapse rates, and the errors of a fast ascent and of few molecules.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and the
+pressure at each moment. What emerges is the level of the cloud base, where the parcel, cooled by the receding piston,
+becomes saturated, and both lapse rates.
 
 Modelled: molecules of air and water that rotate, hard spheres if they are 5,000 or fewer; of more, those that
 collide are drawn at random; droplets too fine to draw, of one temperature, carried along by the air; the latent

@@ -2,7 +2,8 @@
 
 The air at the ground is lifted through the air that a balloon has found above it. As long as it is colder than the
 environment, it must be pushed; above the level of free convection its cloud is warmer, and it rises by itself, up to
-the equilibrium level. The area between the two curves is the energy that a storm can have.
+the equilibrium level. The area between the two curves is the energy that buoyancy can give each kilogram
+of air.
 
 Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
 at random; droplets too fine to draw, of one temperature, carried along by the air; the environment as it was

@@ -1,13 +1,16 @@
 """Air that crosses mountains arrives warm and dry: the foehn.
 
 A parcel climbs a mountain of two kilometres, sinks into a valley at one, climbs a second of three and sinks to the
-plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down what
-cloud is left evaporates, and from there the parcel warms by ten degrees in a kilometre: more than it had cooled.
-Without rain it would arrive as it set out.
+plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down the rest of
+the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over a longer way than it cooled at that
+rate. Without rain it would arrive with the temperature at which it started.
+
+Prescribed: the curve e_s(T), the path, and how much cloud rains out, and how fast. What emerges is where clouds begin
+and end, how much rain falls, and how warm the parcel arrives.
 
 Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
-at random; droplets too fine to draw, of one temperature, carried along by the air; rain, which takes what liquid the
-cloud cannot hold with its heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind,
+at random; droplets too fine to draw, of one temperature, carried along by the air; rain, which falls out of the cloud
+with its heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind,
 mixing with the environment, heat from the ground and from the sun. Exaggerated: eight kilometres up and down within
 nanoseconds.
 """

@@ -117,7 +117,7 @@ def vapour_and_pool(found: Findings) -> None:
              "so little does saturated vapour differ from an ideal gas"],
             ["the pressure of the air on the liquid, and air dissolved in it",
              f"enhancement factor 1 + {rounded(enhancement)} at 1000 hPa (Buck 1981)",
-             "saturated air holds that much more vapour than the table of pure water says"],
+             "saturated air has that much more vapour than the table of pure water says"],
             ["heat capacities that change with temperature", f"$e_s$ at 100 °C is {rounded(float(off[3]))} % off",
              f"at −10, 20 and 40 °C it is {below} below measured water"],
             ["gravity", f"$mgh/kT$ = {rounded(heavy)} over the box", "nothing falls within it"],
