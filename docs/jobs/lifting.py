@@ -161,7 +161,7 @@ def draw_finite_speed(
 @job("rotation")
 def rotation(found: Findings) -> None:
     """Lift molecules that rotate, and such that do not."""
-    runs = {on: runner.execute(runner.prepare("lifting-dry", {"rotation": on, "ascent": 400})) for on in (True, False)}
+    runs = {on: runner.execute(runner.prepare("lifting-dry", {"rotation": on})) for on in (True, False)}
     with axes_of(1, (6.8, 4.8)) as (drawing, (axes,)):
         for on, freedom, colour, marker in ((True, 5, BLUE, "o"), (False, 3, VERMILLION, "s")):
             data = runs[on].dataset
