@@ -402,7 +402,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         time_unit="s",
         facts={
             "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
-            "weight of a molecule": f"{scale.weight:.2g} real molecules",
+            "real molecules per simulated one": f"{scale.weight:.2g}",
             "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
             "gamma": "2: the discs move in a plane and do not rotate"
             if plane

@@ -149,7 +149,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         settle=SETTLE,
         facts={
             "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
-            "weight of a molecule": "1, each stands for one real molecule",
+            "real molecules per simulated one": "1",
             "exaggeration": f"none in the gas; the drops are {settings.drop_size:g} times as wide as real ones"
             if drops
             else "none in the gas; the droplets have far more area than so little water could",

@@ -172,7 +172,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         (Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)),
         facts={
             "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, its sides open",
-            "weight of a molecule": "1, each stands for one real molecule",
+            "real molecules per simulated one": "1",
             "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "gamma": "5/3: the molecules do not rotate",
             "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",

@@ -209,7 +209,7 @@ def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
     box, si = growth.box, settings.si
     found = {
         "box": f"a cube of {1e9 * (box.side + 1.0) * box.scale.length:.1f} nm, real size",
-        "weight of a molecule": "1, each stands for one real molecule",
+        "real molecules per simulated one": "1",
         "exaggeration": f"none in the gas; drops are hit on the area of those {settings.drop_size:g} times as wide, "
         "and the nuclei keep their temperature",
         "vapour at the start": f"{box.vapour} molecules; {box.full:.0f} saturate the air",

@@ -49,7 +49,7 @@ def lifting_seeds(found: Findings) -> None:
     rows.append(["**mean**", *(f"**{m:+.2f} ± {e:.2f}**" for m, e in zip(mean, error, strict=True))])
     rows.append(["**largest**", *(f"**{value:.2f}**" for value in largest)])
     found.table(
-        ["seed", "misfit at 700 hPa [K]", "misfit at 300 hPa [K]"],
+        ["seed", "difference at 700 hPa [K]", "difference at 300 hPa [K]"],
         [[str(c).replace("-", "−") for c in r] for r in rows],
     )
     for level, m, e, worst in zip(LEVELS, mean, error, largest, strict=True):
