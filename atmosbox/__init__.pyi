@@ -79,10 +79,10 @@ def run(
     duration: float | str = 1.6,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""A liquid out of nothing but attraction.
+    r"""Molecules that only attract each other form a liquid.
 
     molecules: number of molecules that attract each other; 50 to 20000
-    temperature [K]: temperature of the bath and at the start; 10 K to 20000 K
+    temperature [K]: temperature of the thermostat and at the start; 10 K to 20000 K
     density: density of these molecules, over the critical one; 0.0001 to 2.3
     attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
     start: state at the start; vapour or slab or drop or pool
@@ -205,7 +205,7 @@ def run(
     diameter: float | str = 0.37,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Water evaporates, and what is left of it cools.
+    r"""Evaporation cools the water that remains.
 
     molecules: number of molecules of air and vapour at the start; 200 to 1000000
     pool: number of molecules in the pool at the start; 1 to 1000000

@@ -177,7 +177,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
             + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")
             + (f"{left:.0f} in the pool" if left > 0.0 else f"the pool dry and {humidity:.0f} % of humidity"),
-            "mean of so few molecules": f"{rest.temperature - 273.15:.2f} degC on average",
+            "the same for this number of molecules": f"{rest.temperature - 273.15:.2f} degC",
             "wet-bulb temperature": _wet_bulb(settings),
             "time until vapour hits the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
             "heat lost to the piston": f"up to {start.loss(duration):.1g} K",

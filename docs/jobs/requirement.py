@@ -176,7 +176,7 @@ def column(found: Findings) -> None:
             ["the excluded volume of wide molecules", f"$Z - 1$ = {rounded(crowd)} at the floor",
              f"on `exact` the mean height is {rounded(100.0 * higher)} % larger, which the theory beside it counts; on "
              "`dsmc`, on which so many molecules run, they exclude none"],
-            ["weight of a molecule", f"{rounded(air.scale.weight)}",
+            ["real molecules per simulated one", f"{rounded(air.scale.weight)}",
              "pressure, density and energy are multiplied by it, speeds and temperatures are not; what does not "
              f"scale is chance: the temperature of the column scatters by "
              f"{rounded(100.0 * math.sqrt(2.0 / (3.0 * settings.molecules)))} %, as that of {settings.molecules} "
