@@ -284,7 +284,7 @@ def run(
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
-    area: area of all droplets, in floors of the box; 0.1 to 100
+    area: area of all droplets, divided by that of the floor; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
@@ -317,7 +317,7 @@ def run(
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
-    area: area of all droplets, in floors of the box; 0.1 to 100
+    area: area of all droplets, divided by that of the floor; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
@@ -359,8 +359,8 @@ def run(
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
-    travel: duration of the way, in mean free times at its start; 20 to 1000000
-    area: area of all droplets, in floors of the box; 0.1 to 100
+    travel: duration of the crossing, in mean free times at its start; 20 to 1000000
+    area: area of all droplets, divided by that of the floor; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """

@@ -66,8 +66,8 @@ class Settings(SceneSettings):
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
-    travel: float = setting(600.0, "1", "duration of the way, in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    travel: float = setting(600.0, "1", "duration of the crossing, in mean free times at its start", low=20.0, high=1e6)
+    area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:

@@ -46,7 +46,7 @@ def iapws(found: Findings) -> None:
 
 @job("saturation")
 def saturation(found: Findings) -> None:
-    """Let vapour condense at six temperatures: are the rates equal at the prescribed vapour pressure?"""
+    """Let vapour condense at six temperatures, until both rates are equal at the prescribed vapour pressure."""
     rows = []
     for celsius, own in RUNS.items():
         settings = {"temperature": celsius, "molecules": 3000, "area": 12.0, **own}
