@@ -153,7 +153,7 @@ def run(
     temperature [degC]: temperature of both gases; -200 degC to 1000 degC
     pressure [hPa]: pressure that both would have if molecules were points; 1 hPa to 20000 hPa
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 3 nm
-    duration: how long to watch, in mixing times: those of the slowest mode; 0.5 to 50
+    duration: how long to watch, in mixing times; 0.5 to 50
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
 

@@ -80,9 +80,7 @@ class Settings(SceneSettings):
         1000.0, "hPa", "pressure that both would have if molecules were points", low=1.0, high=2e4
     )
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=3.0)
-    duration: float = setting(
-        3.0, "1", "how long to watch, in mixing times: those of the slowest mode", low=0.5, high=50.0
-    )
+    duration: float = setting(3.0, "1", "how long to watch, in mixing times", low=0.5, high=50.0)
 
     def check(self) -> None:
         """Refuse a gas that is too dense, and a box so short or so narrow that its gases do not diffuse."""
@@ -176,7 +174,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "gamma": "5/3: the molecules do not rotate",
             "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",
-            "mixing time": f"{scale.time / rate * 1e9:.3g} ns, in which the slowest mode falls to 1/e",
+            "mixing time": f"{scale.time / rate * 1e9:.3g} ns: the left-right difference falls to 1/e",
             "noise": f"the diffusion coefficient of one run scatters by {100.0 * _spread(settings):.1f} %",
         },
         right=right,
