@@ -79,10 +79,10 @@ def run(
     duration: float | str = 1.6,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""A liquid out of nothing but attraction.
+    r"""Molecules that only attract each other form a liquid.
 
     molecules: number of molecules that attract each other; 50 to 20000
-    temperature [K]: temperature of the bath and at the start; 10 K to 20000 K
+    temperature [K]: temperature of the thermostat and at the start; 10 K to 20000 K
     density: density of these molecules, over the critical one; 0.0001 to 2.3
     attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
     start: state at the start; vapour or slab or drop or pool
@@ -153,7 +153,7 @@ def run(
     temperature [degC]: temperature of both gases; -200 degC to 1000 degC
     pressure [hPa]: pressure that both would have if molecules were points; 1 hPa to 20000 hPa
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 3 nm
-    duration: how long to watch, in mixing times: those of the slowest mode; 0.5 to 50
+    duration: how long to watch, in mixing times; 0.5 to 50
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
 
@@ -205,7 +205,7 @@ def run(
     diameter: float | str = 0.37,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""Water evaporates, and what is left of it cools.
+    r"""Evaporation cools the water that remains.
 
     molecules: number of molecules of air and vapour at the start; 200 to 1000000
     pool: number of molecules in the pool at the start; 1 to 1000000
@@ -284,7 +284,7 @@ def run(
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
-    area: area of all droplets, in floors of the box; 0.1 to 100
+    area: area of all droplets, divided by that of the floor; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
@@ -317,7 +317,7 @@ def run(
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
     ascent: duration of the ascent, in mean free times at its start; 20 to 1000000
-    area: area of all droplets, in floors of the box; 0.1 to 100
+    area: area of all droplets, divided by that of the floor; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
@@ -359,8 +359,8 @@ def run(
     lapse_rate [K km-1]: lapse rate of the environment; -5 K km-1 to 20 K km-1
     rain: whether it rains when the cloud holds too much; on or off
     cloud_water [g kg-1]: liquid that the cloud holds before it rains; 0 g kg-1 to 20 g kg-1
-    travel: duration of the way, in mean free times at its start; 20 to 1000000
-    area: area of all droplets, in floors of the box; 0.1 to 100
+    travel: duration of the crossing, in mean free times at its start; 20 to 1000000
+    area: area of all droplets, divided by that of the floor; 0.1 to 100
     diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1.6 nm
     seed: seed of the random numbers; 0 to 9223372036854775807
     """

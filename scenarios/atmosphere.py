@@ -1,21 +1,21 @@
 """Why the air does not fly away, and why it thins with height.
 
 Ten thousand molecules in a tall column with real gravity. At the start they are as dense at 20 km as at the
-floor. They fall, and within some minutes density and pressure decrease with height by the barometric law, by a factor
-e every 8.4 km; the means leave out the first half hour, until the temperature has settled, too. Each molecule falls
-freely between collisions, and yet the column neither lies down on the floor nor leaves. The molecules hit the floor,
-and the force on the floor minus that on the ceiling is the weight of the air.
+floor. They fall, and within ten minutes density and pressure decrease with height by the barometric law, by a factor
+e every 8.4 km; the means leave out the first half hour. Each molecule falls freely between collisions, and yet the air
+neither collects on the floor nor escapes. The molecules hit the floor, and the force on the floor minus that on the
+ceiling is the weight of the air.
 
-The temperature comes out the same at all heights, because nothing stirs or heats the air. A
-molecule that rises loses speed, but only fast ones get high, and both effects cancel. A real atmosphere is heated
-from below and stirred, and therefore cools with height; left alone for long enough it would become isothermal like
-this one. The figure shows both.
+The temperature becomes the same at all heights, because nothing stirs or heats the air. A molecule that rises loses
+speed, but only fast ones get high: fewer arrive, and their mean energy is the same. A real atmosphere is heated from
+below and stirred, and therefore cools with height; left alone, without sun and radiation, it would become isothermal
+like this one in some 100,000 years. The figure shows both.
 
 With ``stirring`` parcels of the air change places up and down. One that rises expands and does work on its
 environment, and so it comes cold to the top; one that sinks is compressed and comes warm to the floor. Stirred much
-faster than molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. What is not set then
-suits it: molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in equilibrium,
-duration 300.
+faster than molecules conduct heat, the air cools by g/c_p with height, 9.8 K in a kilometre. With stirring other
+defaults apply: molecules rotate, and there are 4000 of them; ceiling at 11 km, Knudsen number 0.02, start in
+equilibrium, duration 300.
 
 Modelled: spheres in uniform gravity, exact parabolas, hard if they are 5,000 or fewer (of more, those that collide
 are drawn at random, as often as spheres would meet), periodic sides, a floor that is a heat bath or smooth, a smooth
@@ -402,7 +402,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         time_unit="s",
         facts={
             "box": f"a plane {box}, for a slab {scale.length / 1000.0:.2f} km thick" if plane else box,
-            "weight of a molecule": f"{scale.weight:.2g} real molecules",
+            "real molecules per simulated one": f"{scale.weight:.2g}",
             "exaggeration": f"{width}, without excluded volume" if engine.ideal else width,
             "gamma": "2: the discs move in a plane and do not rotate"
             if plane

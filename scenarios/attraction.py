@@ -1,18 +1,18 @@
-"""A liquid out of nothing but attraction.
+"""Molecules that only attract each other form a liquid.
 
-Molecules of argon's size, and what attracts them to a neighbour: nothing else is put in, no liquid, no vapour
-pressure, no latent heat, no surface. Two molecules that come within one and a half diameters fall into each other's
-well and gain its depth in energy of motion; to part they must climb out of it. In a dense, cold vapour that is enough:
-they gather in drops, the drops merge, and what the wells give warms the vapour.
+Prescribed are the size of a molecule of argon and its attraction to neighbours: no liquid, no vapour pressure, no
+latent heat, no surface. Two molecules that come within one and a half diameters gain the depth of a square well as
+kinetic energy; to part, they must give it back. In a dense, cold vapour that is enough: they gather in drops, the
+drops merge, and the energy released warms the vapour.
 
 Modelled: hard spheres with a square well of range 1.5, whose diameter and depth give it the critical point of argon
 (or nitrogen, or methane). Left out: the soft repulsion and the long tail of real forces. What is seen is therefore
-like argon: its vapour pressure comes out a quarter too low, its latent heat a tenth too large. It is not water: a
-molecule of water sticks four times as strongly, mostly by hydrogen bonds, which point in directions and which this
-model has not; at 20 degC water of this model would be frozen. The law of its vapour pressure is of the same shape.
+like argon: its vapour pressure is a third too low at 105 K and a sixth at 142 K, its latent heat an eighth too large
+at 111 K and a fifth at 142 K. It is not water, whose critical temperature is four times as high, mostly because of
+hydrogen bonds, which have directions and which this model lacks. The law of its vapour pressure is of the same shape.
 
-At the density of the default run there is several times as much vapour as is stable: this is a quench, with many
-clusters that merge, and not one rare nucleus.
+At the start of the default run there is several times as much vapour as is stable: it is cooled so suddenly that drops
+form everywhere at once, and merge (a quench). A vapour that is barely supersaturated waits for one rare nucleus.
 """
 
 import math
@@ -81,7 +81,7 @@ class Settings(SceneSettings):
     """What a user may set."""
 
     molecules: int = setting(800, "1", "number of molecules that attract each other", low=50, high=20_000)
-    temperature: float = setting(105.0, "K", "temperature of the bath and at the start", low=10.0, high=20_000.0)
+    temperature: float = setting(105.0, "K", "temperature of the thermostat and at the start", low=10.0, high=20_000.0)
     density: float = setting(0.26, "1", "density of these molecules, over the critical one", low=1e-4, high=2.3)
     attraction: float = setting(1.0, "1", "strength of the attraction; at 0 nothing condenses", low=0.0, high=1.0)
     start: str = setting("vapour", "", "state at the start", choices=("vapour", "slab", "drop", "pool"))
@@ -223,7 +223,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
     knobs = [Knob("attraction", "strength of the attraction", "1", 0.0, 1.0, settings.attraction, attract)]
     if settings.bath != "none":
         low, high = min(60.0, settings.temperature), max(250.0, settings.temperature)
-        knobs.append(Knob("temperature", "temperature of the bath", "K", low, high, settings.temperature, warm))
+        knobs.append(Knob("temperature", "temperature of the thermostat", "K", low, high, settings.temperature, warm))
     fluid = law.SIMPLE_FLUIDS[settings.substance]
     warmth = _warmth(settings)
     cold = (
@@ -245,7 +245,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "reduced temperature": f"T* = {warmth:.3f}; the critical one is {law.WELL_CRITICAL_TEMPERATURE}",
             "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides) + " nm, real size",
             "units": f"of time {scale.time * 1e12:.2f} ps, of pressure {scale.pressure / 1e5:.0f} bar",
-            "not water": "water attracts four times as strongly, by hydrogen bonds, which this model lacks",
+            "not water": "the critical temperature of water is four times as high, by hydrogen bonds (not modelled)",
         },
         knobs=tuple(knobs),
         doubts=cold,

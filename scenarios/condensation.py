@@ -1,13 +1,14 @@
 """Clouds form where more vapour meets water than leaves it.
 
-Moist air of real density between walls of one temperature, with more vapour in it than it can hold. Two
-things are counted: the molecules of vapour that meet liquid and stay, and those that leave it. The first rate
-falls while vapour is used up, the second depends on the temperature of the liquid alone, and where they meet
-the air is saturated: the vapour pressure is then e_s(T), the relative humidity 100 %.
+Moist air of real density between walls of one temperature, with more vapour than saturated air has. Two things are
+counted: the molecules of vapour that meet liquid and stay, and those that leave it. The first rate falls while vapour
+is used up, the second depends on the liquid alone; when the two are equal, the air is saturated, and the relative
+humidity is 100 %.
 
-The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken
-from it. What the run shows is that two rates, counted independently, meet there; that the air plays no part; how
-long it takes; and how much so few molecules scatter.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and that the
+air has no influence on it. That the two rates become equal in a closed box follows from the conservation of molecules.
+The run tests the vapour pressure at which this happens: it must be e_s(T). It also shows how long it takes, and how
+much so few molecules scatter.
 
 Modelled: hard molecules of air and water at real density; droplets too fine to draw, of one temperature and a
 given area; every molecule of vapour that meets a droplet sticks to it. Left out: ice, the curvature of droplets and
@@ -148,7 +149,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         settle=SETTLE,
         facts={
             "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
-            "weight of a molecule": "1, each stands for one real molecule",
+            "real molecules per simulated one": "1",
             "exaggeration": f"none in the gas; the drops are {settings.drop_size:g} times as wide as real ones"
             if drops
             else "none in the gas; the droplets have far more area than so little water could",

@@ -1,20 +1,19 @@
 """Two gases mix, because their molecules move at random.
 
 One gas fills the left half of a box and another the right half, at the same pressure and temperature. The wall
-between them is taken away. Every molecule flies on as it did; it is the collisions that turn its way into a random
-walk. What differs from left to right fades, its broad features last: the slowest is one half of a wave between the
-end walls, which decays as exp(-D (pi/L)^2 t). Nothing is lost and no energy changes hands, but the two gases do not
+between them is taken away. Every molecule flies on as it did; it is the collisions that turn its path into a random
+walk. Differences disappear, small-scale ones first: the last is one half of a wave between the
+end walls, which decays as exp(-D (pi/L)^2 t). Nothing is lost and no heat flows, but the two gases do not
 part again: the entropy of mixing grows to k ln 2 for each molecule.
 
-By default the two gases differ by a label alone, as air that was painted: what is measured then is how far a
-molecule gets among its like, self-diffusion. With mass_ratio the molecules on the right are so many times as heavy,
-as argon is to helium with 10.
+By default the two gases differ by a label alone, as if half of the air were painted: this is self-diffusion. With
+mass_ratio the molecules on the right are so many times as heavy, as argon is to helium with 10.
 
 Modelled: hard spheres of one size between smooth end walls; the other sides are open, and what leaves on one comes
 in on the other. Left out: rotation, gravity, currents. Exaggerated: molecules are wider than those of air, so that
 the box is many mean free paths long with some thousand of them. The coefficient D is that of Chapman and Enskog for
-a thin gas over Enskog's contact value; that it leaves out how collisions of a denser gas are correlated is in the
-error that is allowed. Gases of unlike masses also pass on heat as they mix, and the light one moves first: their
+a thin gas over Enskog's contact value; that it leaves out how collisions of a denser gas are correlated is part of the
+stated model error. Gases of unlike masses also exchange heat as they mix, and the light one moves first: their
 decay is that of the Boltzmann equation.
 """
 
@@ -81,9 +80,7 @@ class Settings(SceneSettings):
         1000.0, "hPa", "pressure that both would have if molecules were points", low=1.0, high=2e4
     )
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=3.0)
-    duration: float = setting(
-        3.0, "1", "how long to watch, in mixing times: those of the slowest mode", low=0.5, high=50.0
-    )
+    duration: float = setting(3.0, "1", "how long to watch, in mixing times", low=0.5, high=50.0)
 
     def check(self) -> None:
         """Refuse a gas that is too dense, and a box so short or so narrow that its gases do not diffuse."""
@@ -173,11 +170,11 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         (Air(), Mixing(right, {name: moment / rate for name, moment in MOMENTS.items()}, BINS)),
         facts={
             "box": f"{settings.length:g} nm long, {side * scale.length * 1e9:.1f} nm wide, its sides open",
-            "weight of a molecule": "1, each stands for one real molecule",
+            "real molecules per simulated one": "1",
             "exaggeration": f"molecules {settings.si.diameter / DRY_AIR.diameter:.1f} times as wide as those of air",
             "gamma": "5/3: the molecules do not rotate",
             "mean free path": f"{path * scale.length * 1e9:.3g} nm, a {(length[0] - 1.0) / path:.0f}th of the length",
-            "mixing time": f"{scale.time / rate * 1e9:.3g} ns, in which the slowest mode falls to 1/e",
+            "mixing time": f"{scale.time / rate * 1e9:.3g} ns: the left-right difference falls to 1/e",
             "noise": f"the diffusion coefficient of one run scatters by {100.0 * _spread(settings):.1f} %",
         },
         right=right,

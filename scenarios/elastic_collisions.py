@@ -104,10 +104,10 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         time_unit="s",
         facts={
             "box": f"a table of {settings.side:g} m x {settings.side:g} m",
-            "weight of a disc": f"1, masses from 10 g to {10.0 * float(mass.max()):.0f} g",
+            "masses": f"from 10 g to {10.0 * float(mass.max()):.0f} g",
             "exaggeration": "none",
             "gamma": "2: two degrees of freedom",
-            "noise": f"the mean energy of {n // 2} discs scatters by {100.0 * math.sqrt(2.0 / n):.0f} % in each sample",
+            "noise": f"the mean energy of {n // 2} discs scatters by {100.0 / math.sqrt(n + 1.0):.0f} % in each sample",
         },
         knobs=(rim,),
     )

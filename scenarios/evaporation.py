@@ -1,13 +1,14 @@
-"""Water evaporates, and what is left of it cools.
+"""Evaporation cools the water that remains.
 
 Dry air over a pool of water, at the pressure of the air outside and without heat from anywhere. Of the molecules
 of the pool only those leave that happen to have far more energy than the mean, and the rest grows colder: first
-the pool, then the air above it. The vapour comes back to the pool, the oftener the more there is of it, and where
-as many come back as leave, the air is saturated.
+the pool, then the air above it. The more vapour there is, the more of it returns to the pool; when as many molecules
+come back as leave, the air is saturated.
 
-The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken
-from it. What the run shows is that two rates, counted independently, meet there; that the air plays no part; that
-the pool cools first and the air follows; and how much so few molecules scatter.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and that the
+air has no influence on it. That in the end as many molecules come back as leave follows from their conservation. The
+run tests the vapour pressure and the temperature at which this happens, and the energy of the molecules that leave. It
+also shows that the pool cools first and the air follows, and how much so few molecules scatter.
 
 Modelled: molecules of air and water of real size and density under a piston that keeps the pressure, hard spheres if
 they are 5,000 or fewer (of more, those that collide are drawn at random); a pool on the floor. Every molecule of
@@ -176,7 +177,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
             "at the end, by the balance of enthalpy": f"{float(end.temperature) - 273.15:.2f} degC, "
             + (f"{float(end.vapor):.0f} molecules of vapour, " if left > 0.0 else "")
             + (f"{left:.0f} in the pool" if left > 0.0 else f"the pool dry and {humidity:.0f} % of humidity"),
-            "mean of so few molecules": f"{rest.temperature - 273.15:.2f} degC on average",
+            "the same for this number of molecules": f"{rest.temperature - 273.15:.2f} degC",
             "wet-bulb temperature": _wet_bulb(settings),
             "time until vapour hits the pool": f"{start.exchange * scale.time * 1e9:.2g} ns",
             "heat lost to the piston": f"up to {start.loss(duration):.1g} K",

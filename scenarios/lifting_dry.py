@@ -2,8 +2,8 @@
 
 Some thousand molecules fly in a box whose ceiling is a piston. The piston recedes so that the pressure
 in the box follows that of the environment, as the parcel rises. Nothing cools the molecules but this:
-those that hit the receding ceiling come back slower than they went. Temperature against pressure is the
-dry adiabat, T ~ p^(2/7).
+those that hit the receding ceiling come back slower than they went. Prescribed are the pressure at each
+moment and the two rotational degrees of freedom; what emerges is the dry adiabat, T ~ p^(2/7).
 
 Modelled: hard spheres with two rotational degrees of freedom, which exchange energy at every contact;
 smooth walls; a hydrostatic environment of constant lapse rate. Left out: gravity inside the parcel (it

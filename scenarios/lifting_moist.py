@@ -1,12 +1,12 @@
 """A parcel of moist air rises past its cloud base.
 
-Below it cools along the dry adiabat, by ten degrees in a kilometre. At the lifting condensation level its vapour
-begins to meet more liquid than leaves it, and every molecule that condenses gives up its binding energy: from
-here on the parcel cools half as fast, along the moist adiabat.
+Below it cools along the dry adiabat, by ten degrees per kilometre. At the lifting condensation level more molecules
+begin to condense than evaporate, and each that condenses releases its binding energy: from
+there on the parcel cools half as fast, along the moist adiabat.
 
-The curve e_s(T) is put in: the volatility of the liquid, its binding energy and two heat capacities are taken from
-it. The level of the cloud base is not: it is where the parcel, cooled by the receding piston, comes to saturation.
-What the run shows is that level, both lapse rates, and the errors of a fast ascent and of few molecules.
+Prescribed: the curve e_s(T), by the volatility of the liquid, its binding energy and two heat capacities; and the
+pressure at each moment. What emerges is the level of the cloud base, where the parcel, cooled by the receding piston,
+becomes saturated, and both lapse rates.
 
 Modelled: molecules of air and water that rotate, hard spheres if they are 5,000 or fewer; of more, those that
 collide are drawn at random; droplets too fine to draw, of one temperature, carried along by the air; the latent
@@ -66,7 +66,7 @@ class Settings(SceneSettings):
     rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(1000.0, "1", "duration of the ascent, in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:

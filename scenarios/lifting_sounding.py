@@ -2,7 +2,8 @@
 
 The air at the ground is lifted through the air that a balloon has found above it. As long as it is colder than the
 environment, it must be pushed; above the level of free convection its cloud is warmer, and it rises by itself, up to
-the equilibrium level. The area between the two curves is the energy that a storm can have.
+the equilibrium level. The area between the two curves is the energy that buoyancy can give each kilogram
+of air.
 
 Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
 at random; droplets too fine to draw, of one temperature, carried along by the air; the environment as it was
@@ -59,7 +60,7 @@ class Settings(SceneSettings):
     rain: bool = setting(False, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
     ascent: float = setting(1400.0, "1", "duration of the ascent, in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:

@@ -1,13 +1,16 @@
 """Air that crosses mountains arrives warm and dry: the foehn.
 
 A parcel climbs a mountain of two kilometres, sinks into a valley at one, climbs a second of three and sinks to the
-plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down what
-cloud is left evaporates, and from there the parcel warms by ten degrees in a kilometre: more than it had cooled.
-Without rain it would arrive as it set out.
+plain again. On the way up its vapour condenses and warms it; part of the water rains out. On the way down the rest of
+the cloud evaporates. From there the parcel warms by ten degrees per kilometre, over a longer way than it cooled at that
+rate. Without rain it would arrive with the temperature at which it started.
+
+Prescribed: the curve e_s(T), the path, and how much cloud rains out, and how fast. What emerges is where clouds begin
+and end, how much rain falls, and how warm the parcel arrives.
 
 Modelled: molecules of air and water, hard spheres if they are 5,000 or fewer; of more, those that collide are drawn
-at random; droplets too fine to draw, of one temperature, carried along by the air; rain, which takes what liquid the
-cloud cannot hold with its heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind,
+at random; droplets too fine to draw, of one temperature, carried along by the air; rain, which falls out of the cloud
+with its heat. Left out: ice, the curvature of droplets and what is dissolved in them; the wind,
 mixing with the environment, heat from the ground and from the sun. Exaggerated: eight kilometres up and down within
 nanoseconds.
 """
@@ -63,8 +66,8 @@ class Settings(SceneSettings):
     lapse_rate: float = setting(6.5, "K km-1", "lapse rate of the environment", low=-5.0, high=20.0)
     rain: bool = setting(True, "", "whether it rains when the cloud holds too much")
     cloud_water: float = setting(1.0, "g kg-1", "liquid that the cloud holds before it rains", low=0.0, high=20.0)
-    travel: float = setting(600.0, "1", "duration of the way, in mean free times at its start", low=20.0, high=1e6)
-    area: float = setting(12.0, "1", "area of all droplets, in floors of the box", low=0.1, high=100.0)
+    travel: float = setting(600.0, "1", "duration of the crossing, in mean free times at its start", low=20.0, high=1e6)
+    area: float = setting(12.0, "1", "area of all droplets, divided by that of the floor", low=0.1, high=100.0)
     diameter: float = setting(1.3, "nm", "diameter of a molecule; that of air is 0.37 nm", low=0.1, high=1.6)
 
     def check(self) -> None:

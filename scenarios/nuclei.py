@@ -1,21 +1,21 @@
 """Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
 
-A molecule leaves a small drop more easily than a flat surface: its surface shrinks, and gives back the energy that it
-cost. The air must hold the more vapour the smaller the drop is, or it evaporates, and a drop has to be small before it
-can be large. Salt helps: where part of the molecules are salt, fewer are water, and fewer leave. In one box of
-supersaturated air there are drops with a grain of salt in them and drops of pure water, of as many molecules. Those
-with salt grow. The others vanish, though the humidity is the same for all.
+A molecule leaves a small drop more easily than a flat surface: the drop's surface shrinks, and releases surface energy.
+A small drop evaporates unless the air is strongly supersaturated; the smaller the drop, the more. And every drop begins
+small. Salt helps: where part of the molecules are salt, fewer are water, and fewer leave. In one box of supersaturated
+air there are drops with a grain of salt in them and drops of pure water, of as many molecules. Those with salt grow.
+The others vanish, though the humidity is the same for all.
 
-Put in: the surface energy of a drop, from the measured tension of water and the volume of its molecules; the curve
-e_s(T) of a flat surface; and that in an ideal solution each way to arrange water and salt is as likely. What emerges
-is the vapour over each drop (the laws of Kelvin and of Koehler), and with it which drops live.
+Prescribed: the surface energy of a drop, from the measured tension of water and the volume of its molecules; the curve
+e_s(T) of a flat surface; and an ideal solution, in which all ways to arrange water and salt are equally likely. What
+emerges is the vapour pressure over each drop (the laws of Kelvin and of Koehler), and with it which drops grow.
 
 Modelled: hard molecules of air and water at real density, drops that molecules hit and leave one by one. Left out:
 salt that does not dissolve at once, and attraction of its ions for water beyond the ideal; a tension that changes with
 the radius, though a drop of sixty molecules has no sharp surface; gravity. Drops rest, and have the temperature of the
-walls: their nuclei take up the latent heat, which in real air slows their growth. Exaggerated: drops are hit on the
-area of wider ones (drop_size), which changes how soon they grow, and not which of them do; the grains are far smaller
-than those in the atmosphere, and need far more vapour.
+walls: their nuclei take up the latent heat, which in real air slows their growth. Exaggerated: molecules hit drops as
+if these were drop_size times as wide, which changes how soon they grow, and not which of them do; the grains are far
+smaller than those in the atmosphere, and need far more vapour.
 """
 
 import math
@@ -209,8 +209,8 @@ def _facts(settings: Settings, growth: DropGrowth) -> dict[str, str]:
     box, si = growth.box, settings.si
     found = {
         "box": f"a cube of {1e9 * (box.side + 1.0) * box.scale.length:.1f} nm, real size",
-        "weight of a molecule": "1, each stands for one real molecule",
-        "exaggeration": f"none in the gas; drops are hit on the area of those {settings.drop_size:g} times as wide, "
+        "real molecules per simulated one": "1",
+        "exaggeration": f"none in the gas; molecules hit drops as if these were {settings.drop_size:g} times as wide, "
         "and the nuclei keep their temperature",
         "vapour at the start": f"{box.vapour} molecules; {box.full:.0f} saturate the air",
         "surface tension": f"{1e3 * growth.tension:.1f} mN/m",

@@ -149,7 +149,7 @@ def build(settings: Settings, engine: EngineChoice = EXACT) -> Setup:
         settle=SETTLE,
         facts={
             "box": f"a cube of {length[0] * scale.length * 1e9:.1f} nm, real size",
-            "weight of a molecule": "1, each stands for one real molecule",
+            "real molecules per simulated one": "1",
             "exaggeration": "none: mass, diameter, density and speeds are those of air",
             "gamma": "5/3: the molecules do not rotate",
             "mean free path": f"{free_path * scale.length * 1e9:.3g} nm",

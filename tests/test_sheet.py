@@ -202,11 +202,13 @@ def test_the_latent_heat_in_the_answers_of_evaporation_is_that_of_theory(tempera
     assert float(carried) == pytest.approx(mean * 1e21, abs=0.6)
 
 
-def test_the_binding_energy_over_the_mean_in_the_liquid_is_what_condensation_says():
+def test_the_latent_heat_that_condensation_names_gives_the_growth_of_the_vapour_pressure():
     first = runner.prepare("condensation", {})
     text = filled(read(text_of(first.module)).differ[1].answer.partition("To leave")[2], {"A": Trial("A", "", first)})
-    binding = theory.BINDING_TEMPERATURE / 293.15
-    assert f"{binding:.0f} k T, which is {binding / theory.LIQUID_HEAT_CAPACITY:.1f} times" in text
+    (latent,) = re.findall(r"= (\d+) k T", text)
+    cold, warm = 293.15, 303.15
+    grown = theory.saturation_vapor_pressure(warm) / theory.saturation_vapor_pressure(cold)
+    assert np.exp(float(latent) * (1.0 - cold / warm)) == pytest.approx(grown, rel=0.01)
 
 
 @pytest.fixture(scope="module")

@@ -100,7 +100,7 @@ def parcel_facts(scale: Scale, sides: NDArray[np.float64]) -> dict[str, str]:
     """
     return {
         "box": " x ".join(f"{side * scale.length * 1e9:.1f}" for side in sides + 1.0) + " nm at the start, real size",
-        "weight of a molecule": "1, each stands for one real molecule",
+        "real molecules per simulated one": "1",
         "exaggeration": f"molecules {scale.length / DRY_AIR.diameter:.1f} times as wide as those of air",
     }
 

@@ -26,9 +26,9 @@ lifting             a parcel that is lifted, or compressed without heat
 finite_rate         the finite-rate error of an ascent, and the effect of excluded volume on it
 environment         the environment of a parcel: lapse rates, pressures and heights
 standard_atmosphere temperature and pressure of the International Standard Atmosphere
-saturation          how much water vapour air can hold
+saturation          vapour pressure at saturation, latent heat, dewpoint
 iapws               the saturation vapour pressure of measured water, to compare with
-humidity            how much water vapour air does hold, and how light that makes the air
+humidity            how much water vapour is in the air, and how light that makes the air
 moist_lifting       the cloud base of a lifted parcel, and its temperature with cloud and rain
 rain                a lifted parcel whose cloud rains at a finite rate
 cloud_base          the cloud base of a measured ascent

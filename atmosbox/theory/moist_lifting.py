@@ -154,7 +154,7 @@ def parcel_path(
     pressure : (level,)
         Pressures in the order in which the parcel meets them, rising or falling [Pa].
     pressure0, temperature0
-        Pressure [Pa] and temperature [K] at the start. Air given more water than it can hold starts with a cloud.
+        Pressure [Pa] and temperature [K] at the start. Air given more water than saturation starts with a cloud.
     total_water
         Vapour and liquid at the start, mass per mass of dry air [kg kg^-1].
     most_liquid

@@ -1,4 +1,4 @@
-r"""How much water vapour air can hold: latent heat, vapour pressure at saturation, dewpoint.
+r"""Saturation of water vapour: its pressure, latent heat, dewpoint.
 
 A molecule of water is held in the liquid by one binding energy, :math:`\varphi`; it has the heat capacity 4 k as
 vapour, at constant pressure, and 9.14 k as liquid. These three numbers give the latent heat and, by the law of

@@ -191,7 +191,11 @@ def moist_price(found: Findings) -> None:
         if not abs(misfit.mean()) <= top[0].tolerance + 4.0 * error:
             found.failures.append(f"an ascent of {length} mean free times is {misfit.mean():.2f} K off")
         rows.append([str(length), f"{signed(misfit.mean(), 2)} ± {error:.2f}", f"{top[0].tolerance:.2f}"])
-    found.table(["length of the ascent [mean free times]", "misfit at 500 hPa [K]", "allowed for [K]"], rows, "length")
+    found.table(
+        ["length of the ascent [mean free times]", "difference at 500 hPa [K]", "stated model error [K]"],
+        rows,
+        "length",
+    )
     rows = []
     for molecules in NUMBERS:
         runs = [lifted(molecules=molecules, seed=seed) for seed in SEEDS]
@@ -226,7 +230,7 @@ def draw_price(found: Findings, fast: np.ndarray, few: np.ndarray) -> None:
                 left,
                 fast,
                 "length of the ascent (mean free times)",
-                "misfit at 500 hPa (K)",
+                "difference at 500 hPa (K)",
                 "A fast ascent is off",
                 ALONE,
             ),

@@ -63,7 +63,7 @@ def barometric(found: Findings) -> None:
             float(expected[i]) / n,
         )
     worst = float(np.max(np.abs(counted.mean - expected) / counted.standard_error))
-    found.bound(f"largest misfit of a layer, of {LAYERS}, in standard errors", worst, 4.0)
+    found.bound(f"largest difference of a layer, of {LAYERS}, in standard errors", worst, 4.0)
     found.agree(
         "mean height",
         float(middle.mean),

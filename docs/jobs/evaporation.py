@@ -54,10 +54,8 @@ def evaporation_seeds(found: Findings) -> None:
     lines.append(["**mean**", *(f"**{shown(m, d)} ± {e:.{d}f}**" for m, e, d in together)])
     found.table(["seed", *(heading for heading, _, _ in COLUMNS.values())], lines)
     for k, name in enumerate(("air", "pool")):
-        found.number(name, f"{shown(mean[k], 2)} ± {error[k]:.2f} K")
         if abs(mean[k]) > NEAR:
             found.failures.append(f"the {name} ends {mean[k]:.2f} K off the balance of enthalpy")
-    found.number("saturation", f"{shown(mean[2], 1)} ± {error[2]:.1f} %")
 
 
 @job("evaporation-ends", quick=True)

@@ -130,7 +130,7 @@ def draw_equation_of_state(found: Findings, points: np.ndarray) -> None:
             label="molecules",
         )
         right.set(
-            title="The misfit",
+            title="The difference from theory",
             xlabel="packing fraction φ",
             ylabel="measured minus theory, % of Z",
             xlim=(0.0, 0.51),

@@ -49,7 +49,7 @@ def lifting_seeds(found: Findings) -> None:
     rows.append(["**mean**", *(f"**{m:+.2f} ± {e:.2f}**" for m, e in zip(mean, error, strict=True))])
     rows.append(["**largest**", *(f"**{value:.2f}**" for value in largest)])
     found.table(
-        ["seed", "misfit at 700 hPa [K]", "misfit at 300 hPa [K]"],
+        ["seed", "difference at 700 hPa [K]", "difference at 300 hPa [K]"],
         [[str(c).replace("-", "−") for c in r] for r in rows],
     )
     for level, m, e, worst in zip(LEVELS, mean, error, largest, strict=True):
@@ -161,7 +161,7 @@ def draw_finite_speed(
 @job("rotation")
 def rotation(found: Findings) -> None:
     """Lift molecules that rotate, and such that do not."""
-    runs = {on: runner.execute(runner.prepare("lifting-dry", {"rotation": on, "ascent": 400})) for on in (True, False)}
+    runs = {on: runner.execute(runner.prepare("lifting-dry", {"rotation": on})) for on in (True, False)}
     with axes_of(1, (6.8, 4.8)) as (drawing, (axes,)):
         for on, freedom, colour, marker in ((True, 5, BLUE, "o"), (False, 3, VERMILLION, "s")):
             data = runs[on].dataset

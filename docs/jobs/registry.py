@@ -119,7 +119,7 @@ class Findings:
     def close(self) -> None:
         """Make a table of the rows that were entered."""
         if self.rows:
-            self.table(["quantity", "measured", "theory", "misfit", "allowed"], self.rows)
+            self.table(["quantity", "measured", "theory", "difference", "expected within"], self.rows)
             self.rows = []
 
     def figure(self, drawing: Any, name: str, dots_per_inch: float) -> None:

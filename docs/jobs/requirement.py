@@ -176,7 +176,7 @@ def column(found: Findings) -> None:
             ["the excluded volume of wide molecules", f"$Z - 1$ = {rounded(crowd)} at the floor",
              f"on `exact` the mean height is {rounded(100.0 * higher)} % larger, which the theory beside it counts; on "
              "`dsmc`, on which so many molecules run, they exclude none"],
-            ["weight of a molecule", f"{rounded(air.scale.weight)}",
+            ["real molecules per simulated one", f"{rounded(air.scale.weight)}",
              "pressure, density and energy are multiplied by it, speeds and temperatures are not; what does not "
              f"scale is chance: the temperature of the column scatters by "
              f"{rounded(100.0 * math.sqrt(2.0 / (3.0 * settings.molecules)))} %, as that of {settings.molecules} "
@@ -214,8 +214,8 @@ def table_of_pucks(found: Findings) -> None:
              "the energy of a disc is $kT$ on average, of a sphere $\\frac32 kT$; that it is the same for all masses "
              "holds in both"],
             ["spin and friction", "0: the impulse is along the line of centres, and turns no smooth disc",
-             "no energy goes where it is not counted"],
-            ["more discs", f"noise {rounded(100.0 * math.sqrt(2.0 / discs.number))} % of the mean energy of one half",
+             "all energy is kinetic energy of translation"],
+            ["more discs", f"noise {rounded(100.0 / math.sqrt(discs.number + 1.0))} % of the mean energy of one half",
              "the curves are means since the start, which come to rest"],
             ["relativity", f"$(v/c)^2$ = {rounded((settings.si.speed / constants.c) ** 2)}",
              "Newton's mechanics is exact here"],

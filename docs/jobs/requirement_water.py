@@ -12,8 +12,6 @@ from atmosbox.theory.constants import BOLTZMANN, DRY_AIR, GAS_CONSTANT, STANDARD
 
 SURFACE_TENSION = 75.65e-3
 """Of water at 0 degC [N m-1]: IAPWS R1-76(2014)."""
-FUSION = 333.55e3
-"""Latent heat of melting at 0 degC [J kg-1]: IAPWS-06 (ice) with IAPWS-95."""
 LIQUID_DENSITY = 999.8
 """Of water at 0 degC [kg m-3]."""
 DIFFUSIVITY = 2.11e-5
@@ -30,6 +28,14 @@ def kelvin(radius: float, temperature: float) -> float:
     return 2.0 * SURFACE_TENSION / (LIQUID_DENSITY * gas * temperature * radius)
 
 
+def fusion(temperature: float) -> float:
+    """Return the latent heat of freezing of supercooled water [J kg-1]: Murphy and Koop 2005, equations 5 and 9."""
+    t = temperature
+    ice = 46782.5 + 35.8925 * t - 0.07414 * t**2 + 541.5 * math.exp(-((t / 123.75) ** 2))
+    liquid = 56579.0 - 42.212 * t + math.exp(0.1149 * (281.6 - t))
+    return (ice - liquid) / WATER.molar_mass
+
+
 @job("requirement-moist", quick=True)
 def rising_cloud(found: Findings) -> None:
     """Weigh what the rising cloud leaves out, from the settings that it starts with."""
@@ -41,7 +47,7 @@ def rising_cloud(found: Findings) -> None:
     below = float(ascent.planned_at(base).temperature[0])
     heat = 3.5 * GAS_CONSTANT / DRY_AIR.molar_mass
     weight = end * liquid
-    frozen = FUSION * liquid / heat
+    frozen = fusion(end) * liquid / heat
     humid = 4.0 * math.pi * DIFFUSIVITY * CONCENTRATION * DROPLET
     climbing = 1.0  # m/s
     scale_height = GAS_CONSTANT / DRY_AIR.molar_mass * below / STANDARD_GRAVITY
@@ -61,8 +67,8 @@ def rising_cloud(found: Findings) -> None:
         HEAD,
         [
             ["ice", f"{rounded(1000.0 * liquid)} g/kg of liquid at {top / 100.0:.0f} hPa, {end - 273.15:.0f} °C",
-             f"if all of it froze the parcel would be {rounded(frozen)} K warmer; real clouds do so between −10 and "
-             "−38 °C"],
+             f"if all of it froze there, with {rounded(fusion(end) / 1000.0, 3)} kJ/kg, the parcel would be "
+             f"{rounded(frozen)} K warmer; real clouds do so between −10 and −38 °C"],
             ["rain (at the default)", f"the pseudo-adiabat ends {rounded(lost)} K from the reversible one",
              "`rain=on` shows it"],
             ["curvature of droplets", f"$\\ln e/e_s$ = {rounded(kelvin(DROPLET, below))} for {DROPLET * 1e6:.0f} µm, "
@@ -117,7 +123,7 @@ def vapour_and_pool(found: Findings) -> None:
              "so little does saturated vapour differ from an ideal gas"],
             ["the pressure of the air on the liquid, and air dissolved in it",
              f"enhancement factor 1 + {rounded(enhancement)} at 1000 hPa (Buck 1981)",
-             "saturated air holds that much more vapour than the table of pure water says"],
+             "saturated air has that much more vapour than the table of pure water says"],
             ["heat capacities that change with temperature", f"$e_s$ at 100 °C is {rounded(float(off[3]))} % off",
              f"at −10, 20 and 40 °C it is {below} below measured water"],
             ["gravity", f"$mgh/kT$ = {rounded(heavy)} over the box", "nothing falls within it"],

@@ -31,14 +31,14 @@ FINE = 0.01
 
 
 def measured_water(celsius: np.ndarray) -> np.ndarray:
-    """Return by which share the vapour pressure of real water is above the one that is put in."""
+    """Return by which share the vapour pressure of real water is above the prescribed one."""
     t = np.asarray(celsius) + 273.15
     above: np.ndarray = theory.saturation_vapor_pressure_iapws(t) / theory.saturation_vapor_pressure(t) - 1.0
     return above
 
 
 def iapws(found: Findings) -> None:
-    """Keep by how much the formula that is put in is off that of measured water."""
+    """Keep by how much the prescribed formula is off that of measured water."""
     for celsius in (-10, 20, 40, 100):
         off = 100.0 * (1.0 / (1.0 + float(measured_water(np.array(celsius)))) - 1.0)
         found.number(f"iapws{celsius}", f"{off:.2f} %".replace("-", "−"))
@@ -46,7 +46,7 @@ def iapws(found: Findings) -> None:
 
 @job("saturation")
 def saturation(found: Findings) -> None:
-    """Let vapour condense at six temperatures: the rates meet at the vapour pressure that was put in."""
+    """Let vapour condense at six temperatures, until both rates are equal at the prescribed vapour pressure."""
     rows = []
     for celsius, own in RUNS.items():
         settings = {"temperature": celsius, "molecules": 3000, "area": 12.0, **own}
@@ -79,7 +79,7 @@ def draw_saturation(
         top, low = drawing.subplots(2, 1, sharex=True, height_ratios=(2.1, 1.0))
         band = {"color": REFERENCE_COLOURS[0], "linewidth": 5.0, "alpha": 0.7}
         top.plot(line, formula * (1.0 + real) / 100.0, **band, label="measured water (IAPWS)")
-        top.plot(line, formula / 100.0, "--", color=DARK, label="$e_s(T)$ that is put in")
+        top.plot(line, formula / 100.0, "--", color=DARK, label="$e_s(T)$, prescribed")
         top.errorbar(
             t,
             e / 100.0,
@@ -91,7 +91,7 @@ def draw_saturation(
             zorder=5,
         )
         top.set(
-            title="The two rates meet at the vapour pressure put in",
+            title="The two rates are equal at the prescribed vapour pressure",
             ylabel="vapour pressure (hPa)",
             xlim=(-15.0, 44.0),
             ylim=(0.0, 85.0),

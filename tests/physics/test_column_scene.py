@@ -63,7 +63,7 @@ def test_the_facts_of_a_plane_column_are_those_of_discs():
     assert plane["exaggeration"].startswith("discs 0.9 m wide")
     assert "slab 8.43 km thick" in plane["box"]
     # the same number of molecules represents the same amount of air
-    assert plane["weight of a molecule"] == space["weight of a molecule"]
+    assert plane["real molecules per simulated one"] == space["real molecules per simulated one"]
     assert plane["scale height"] == space["scale height"]
 
 

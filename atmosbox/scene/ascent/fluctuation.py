@@ -100,7 +100,7 @@ def temperature_covariance(cloud: Cloud, samples: int, *, density: bool = False)
     none = np.zeros_like(cloud.moment)
     cloudy = np.stack([1.0 / cloud.cloudy_heat, none], axis=1)
     clear = np.stack([1.0 / cloud.clear_heat, (cloud.latent - np.log(cloud.humidity)) / cloud.clear_heat], axis=1)
-    if density:  # warmer air holds more vapour, and water that has rained has no weight in the parcel
+    if density:  # at a higher temperature more water is vapour, and water that has rained has no weight in the parcel
         carried = law.WATER_MASS_RATIO / (cloud.air + law.WATER_MASS_RATIO * (cloud.vapour + cloud.liquid))
         cloudy += np.stack([cloud.dries / cloud.gas, carried], axis=1)
         clear[:, 1] += carried - 1.0 / cloud.gas

@@ -7,7 +7,7 @@ water.
 
 **How they grow.** On average the cloud holds m molecules more than it can keep; at a given moment it holds
 :math:`m + x` more, where x has the standard deviation s (`near_equilibrium`). The cloud lacks each molecule that has
-fallen, and also each molecule that warmer air holds as vapour, :math:`v_S = v (1 + v/N) \lambda / C_p` for a unit of
+fallen, and also each molecule that warming turns into vapour, :math:`v_S = v (1 + v/N) \lambda / C_p` for a unit of
 entropy. With the rate r and :math:`a = m/s`,
 
 .. math:: dR = -r \, \Phi(a) \, (R + v_S S) \, dt + dW, \qquad
