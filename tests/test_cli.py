@@ -269,8 +269,48 @@ def test_force_replaces_a_file(folder):
 
 
 def test_what_an_earlier_run_left_is_not_replaced_in_silence(folder):
-    Path(f"{SCENE}.part.nc").write_text("left", encoding="utf-8")
-    assert f"{SCENE}.part.nc is left from a run that was stopped" in atmosbox_in_process(*SHORT).stderr
+    Path("x.part.nc").write_text("left", encoding="utf-8")
+    assert "x.part.nc is left from a run that was stopped" in atmosbox_in_process(*SHORT, "--out", "x.nc").stderr
+
+
+def test_a_second_run_gets_a_number_and_loses_nothing(folder):
+    Path(f"{SCENE}.nc").write_text("mine", encoding="utf-8")
+    Path(f"{SCENE}-2.part.nc").write_text("of a run that was stopped", encoding="utf-8")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert planned(*SHORT[1:])["file"] == f"{SCENE}-3.nc"
+    result = atmosbox_in_process(*SHORT)
+    assert (result.exit_code, result.stderr) == (
+        0,
+        f"note: the name {SCENE}.nc is in use, so this file is {SCENE}-3.nc\n",
+    )
+    assert result.stdout.endswith(f"file: {SCENE}-3.nc\nnext: atmosbox plot {SCENE}-3.nc\n")
+    assert output.read(f"{SCENE}-3.nc").attrs["atmosbox_status"] == "complete"
+    assert {name: Path(name).read_bytes() for name in before} == before
+
+
+def test_two_runs_at_once_write_two_files(folder, monkeypatch):
+    """The second begins when the first has its name, but no file yet."""
+    execute, inner = runner.execute, []
+
+    def interrupted(prepared, *, checkpoint, **named):
+        if not inner:
+            inner.append(None)
+            checkpoint.begin()
+            taken = checkpoint._lock.path.read_text(encoding="utf-8")
+            checkpoint._lock.path.write_text(taken.replace(str(os.getpid()), "1"), encoding="utf-8")
+            inner.append(atmosbox_in_process(*SHORT, "--quiet"))
+        return execute(prepared, checkpoint=checkpoint, **named)
+
+    monkeypatch.setattr(runner, "execute", interrupted)
+    assert atmosbox_in_process(*SHORT, "--quiet").stdout == f"{SCENE}.nc\n"
+    assert inner[1].stdout == f"{SCENE}-2.nc\n", inner[1].output
+    assert sorted(path.name for path in folder.iterdir()) == [f"{SCENE}-2.nc", f"{SCENE}.nc"]
+
+
+def test_a_dry_run_asks_for_nothing_that_only_a_run_needs(folder, no_computing):
+    Path("x.nc").write_text("mine", encoding="utf-8")
+    assert planned(*SHORT[1:], "--out", "x.nc")["file"] == "x.nc"
+    assert [path.name for path in folder.iterdir()] == ["x.nc"]
 
 
 def test_a_dry_run_shows_everything_and_writes_nothing(folder, no_computing):
@@ -475,6 +515,27 @@ def test_no_command_replaces_a_file_unasked(folder, no_computing, finished, endi
     assert "--force" in refused(atmosbox_in_process(*words, "-o", f"mine.{ending}"))
     assert made.read_text(encoding="utf-8") == "mine"
     assert sorted(folder.iterdir()) == before
+
+
+def test_a_default_name_that_is_in_use_gets_a_number(folder, finished):
+    shutil.copy(finished, "x.nc")
+    for words, first in [
+        (["plot", "x.nc"], "x.png"),
+        (["view", "x.nc"], "x.html"),
+        (["compare", "x.nc", "x.nc"], "x-and-x.png"),
+        (["export", "x.nc", "--format", "csv"], "x-headlines.csv"),
+        (["sheet", SCENE, "--format", "md"], f"{SCENE}-sheet.md"),
+        (["lab", SCENE], f"{SCENE}-lab.html"),
+    ]:
+        Path(first).write_text("mine", encoding="utf-8")
+        before = set(folder.iterdir())
+        result = atmosbox_in_process(*words)
+        assert result.exit_code == 0, result.output
+        second = first.replace("x-headlines", "x-2-headlines") if "csv" in words else f"-2.".join(first.rsplit(".", 1))
+        assert folder / second in set(folder.iterdir()) - before, words
+        assert second in result.stdout + result.stderr
+        assert "is in use, so this file is" in result.stderr
+        assert Path(first).read_text(encoding="utf-8") == "mine"
 
 
 def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):

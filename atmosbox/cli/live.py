@@ -139,7 +139,7 @@ def _place(out: str | None, scene: str, *, force: bool) -> tuple[Path, str | Non
         return Path(), None
     from atmosbox.file.output_path import check_writable
 
-    path = check_writable(netcdf_name(out, for_scene(scene)), force)
+    path = check_writable(netcdf_name(Path(out)), force)
     return path.parent, path.name
 
 

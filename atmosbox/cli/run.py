@@ -22,7 +22,7 @@ from atmosbox.cli.option import (
     out_option,
     quiet_option,
 )
-from atmosbox.cli.output_name import for_scene, netcdf_name
+from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError, SettingError
@@ -84,6 +84,7 @@ def run(
     bit as if the run had never been stopped; also after a crash.
     """
     from atmosbox.file.checkpoint import Checkpoint
+    from atmosbox.file.output_path import run_is_there, unused, whole_path
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time
 
@@ -94,24 +95,27 @@ def run(
         asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
         with prints_to_stderr():
             prepared = runner.prepare(**asked._asdict())
-        path = netcdf_name(out, for_scene(prepared.scene))
+        default = for_scene(prepared.scene)
     else:
         given = {"set": values, "config": config, "from": source, "seed": seed, "engine": engine, "accuracy": accuracy}
         for name, value in (given | {"save-molecules": save_molecules or None}).items():
             if value is not None and value != []:
                 raise SettingError(f"--{name}", None, "cannot change a run that goes on", "leave it out")
-        from atmosbox.file.output_path import whole_path
         from atmosbox.simulation.restart import read_state
 
         restart = read_state(resume)
         with prints_to_stderr():
             prepared = runner.prepared_again(restart, scene)
-        path = netcdf_name(out, whole_path(resume))
-    checkpoint = Checkpoint(path, force=force)
-    if dry_run or verbose:
-        _describe(prepared, path, quiet=quiet, as_json=as_json, dry_run=dry_run)
+        default = whole_path(resume)
+    path = netcdf_name(default if out is None else Path(out))
+    numbered = out is None and resume is None and not force
     if dry_run:
+        path = unused(path, run_is_there) if numbered else path
+        _describe(prepared, path, quiet=quiet, as_json=as_json, dry_run=True)
         return
+    checkpoint = Checkpoint(path, force=force, numbered=numbered)
+    if verbose:
+        _describe(prepared, checkpoint.path, quiet=quiet, as_json=as_json, dry_run=False)
     if checkpoint.stale and not quiet and (resume is None or Path(resume).resolve() != checkpoint.part.resolve()):
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
@@ -130,19 +134,23 @@ def run(
                 strict=strict,
             )
     except runner.Interrupted as stop:
+        if numbered and not quiet:
+            say_number(path, checkpoint.path)
         _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
         raise typer.Exit(stop.exit_code) from stop
     except (KeyboardInterrupt, AtmosboxError):
         if _stamp(checkpoint.part) not in (None, before):
             tell(f"note: the frames that were complete are kept in {checkpoint.part}")
         raise
-    _say_outcome(outcome, prepared, path, quiet=quiet, as_json=as_json)
+    if numbered and not quiet:
+        say_number(path, checkpoint.path)
+    _say_outcome(outcome, prepared, checkpoint.path, quiet=quiet, as_json=as_json)
     if not outcome.ledger <= runner.LEDGER_LIMIT:
         from atmosbox.text.report import next_command
 
         raise PhysicsError(
             f"The energy ledger of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
-            f"type {next_command('check', path)} to see what else is."
+            f"type {next_command('check', checkpoint.path)} to see what else is."
         )
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, Language, PageTheme, Verbose, out_option
-from atmosbox.cli.output_name import beside
+from atmosbox.cli.option import Force, Language, PageTheme, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
@@ -31,6 +30,7 @@ def view(
     theme: PageTheme = "auto",
     language: Language = "auto",
     force: Force = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the page, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Show the molecules of a run in three dimensions, with its graphs on the same clock.
@@ -40,12 +40,12 @@ def view(
     """
     if len(files) > MOST:
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")
-    with progress("view", quiet=False) as show:
+    with progress("view", quiet=quiet) as show:
         show(0.0, "reading the molecules")
         from atmosbox.file.netcdf import read
         from atmosbox.file.output_path import check_writable
 
-        path = Path(out) if out is not None else beside(files, "html")
+        path = chosen(out, beside(files, "html"), force=force, quiet=quiet)
         check_writable(path, force)
         runs = [read(file) for file in files]
         show(0.4, "writing the page")
