@@ -163,10 +163,35 @@ def test_a_wrong_usage_ends_with_2(folder):
         ["plot"],
         ["plot", "x.nc", "--theme", "z"],
     ]:
-        result = atmosbox_in_process(*words)
-        assert result.exit_code == 2
-        assert result.stdout == ""
+        refused(atmosbox_in_process(*words))
         assert list(folder.iterdir()) == []
+
+
+def test_a_setting_needs_no_option_and_another_spelling_is_answered_with_the_users_own_value(folder, no_computing):
+    assert planned(SCENE, "duration=2s", "seed=3")["settings"]["duration"] == 2.0
+    Path("a.toml").write_text(f'scene = "{SCENE}"', encoding="utf-8")
+    assert planned("--config", "a.toml", "duration=2s")["settings"]["duration"] == 2.0
+    assert planned(SCENE, "--out", "a=b.nc")["file"] == "a=b.nc"
+    run = ["run", "temperature"]
+    for words, said in [
+        ([*run, "--temperature", "30"], "give temperature=30, or --set temperature=30"),
+        ([*run, "--temperature=30degC"], "give temperature=30degC"),
+        ([*run, "--set", "temperature", "=", "30"], "write temperature=30"),
+        ([*run, "temperature=", "30"], "write temperature=30"),
+        ([*run, "temperature=30", "degC"], "write temperature=30degC"),
+        ([*run, "temperature", "30"], "temperature=30"),
+        ([*run, "--forse"], "--force"),
+        (["set", "temperature=30"], "atmosbox run SCENE --set temperature=30"),
+        (["temperature", "temperature=30"], "atmosbox run temperature temperature=30"),
+        (["lsit"], "atmosbox list"),
+        (["info"], "atmosbox info lifting-dry"),
+        (["plot", "x.nc", "--theme", "slide"], "one of notes, slides: give --theme slides"),
+        (["animate", "x.nc", "--fps", "fast"], "--fps = fast is not a number"),
+        (["list", "--json=3"], "--json takes no value"),
+        ([*run, "--set"], "--set NAME=VALUE"),
+        (["--foo"], "atmosbox --help"),
+    ]:
+        assert said in refused(atmosbox_in_process(*words)), words
 
 
 # The scenes
@@ -531,7 +556,7 @@ def test_a_default_name_that_is_in_use_gets_a_number(folder, finished):
         before = set(folder.iterdir())
         result = atmosbox_in_process(*words)
         assert result.exit_code == 0, result.output
-        second = first.replace("x-headlines", "x-2-headlines") if "csv" in words else f"-2.".join(first.rsplit(".", 1))
+        second = first.replace("x-headlines", "x-2-headlines") if "csv" in words else "-2.".join(first.rsplit(".", 1))
         assert folder / second in set(folder.iterdir()) - before, words
         assert second in result.stdout + result.stderr
         assert "is in use, so this file is" in result.stderr

@@ -29,7 +29,7 @@ from atmosbox.cli.option import (
     out_option,
     quiet_option,
 )
-from atmosbox.cli.output_name import for_scene, netcdf_name
+from atmosbox.cli.output_name import netcdf_name
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
 from atmosbox.errors import SettingError

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 @command(
     "atmosbox run lifting-dry",
-    "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
-    "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
+    "atmosbox run lifting-dry temperature=25degC molecules=2000 --seed 7 --out warm.nc",
+    "atmosbox run --from warm.nc temperature=5degC --out cold.nc",
     "atmosbox run --config lift.toml --dry-run",
     "atmosbox run temperature --accuracy sketch",
     "atmosbox run --resume lifting-dry.part.nc",
