@@ -21,13 +21,42 @@ import zlib
 from importlib.abc import InspectLoader
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
 
 from atmosbox.errors import FileError, UnknownSceneError, shown
 
-__all__ = ["REQUIRED", "load", "names", "summaries"]
+__all__ = ["REQUIRED", "Summary", "load", "names", "summaries"]
 
 REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
 """What every scenario module must define."""
+
+_ORDER = (
+    "temperature",
+    "temperature-large",
+    "elastic-collisions",
+    "diffusion",
+    "atmosphere",
+    "lifting-dry",
+    "evaporation",
+    "condensation",
+    "nuclei",
+    "lifting-moist",
+    "lifting-sounding",
+    "mountains",
+    "attraction",
+)
+"""The order of teaching; scenes not named here follow by name."""
+
+
+class Summary(NamedTuple):
+    """What `atmosbox list` says of a scene."""
+
+    sentence: str
+    """The first sentence of its docstring."""
+    level: str
+    """For whom it is: school, first year or second year."""
+    minutes: int | None
+    """How much time of a class it takes."""
 
 
 def _checkout_scenarios(here: Path) -> Path | None:
@@ -54,7 +83,7 @@ def names() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The names in alphabetical order, as a user types them: with dashes.
+        The names in the order of teaching, as a user types them: with dashes.
 
     Examples
     --------
@@ -62,16 +91,18 @@ def names() -> tuple[str, ...]:
     True
     """
     found = {module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")}
-    return tuple(sorted(name.replace("_", "-") for name in found))
+    place = {name: k for k, name in enumerate(_ORDER)}
+    typed = (name.replace("_", "-") for name in found)
+    return tuple(sorted(typed, key=lambda name: (place.get(name, len(place)), name)))
 
 
-def summaries() -> dict[str, str]:
-    """Return the first sentence of each scenario's docstring by name; no scenario is imported.
+def summaries() -> dict[str, Summary]:
+    """Return what `atmosbox list` says of each scenario, by name; no scenario is imported.
 
     Examples
     --------
     >>> summaries()["lifting-dry"]
-    'A parcel of dry air rises and cools.'
+    Summary(sentence='A parcel of dry air rises and cools.', level='first year', minutes=15)
     """
     found = {}
     for name in names():
@@ -79,8 +110,15 @@ def summaries() -> dict[str, str]:
         source = None
         if spec is not None and isinstance(spec.loader, InspectLoader):
             source = spec.loader.get_source(spec.name)
-        text = ast.get_docstring(ast.parse(source or "")) or ""
-        found[name] = text.partition("\n\n")[0].replace("\n", " ")
+        tree = ast.parse(source or "")
+        text = ast.get_docstring(tree) or ""
+        said = {
+            ast.unparse(node.targets[0]): node.value.value
+            for node in tree.body
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+        }
+        sentence = text.partition("\n\n")[0].replace("\n", " ")
+        found[name] = Summary(sentence, str(said.get("level", "")), said.get("minutes"))
     return found
 
 
@@ -147,15 +185,15 @@ def _unknown(text: str) -> UnknownSceneError:
         fix = f"did you mean {' or '.join(near)}? `atmosbox list` shows all"
     else:
         fix = "`atmosbox list` shows all"
-    return UnknownSceneError(f"There is no scenario named {shown(text)}: {fix}.")
+    return UnknownSceneError(f"There is no scene {shown(text)}: {fix}.")
 
 
 def _load_file(path: Path) -> ModuleType:
     """Run a user's own file as a module and check that it is a scenario."""
     if os.path.isdir(path):
-        raise FileError(f"{path} is a folder: give the path of the scenario's .py file in it.")
+        raise FileError(f"{path} is a folder: give the path of the scene's .py file in it.")
     if not os.path.exists(path):
-        raise FileError(f"There is no file {path}: check its path, or take a scenario that `atmosbox list` shows.")
+        raise FileError(f"There is no file {path}: check its path, or take a scene that `atmosbox list` shows.")
     try:
         source = path.read_bytes()
     except OSError as error:
@@ -178,8 +216,8 @@ def _load_file(path: Path) -> ModuleType:
     if missing:
         del sys.modules[module.__name__]
         raise FileError(
-            f"{path} is not a scenario, for it does not define {', '.join(missing)}: "
-            "write them as the scenarios of atmosbox do, such as scenarios/lifting_dry.py."
+            f"{path} is not a scene, for it does not define {', '.join(missing)}: "
+            "write them as the scenes of atmosbox do, such as scenarios/lifting_dry.py."
         )
     return module
 
