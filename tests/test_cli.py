@@ -358,9 +358,21 @@ def test_verbose_says_on_stderr_what_is_run(folder):
     assert "duration" in result.stderr
 
 
-def test_the_molecules_are_saved_on_request(folder):
-    atmosbox_in_process(*SHORT, "--save-molecules")
-    assert "molecule_position" in output.read(f"{SCENE}.nc")
+def test_the_molecules_are_saved_on_request_and_those_of_a_small_run_unasked(folder):
+    small = ["run", "temperature", "duration=0.05ns", "molecules=50"]
+    large = ["run", "temperature", "duration=0.05ns", "molecules=400"]
+    for words, kept in [
+        ([*SHORT, "--save-molecules"], True),
+        (SHORT, False),  # its discs are saved in any case
+        (small, True),
+        ([*small, "--no-save-molecules"], False),
+        (large, False),
+        ([*large, "--save-molecules"], True),
+    ]:
+        result = atmosbox_in_process(*words, "--out", "x.nc", "--force")
+        assert ("molecule_position" in output.read("x.nc")) is kept, words
+        assert ("molecules: not kept" in result.stdout) is (words is large)
+        assert (gather(None, source="x.nc").save_molecules) is {"-": kept}.get(words[-1][0]), words
 
 
 def test_a_scene_of_ones_own_runs_by_its_path_and_its_prints_are_no_result(folder):
@@ -397,11 +409,6 @@ def test_an_earlier_run_is_repeated_bit_for_bit(folder, finished):
     assert atmosbox_in_process("run", "--from", str(finished), "--out", "again.nc").exit_code == 0
     first, again = output.read(finished), output.read("again.nc")
     xr.testing.assert_equal(first, again)
-
-
-def test_an_earlier_run_that_saved_its_molecules_does_so_again(folder):
-    atmosbox_in_process(*SHORT, "--save-molecules")
-    assert gather(None, source=f"{SCENE}.nc").save_molecules is True
 
 
 def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):

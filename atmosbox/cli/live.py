@@ -85,7 +85,8 @@ def live(
 
     from atmosbox.simulation import runner
 
-    asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
+    asked = gather(scene, values or (), config, source, seed, save_molecules or None, engine, accuracy)
+    asked = asked._replace(save_molecules=asked.save_molecules is True)
     with prints_to_stderr():
         prepared = runner.prepare(**asked._asdict())
     folder, name = _place(out, prepared.scene, force=force)

@@ -20,7 +20,7 @@ def gather(
     config: str | None = None,
     source: str | None = None,
     seed: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
 ) -> Asked:
@@ -39,7 +39,7 @@ def gather(
     seed, engine, accuracy
         The texts after the options of these names.
     save_molecules
-        Whether the molecules are saved.
+        Whether the molecules are saved; None if they were in the earlier run, or take less than 10 MB.
 
     Raises
     ------
@@ -61,7 +61,8 @@ def gather(
     if source is not None:
         run = _earlier(source)
         scene = _agreed(scene, run.scene, "--from", source, FileError)
-        settings, of_file, save_molecules = run.settings, run.engine, save_molecules or run.save_molecules
+        settings, of_file = run.settings, run.engine
+        save_molecules = run.save_molecules if save_molecules is None else save_molecules
     if config is not None:
         asked = load_config(config)
         scene = _agreed(scene, asked.scene, "--config", config, ConfigError)
@@ -93,12 +94,12 @@ def _earlier(path: str) -> Asked:
     from atmosbox.version import __version__
 
     made = parameters(read(path))
-    scene, settings = made.get("scene"), made.get("settings")
+    scene, settings, kept = made.get("scene"), made.get("settings"), made.get("save_molecules")
     if not isinstance(scene, str) or not isinstance(settings, dict):
         raise FileError(f"{path} does not say which run it holds: give a file that atmosbox run has written.")
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
-    return Asked(scene, settings, str(made.get("engine", "exact")), made.get("save_molecules") is True)
+    return Asked(scene, settings, str(made.get("engine", "exact")), kept if isinstance(kept, bool) else None)
 
 
 def _agreed(scene: str, named: str, option: str, path: str, error: type[AtmosboxError]) -> str:

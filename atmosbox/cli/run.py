@@ -54,9 +54,13 @@ def run(
     out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder]")] = None,
     force: Force = False,
     save_molecules: Annotated[
-        bool,
-        typer.Option("--save-molecules", help="Save place and velocity of every molecule, in every frame."),
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--save-molecules/--no-save-molecules",
+            help="Save place and velocity of every molecule, in every frame.  [default: if they take less than 10 MB]",
+            show_default=False,
+        ),
+    ] = None,
     resume: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="Go on with a run that was stopped or killed, from its NAME.part.nc."),
@@ -98,7 +102,7 @@ def run(
         default = for_scene(prepared.scene)
     else:
         given = {"set": values, "config": config, "from": source, "seed": seed, "engine": engine, "accuracy": accuracy}
-        for name, value in (given | {"save-molecules": save_molecules or None}).items():
+        for name, value in (given | {"save-molecules": save_molecules}).items():
             if value is not None and value != []:
                 raise SettingError(f"--{name}", None, "cannot change a run that goes on", "leave it out")
         from atmosbox.simulation.restart import read_state
@@ -169,7 +173,10 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: boo
         say(str(path))
     else:
         expected_lines = expectation_lines(prepared.expectation, outcome.headlines, prepared.unusual_engine, width())
-        say("\n".join(outcome_lines(outcome, path=path, limit=LEDGER_LIMIT, width=width(), expected=expected_lines)))
+        lines = outcome_lines(outcome, path=path, limit=LEDGER_LIMIT, width=width(), expected=expected_lines)
+        if prepared.save_molecules is None and not {"molecule_position", "disc_position"} & set(outcome.dataset):
+            lines.insert(-2, "molecules: not kept, for they take more than 10 MB; --save-molecules keeps them for view")
+        say("\n".join(lines))
 
 
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:

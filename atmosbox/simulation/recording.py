@@ -15,7 +15,7 @@ import numpy as np
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Instrument, Molecules, Readings
 from atmosbox.scene.setup import Setup
-from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.preparation import Prepared, keeps_molecules
 from atmosbox.simulation.verification import with_bias
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class Recording:
     instruments: tuple[Instrument, ...] = ()
 
     def __post_init__(self) -> None:
-        extra = (Molecules(self.setup.right),) if self.prepared.save_molecules else ()
+        extra = (Molecules(self.setup.right),) if keeps_molecules(self.prepared, self.setup) else ()
         self.instruments = (*(self.instruments or self.setup.instruments), *extra)
         if self.first:
             snapshot = self.setup.parcel.snapshot()
