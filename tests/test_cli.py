@@ -145,6 +145,22 @@ def test_what_must_be_there_at_once_waits_for_nothing_heavy(folder):
     assert set(HEAVY).isdisjoint(loaded)
 
 
+def test_a_high_temperature_without_a_unit_is_said_to_be_in_degrees_celsius():
+    for value, told in [("300", True), (" 300.5", True), ("300K", False), ("300degC", False), ("30", False)]:
+        result = atmosbox_in_process("run", "temperature", f"temperature={value}", "--dry-run")
+        number = value.strip()
+        note = f"note: temperature={number} is taken as {number} degC; for kelvin, give temperature={number}K\n"
+        assert result.stderr == (note if told else "")
+
+
+def test_a_figure_of_a_scene_that_was_run_is_offered_its_file(folder):
+    assert "did you mean" not in refused(atmosbox_in_process("plot", "temperature"))
+    Path("temperature.nc").touch()
+    assert "temperature does not exist: did you mean temperature.nc" in refused(
+        atmosbox_in_process("plot", "temperature")
+    )
+
+
 @pytest.mark.parametrize(("scene", "settings"), [(SCENE, {}), ("evaporation", {"molecules": 300, "pool": 50})])
 def test_what_is_told_of_a_scene_is_what_its_box_is(scene, settings):
     prepared = runner.prepare(scene, settings)

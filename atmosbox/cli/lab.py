@@ -21,7 +21,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import chosen, for_scene
-from atmosbox.cli.request import gather
+from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say
 from atmosbox.text.progress import progress
 
@@ -51,12 +51,9 @@ def lab(
     it was written with, and gives the same numbers as run. Some knobs of live act in it; all other
     settings are fixed when the page is written.
     """
-    from atmosbox.simulation import runner
-
     asked = gather(scene, values or (), config, source, seed, False, engine, accuracy).for_a_page()
     with progress("lab", quiet=quiet) as show:
-        with prints_to_stderr():
-            prepared = runner.prepare(**asked._asdict())
+        prepared = checked(asked)
         path = chosen(out, for_scene(prepared.scene, "-lab.html"), force=force, quiet=quiet)
         from atmosbox.file.output_path import check_writable
 

@@ -30,7 +30,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import netcdf_name
-from atmosbox.cli.request import gather
+from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
 from atmosbox.errors import SettingError
 
@@ -83,12 +83,9 @@ def live(
     """
     number = _port(port)
 
-    from atmosbox.simulation import runner
-
     asked = gather(scene, values or (), config, source, seed, save_molecules or None, engine, accuracy)
     asked = asked._replace(save_molecules=asked.save_molecules is True)
-    with prints_to_stderr():
-        prepared = runner.prepare(**asked._asdict())
+    prepared = checked(asked)
     folder, name = _place(out, prepared.scene, force=force)
 
     from atmosbox.live import Session

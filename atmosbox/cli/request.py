@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.cli.terminal import tell
+from atmosbox.cli.terminal import prints_to_stderr, tell
 from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError
 
 if TYPE_CHECKING:
     from atmosbox.cli.config import Asked
+    from atmosbox.simulation.preparation import Prepared
+
+WARM = 100.0  # degC: above it, a number without a unit may have been meant in kelvin
 
 
 def gather(
@@ -79,6 +83,21 @@ def gather(
         problem = f"picks engine and settings, and so does --from {shlex.quote(source)}"
         raise SettingError("accuracy", accuracy, problem, "leave one of them out")
     return Asked(scene, settings, engine or of_file, save_molecules, accuracy)
+
+
+def checked(asked: Asked) -> Prepared:
+    """Return the scene of a request, checked; say how a high temperature without a unit was taken."""
+    from atmosbox.scene.spelling import field_name
+    from atmosbox.simulation import runner
+
+    with prints_to_stderr():
+        made = runner.prepare(**asked._asdict())
+    values = {field_name(name): str(value).strip() for name, value in asked.settings.items() if isinstance(value, str)}
+    for parameter in made.settings.describe():
+        name, value = parameter.name, values.get(parameter.name, "")
+        if parameter.unit == "degC" and re.fullmatch(r"[0-9]+(\.[0-9]*)?", value) and float(value) > WARM:
+            tell(f"note: {name}={value} is taken as {value} degC; for kelvin, give {name}={value}K")
+    return made
 
 
 def is_path(scene: str) -> bool:

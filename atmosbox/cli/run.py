@@ -23,7 +23,7 @@ from atmosbox.cli.option import (
     quiet_option,
 )
 from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
-from atmosbox.cli.request import gather
+from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
@@ -96,9 +96,7 @@ def run(
     if resume is None:
         if extend > 1:
             raise SettingError("extend", extend, "needs a run that is there", "give --resume FILE with it")
-        asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
-        with prints_to_stderr():
-            prepared = runner.prepare(**asked._asdict())
+        prepared = checked(gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy))
         default = for_scene(prepared.scene)
     else:
         given = {"set": values, "config": config, "from": source, "seed": seed, "engine": engine, "accuracy": accuracy}
