@@ -25,10 +25,12 @@ from typing import NamedTuple
 
 from atmosbox.errors import FileError, UnknownSceneError, shown
 
-__all__ = ["REQUIRED", "Summary", "load", "names", "summaries"]
+__all__ = ["REQUIRED", "Summary", "load", "names", "place", "summaries"]
 
 REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
 """What every scenario module must define."""
+
+_OWN = "_atmosbox_scene_"  # begins the name of the module of a user's own scene
 
 _ORDER = (
     "temperature",
@@ -202,7 +204,7 @@ def _load_file(path: Path) -> ModuleType:
     # A unique name, so that a user's file cannot replace a module of Python or of another library; in
     # sys.modules, because pydantic and dataclasses look a module up by its name.
     location = str(path.resolve())
-    module = ModuleType(f"_atmosbox_scene_{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
+    module = ModuleType(f"{_OWN}{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
     module.__file__ = location
     sys.modules[module.__name__] = module
     try:
@@ -219,7 +221,22 @@ def _load_file(path: Path) -> ModuleType:
             f"{path} is not a scene, for it does not define {', '.join(missing)}: "
             "write them as the scenes of atmosbox do, such as scenarios/lifting_dry.py."
         )
+    for name, declared in getattr(module, "variables", {}).items():
+        if not (isinstance(declared, tuple) and len(declared) == 3 and all(isinstance(part, str) for part in declared)):
+            raise FileError(
+                f"{path} declares the variable {shown(name)} as {shown(declared)}: "
+                'give dimensions, unit and words, such as ("elapsed_time", "m", "mean height").'
+            )
     return module
+
+
+def place(error: BaseException) -> str | None:
+    """Return the line of a user's own scene in which an error arose, as "my_scene.py, line 30"; None if in none."""
+    own = {module.__file__ for name, module in list(sys.modules.items()) if name.startswith(_OWN)}
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        if frame.filename in own:
+            return f"{Path(frame.filename).name}, line {frame.lineno}"
+    return None
 
 
 def _why(path: Path, location: str, error: BaseException) -> str:

@@ -191,6 +191,8 @@ def build(prepared: Prepared) -> Setup:
     try:
         engine = [prepared.engine] if _takes_engine(prepared.module) else []
         setup: Setup = prepared.module.build(prepared.settings, *engine)
+        if not isinstance(setup, Setup):
+            raise TypeError(f"build returns a {type(setup).__name__}, and not a Setup")
         if isinstance(setup.parcel, MarchingParcel):
             setup.parcel.divide(setup.frame / setup.samples)
     except EnginePackingError as error:
@@ -203,7 +205,9 @@ def build(prepared: Prepared) -> Setup:
             raise SettingError(
                 "engine", str(prepared.engine), f"cannot do {prepared.scene} ({error})", f"give --engine {EXACT}"
             ) from error
-        raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
+        where = scenarios.place(error)
+        box = f"The box of {prepared.scene}" if where is None else f"{where}: the box"
+        raise EngineError(f"{box} cannot be built: {error}.") from error
     if prepared.save_molecules:
         needed = _space(setup)
         if needed > _MEMORY:

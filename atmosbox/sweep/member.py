@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError
 from atmosbox.simulation import runner
 from atmosbox.simulation.continuation import execute_from
@@ -61,7 +62,9 @@ def run(task: Task, progress: Progress | None = None) -> Record:
     except MemoryError:
         return failure(task, "The computer has not enough memory for it.")
     except Exception as error:
-        return failure(task, f"This is a bug in atmosbox or in your own scene ({type(error).__name__}: {error}).")
+        where = scenarios.place(error)
+        what = "This is a bug in atmosbox" if where is None else f"{where} cannot be run"
+        return failure(task, f"{what} ({type(error).__name__}: {error}).")
     if not outcome.headlines:
         return failure(task, "The run was too short for any of its headlines to be measured.")
     return {
