@@ -19,7 +19,7 @@ __all__ = ["OneSentence", "command_refusal", "one_sentence"]
 
 UsageError: Any = typer.BadParameter.__base__  # of the click inside typer, which has no public name
 
-_ASSIGNMENT = re.compile(r"[A-Za-z][\w-]*=.+", re.DOTALL)
+_ASSIGNMENT = re.compile(r"[A-Za-z][\w-]*=.*", re.DOTALL)
 _NUMBER = r"[-+]?[\d.]"
 
 
@@ -76,6 +76,13 @@ class Command(TyperCommand):
                 return f"{before} {extra[0]} is two words: write {shlex.quote(whole)}, without a blank."
             if len(extra) > 1 and re.match(_NUMBER, extra[1]) and extra[0].isidentifier():
                 return f"{extra[0]} {extra[1]} is two words: write a setting as {extra[0]}={shlex.quote(extra[1])}."
+            if extra[0] in _settings(words):
+                return f"{extra[0]} is a setting and has no value: give {extra[0]}=VALUE."
+        elif _ASSIGNMENT.fullmatch(extra[0]):
+            return f"atmosbox {self.name} takes no settings: leave {extra[0]} out, or give it to atmosbox run."
+        elif extra[0].endswith(".nc"):
+            pair = shlex.join(["atmosbox", "compare", *(word for word in words if word.endswith(".nc"))])
+            return f"atmosbox {self.name} takes one file, and is given {1 + len(extra)}: give one, or type {pair}."
         return (
             f"{shlex.join(extra)} is too much for atmosbox {self.name}: leave it out; "
             f"atmosbox {self.name} --help shows what may be given."
@@ -91,10 +98,11 @@ class Command(TyperCommand):
             if "does not take" in error.message:
                 return f"{name} takes no value: give {name} alone."
             return f"{name} has no value: give {name} {getattr(found, 'metavar', None) or 'VALUE'}."
-        parameter = getattr(error, "param", None)
+        parameter: Any = getattr(error, "param", None)
         if kind == "MissingParameter":
             wanted = parameter.metavar or parameter.name.upper()
-            example = (self.epilog or "").strip().splitlines()[2].strip()
+            lines = [line.strip() for line in (self.epilog or "").splitlines()]
+            example = next(line for line in lines if line.startswith(f"atmosbox {self.name} "))
             return f"atmosbox {self.name} needs {wanted}: type for instance {example}."
         if parameter is not None:
             option = next((opt for opt in parameter.opts if opt in words), parameter.opts[0])
@@ -113,7 +121,8 @@ class Command(TyperCommand):
         from atmosbox.scene.spelling import nearest
 
         known = [opt for each in self.params for opt in each.opts if opt.startswith("--")]
-        place = next(k for k, word in enumerate(words) if word == option or word.startswith((f"{option}=", option)))
+        place = next(k for k, word in enumerate(words) if word.startswith(option))
+        option = words[place].partition("=")[0]
         value = words[place].partition("=")[2] or next(iter(words[place + 1 : place + 2]), "")
         value = shlex.quote(value) if value and not value.startswith("--") else "VALUE"
         if self._sets:
@@ -182,11 +191,12 @@ def command_refusal(words: Sequence[str], commands: Sequence[str]) -> OneSentenc
     elif name.endswith(".nc") and Path(name).exists():
         meant = ["plot", *words]
     elif name == "set":
-        meant = ["run", "SCENE", "--set", *(rest or ["NAME=VALUE"])]
+        given = rest if any("=" in word for word in rest) else ["=".join(rest) or "NAME=VALUE"]
+        meant = ["run", "SCENE", "--set", *given]
     elif name == "help":
         meant = [*rest[:1], "--help"]
     else:
-        near = nearest(name, commands)
+        near = nearest(name, commands) or ("run" if set(rest) & set(scenarios.names()) else None)
         if near is None:
             return OneSentence(f"There is no command {shown(name)}: atmosbox --help shows all.")
         meant = [near, *rest]

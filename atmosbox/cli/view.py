@@ -17,14 +17,13 @@ MOST = 2
 
 
 @command(
-    "atmosbox run temperature --save-molecules",
     "atmosbox view temperature.nc",
     "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
     "atmosbox view temperature.nc --language es --force",
 )
 def view(
     files: Annotated[
-        list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two, made with --save-molecules.")
+        list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two that kept their molecules.")
     ],
     out: Annotated[str | None, out_option("The page.  [default: beside FILE, by its name]")] = None,
     theme: PageTheme = "auto",

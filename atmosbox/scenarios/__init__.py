@@ -21,7 +21,7 @@ import zlib
 from importlib.abc import InspectLoader
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from atmosbox.errors import FileError, UnknownSceneError, shown
 
@@ -114,7 +114,7 @@ def summaries() -> dict[str, Summary]:
             source = spec.loader.get_source(spec.name)
         tree = ast.parse(source or "")
         text = ast.get_docstring(tree) or ""
-        said = {
+        said: dict[str, Any] = {
             ast.unparse(node.targets[0]): node.value.value
             for node in tree.body
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
@@ -183,6 +183,8 @@ def _unknown(text: str) -> UnknownSceneError:
     near = difflib.get_close_matches(text.lower().replace("_", "-"), names(), n=3, cutoff=0.5)
     if os.path.isfile(f"{text}.py"):
         fix = f"to run your own file, give its path, ./{text}.py"
+    elif text.endswith(".nc"):
+        fix = f"to run the scene of a file again, type atmosbox run --from {shown(text)}"
     elif near:
         fix = f"did you mean {' or '.join(near)}? `atmosbox list` shows all"
     else:

@@ -125,7 +125,9 @@ class Parameter:
         try:
             unit = number_and_unit(value)[1]
         except ValueError:
-            return True  # words
+            return self.kind not in ("int", "float") or any(
+                c.isdigit() for c in str(value)
+            )  # words, or several numbers
         known = known_unit(unit or "1")
         if known is None:
             return True  # a row of numbers, or a unit that is misspelled
