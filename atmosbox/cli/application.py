@@ -21,7 +21,7 @@ R = TypeVar("R")
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
 # The order of the commands in the help: what a beginner needs first; commands not named here follow by name.
-_ORDER = "tour list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
+_ORDER = "list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
 
 
 class _Group(TyperGroup):
