@@ -17,6 +17,124 @@ __all__ = ["__version__", "compare", "open", "plot", "run", "scenes", "show", "s
 
 @overload
 def run(
+    scene: Literal["temperature"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 200,
+    temperature: float | str = 25.0,
+    start_temperature: float | str = -150.0,
+    pressure: float | str = 1000.0,
+    start: Literal["maxwell", "equal"] = "maxwell",
+    duration: float | str = 20.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""What temperature is: the motion of molecules.
+
+    molecules: number of molecules; 1 to 1000000
+    temperature [degC]: temperature of the walls; -270 degC to 2000 degC
+    start_temperature [degC]: temperature at which the molecules start; -273 degC to 2000 degC
+    pressure [hPa]: pressure of the air once it is as warm as the walls; 0.01 hPa to 100000 hPa
+    start: speeds at the start: all different, or all equal; maxwell or equal
+    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["temperature-large"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 800,
+    temperature: float | str = 25.0,
+    start_temperature: float | str = -150.0,
+    pressure: float | str = 1000.0,
+    start: Literal["maxwell", "equal"] = "maxwell",
+    duration: float | str = 20.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""What temperature is, with four times as many molecules.
+
+    molecules: number of molecules; 1 to 1000000
+    temperature [degC]: temperature of the walls; -270 degC to 2000 degC
+    start_temperature [degC]: temperature at which the molecules start; -273 degC to 2000 degC
+    pressure [hPa]: pressure of the air once it is as warm as the walls; 0.01 hPa to 100000 hPa
+    start: speeds at the start: all different, or all equal; maxwell or equal
+    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["elastic-collisions"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 60,
+    mass_ratio: float | str = 20.0,
+    filling: float | str = 15.0,
+    side: float | str = 1.0,
+    speed: float | str = 0.5,
+    duration: float | str = 60.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Discs of unlike mass collide in a plane, and share their energy.
+
+    molecules: number of discs; 2 to 5000
+    mass_ratio: largest possible ratio of two masses; 1 to 1000000
+    filling [%]: share of the table that the discs cover; 0.01 % to 70 %
+    side [m]: side of the table; 0.01 m to 100 m
+    speed [m s-1]: speed of every disc at the start; 0.001 m s-1 to 1000 m s-1
+    duration [s]: how long to watch; 0.1 s to 1000000 s
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["diffusion"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 12000,
+    length: float | str = 150.0,
+    mass_ratio: float | str = 1.0,
+    temperature: float | str = 15.0,
+    pressure: float | str = 1000.0,
+    diameter: float | str = 1.3,
+    duration: float | str = 3.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Two gases mix, because their molecules move at random.
+
+    molecules: number of molecules of both gases together; 100 to 1000000
+    length [nm]: length of the box; 10 nm to 10000 nm
+    mass_ratio: mass of a molecule on the right, divided by that of one on the left; 0.01 to 100
+    temperature [degC]: temperature of both gases; -200 degC to 1000 degC
+    pressure [hPa]: pressure that both would have if molecules were points; 1 hPa to 20000 hPa
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 3 nm
+    duration: how long to watch, in mixing times; 0.5 to 50
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
     scene: Literal["atmosphere"],
     *,
     out: str | os.PathLike[str] | None = None,
@@ -24,7 +142,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     molecules: int | str = 10000,
     temperature: float | str = 288.15,
     surface_pressure: float | str = 1013.25,
@@ -60,165 +178,6 @@ def run(
 
 @overload
 def run(
-    scene: Literal["attraction"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 800,
-    temperature: float | str = 105.0,
-    density: float | str = 0.26,
-    attraction: float | str = 1.0,
-    start: Literal["vapour", "slab", "drop", "pool"] = "vapour",
-    bath: Literal["random", "walls", "none"] = "random",
-    air: float | str = 0.0,
-    substance: Literal["argon", "nitrogen", "methane"] = "argon",
-    duration: float | str = 1.6,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""Molecules that only attract each other form a liquid.
-
-    molecules: number of molecules that attract each other; 50 to 20000
-    temperature [K]: temperature of the thermostat and at the start; 10 K to 20000 K
-    density: density of these molecules, over the critical one; 0.0001 to 2.3
-    attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
-    start: state at the start; vapour or slab or drop or pool
-    bath: what keeps the temperature; random or walls or none
-    air: density of molecules that attract none, over the critical one; 0 to 1
-    substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
-    duration [ns]: how long to watch; 0.0001 ns to 10000 ns
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
-    scene: Literal["condensation"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 10000,
-    temperature: float | str = 20.0,
-    pressure: float | str = 1000.0,
-    humidity: float | str = 150.0,
-    area: float | str = 2.0,
-    drops: int | str = 0,
-    drop_size: float | str = 6.0,
-    duration: float | str = 40.0,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""Clouds form where more vapour meets water than leaves it.
-
-    molecules: number of molecules of air and vapour; 50 to 1000000
-    temperature [degC]: temperature of the walls; -60 degC to 95 degC
-    pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 50000 hPa
-    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
-    area: area of the mist, in faces of the box; 0.01 to 100
-    drops: number of nuclei of drops that can be seen; 0 for a mist; 0 to 50
-    drop_size: how many times wider the drops are than real ones; 1 to 20
-    duration [ns]: how long to watch; 0.01 ns to 100000 ns
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
-    scene: Literal["diffusion"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 12000,
-    length: float | str = 150.0,
-    mass_ratio: float | str = 1.0,
-    temperature: float | str = 15.0,
-    pressure: float | str = 1000.0,
-    diameter: float | str = 1.3,
-    duration: float | str = 3.0,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""Two gases mix, because their molecules move at random.
-
-    molecules: number of molecules of both gases together; 100 to 1000000
-    length [nm]: length of the box; 10 nm to 10000 nm
-    mass_ratio: mass of a molecule on the right, divided by that of one on the left; 0.01 to 100
-    temperature [degC]: temperature of both gases; -200 degC to 1000 degC
-    pressure [hPa]: pressure that both would have if molecules were points; 1 hPa to 20000 hPa
-    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 3 nm
-    duration: how long to watch, in mixing times; 0.5 to 50
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
-    scene: Literal["elastic-collisions"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 60,
-    mass_ratio: float | str = 20.0,
-    filling: float | str = 15.0,
-    side: float | str = 1.0,
-    speed: float | str = 0.5,
-    duration: float | str = 60.0,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""Discs of unlike mass collide in a plane, and share their energy.
-
-    molecules: number of discs; 2 to 5000
-    mass_ratio: largest possible ratio of two masses; 1 to 1000000
-    filling [%]: share of the table that the discs cover; 0.01 % to 70 %
-    side [m]: side of the table; 0.01 m to 100 m
-    speed [m s-1]: speed of every disc at the start; 0.001 m s-1 to 1000 m s-1
-    duration [s]: how long to watch; 0.1 s to 1000000 s
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
-    scene: Literal["evaporation"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 15000,
-    pool: int | str = 3000,
-    temperature: float | str = 30.0,
-    humidity: float | str = 20.0,
-    pressure: float | str = 1000.0,
-    duration: float | str = 20.0,
-    diameter: float | str = 0.37,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""Evaporation cools the water that remains.
-
-    molecules: number of molecules of air and vapour at the start; 200 to 1000000
-    pool: number of molecules in the pool at the start; 1 to 1000000
-    temperature [degC]: temperature of the air and of the pool at the start; -60 degC to 95 degC
-    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
-    pressure [hPa]: pressure of the air, kept constant; 1 hPa to 20000 hPa
-    duration [ns]: how long to watch; 0.01 ns to 10000 ns
-    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1 nm
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
     scene: Literal["lifting-dry"],
     *,
     out: str | os.PathLike[str] | None = None,
@@ -226,7 +185,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     molecules: int | str = 4000,
     temperature: float | str = 15.0,
     pressure: float | str = 1000.0,
@@ -252,6 +211,109 @@ def run(
 
 @overload
 def run(
+    scene: Literal["evaporation"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 15000,
+    pool: int | str = 3000,
+    temperature: float | str = 30.0,
+    humidity: float | str = 20.0,
+    pressure: float | str = 1000.0,
+    duration: float | str = 20.0,
+    diameter: float | str = 0.37,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Evaporation cools the water that remains.
+
+    molecules: number of molecules of air and vapour at the start; 200 to 1000000
+    pool: number of molecules in the pool at the start; 1 to 1000000
+    temperature [degC]: temperature of the air and of the pool at the start; -60 degC to 95 degC
+    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
+    pressure [hPa]: pressure of the air, kept constant; 1 hPa to 20000 hPa
+    duration [ns]: how long to watch; 0.01 ns to 10000 ns
+    diameter [nm]: diameter of a molecule; that of air is 0.37 nm; 0.1 nm to 1 nm
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["condensation"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 10000,
+    temperature: float | str = 20.0,
+    pressure: float | str = 1000.0,
+    humidity: float | str = 150.0,
+    area: float | str = 2.0,
+    drops: int | str = 0,
+    drop_size: float | str = 6.0,
+    duration: float | str = 40.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Clouds form where more vapour meets water than leaves it.
+
+    molecules: number of molecules of air and vapour; 50 to 1000000
+    temperature [degC]: temperature of the walls; -60 degC to 95 degC
+    pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 50000 hPa
+    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
+    area: area of the mist, in faces of the box; 0.01 to 100
+    drops: number of nuclei of drops that can be seen; 0 for a mist; 0 to 50
+    drop_size: how many times wider the drops are than real ones; 1 to 20
+    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
+    scene: Literal["nuclei"],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: Show | bool | None = None,
+    engine: str | None = None,
+    accuracy: str | None = None,
+    save_molecules: bool | None = None,
+    molecules: int | str = 3000,
+    temperature: float | str = 20.0,
+    pressure: float | str = 100.0,
+    humidity: float | str = 250.0,
+    salted: int | str = 1,
+    pure: int | str = 3,
+    salt: int | str = 25,
+    water: int | str = 60,
+    tension: float | str = 1.0,
+    drop_size: float | str = 4.0,
+    duration: float | str = 150.0,
+    seed: int | str = 1,
+) -> RunDataset:
+    r"""Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
+
+    molecules: number of molecules of air and vapour; 50 to 1000000
+    temperature [degC]: temperature of the walls and of the drops; -30 degC to 95 degC
+    pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 5000 hPa
+    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
+    salted: number of drops with a grain of salt in them; 0 to 20
+    pure: number of drops of pure water; 0 to 20
+    salt: pairs of ions in each grain of salt; 1 to 1000
+    water: molecules of water in each drop at the start; 0 to 5000
+    tension: surface tension, divided by that of water; 0 to 2
+    drop_size: how many times wider the drops are than real ones; 1 to 10
+    duration [ns]: how long to watch; 0.1 ns to 100000 ns
+    seed: seed of the random numbers; 0 to 9223372036854775807
+    """
+
+@overload
+def run(
     scene: Literal["lifting-moist"],
     *,
     out: str | os.PathLike[str] | None = None,
@@ -259,7 +321,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     molecules: int | str = 30000,
     temperature: float | str = 25.0,
     dewpoint: float | str = 17.0,
@@ -298,7 +360,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     sounding: str = "weisman-klemp",
     molecules: int | str = 30000,
     top_pressure: float | str = 150.0,
@@ -331,7 +393,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     molecules: int | str = 30000,
     temperature: float | str = 25.0,
     dewpoint: float | str = 17.0,
@@ -367,98 +429,36 @@ def run(
 
 @overload
 def run(
-    scene: Literal["nuclei"],
+    scene: Literal["attraction"],
     *,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 3000,
-    temperature: float | str = 20.0,
-    pressure: float | str = 100.0,
-    humidity: float | str = 250.0,
-    salted: int | str = 1,
-    pure: int | str = 3,
-    salt: int | str = 25,
-    water: int | str = 60,
-    tension: float | str = 1.0,
-    drop_size: float | str = 4.0,
-    duration: float | str = 150.0,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""Why clouds need dust: over a small drop of pure water the vapour pressure is too high.
-
-    molecules: number of molecules of air and vapour; 50 to 1000000
-    temperature [degC]: temperature of the walls and of the drops; -30 degC to 95 degC
-    pressure [hPa]: pressure of air and vapour at the start; 1 hPa to 5000 hPa
-    humidity [percent]: relative humidity at the start; 0 percent to 1000 percent
-    salted: number of drops with a grain of salt in them; 0 to 20
-    pure: number of drops of pure water; 0 to 20
-    salt: pairs of ions in each grain of salt; 1 to 1000
-    water: molecules of water in each drop at the start; 0 to 5000
-    tension: surface tension, divided by that of water; 0 to 2
-    drop_size: how many times wider the drops are than real ones; 1 to 10
-    duration [ns]: how long to watch; 0.1 ns to 100000 ns
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
-    scene: Literal["temperature"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
-    molecules: int | str = 200,
-    temperature: float | str = 25.0,
-    start_temperature: float | str = -150.0,
-    pressure: float | str = 1000.0,
-    start: Literal["maxwell", "equal"] = "maxwell",
-    duration: float | str = 20.0,
-    seed: int | str = 1,
-) -> RunDataset:
-    r"""What temperature is: the motion of molecules.
-
-    molecules: number of molecules; 1 to 1000000
-    temperature [degC]: temperature of the walls; -270 degC to 2000 degC
-    start_temperature [degC]: temperature at which the molecules start; -273 degC to 2000 degC
-    pressure [hPa]: pressure of the air once it is as warm as the walls; 0.01 hPa to 100000 hPa
-    start: speeds at the start: all different, or all equal; maxwell or equal
-    duration [ns]: how long to watch; 0.01 ns to 100000 ns
-    seed: seed of the random numbers; 0 to 9223372036854775807
-    """
-
-@overload
-def run(
-    scene: Literal["temperature-large"],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    force: bool = False,
-    progress: Show | bool | None = None,
-    engine: str | None = None,
-    accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     molecules: int | str = 800,
-    temperature: float | str = 25.0,
-    start_temperature: float | str = -150.0,
-    pressure: float | str = 1000.0,
-    start: Literal["maxwell", "equal"] = "maxwell",
-    duration: float | str = 20.0,
+    temperature: float | str = 105.0,
+    density: float | str = 0.26,
+    attraction: float | str = 1.0,
+    start: Literal["vapour", "slab", "drop", "pool"] = "vapour",
+    bath: Literal["random", "walls", "none"] = "random",
+    air: float | str = 0.0,
+    substance: Literal["argon", "nitrogen", "methane"] = "argon",
+    duration: float | str = 1.6,
     seed: int | str = 1,
 ) -> RunDataset:
-    r"""What temperature is, with four times as many molecules.
+    r"""Molecules that only attract each other form a liquid.
 
-    molecules: number of molecules; 1 to 1000000
-    temperature [degC]: temperature of the walls; -270 degC to 2000 degC
-    start_temperature [degC]: temperature at which the molecules start; -273 degC to 2000 degC
-    pressure [hPa]: pressure of the air once it is as warm as the walls; 0.01 hPa to 100000 hPa
-    start: speeds at the start: all different, or all equal; maxwell or equal
-    duration [ns]: how long to watch; 0.01 ns to 100000 ns
+    molecules: number of molecules that attract each other; 50 to 20000
+    temperature [K]: temperature of the thermostat and at the start; 10 K to 20000 K
+    density: density of these molecules, over the critical one; 0.0001 to 2.3
+    attraction: strength of the attraction; at 0 nothing condenses; 0 to 1
+    start: state at the start; vapour or slab or drop or pool
+    bath: what keeps the temperature; random or walls or none
+    air: density of molecules that attract none, over the critical one; 0 to 1
+    substance: substance that sets the size and attraction of the molecules; argon or nitrogen or methane
+    duration [ns]: how long to watch; 0.0001 ns to 10000 ns
     seed: seed of the random numbers; 0 to 9223372036854775807
     """
 
@@ -471,7 +471,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     **settings: Any,
 ) -> RunDataset:
     """Run a scene of your own, or any by its name; `atmosbox.scenes(scene)` shows its settings."""

@@ -69,6 +69,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "A column of atmosphere"
+level = "first year"
+minutes = 10
 FRAMES = 240
 SETTLE = 40
 """Least number of frames left out of the means; after a start out of equilibrium more, see `Column.settling`."""

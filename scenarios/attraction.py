@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Attraction"
+level = "second year"
+minutes = 20
 ladder = (Series("exact", "molecules", (200, 400, 800)),)
 """Runs worth comparing: only the exact engine has an attraction; with fewer molecules there are fewer clusters."""
 FRAMES = 150

@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Condensation"
+level = "first year"
+minutes = 15
 FRAMES = 240
 SETTLE = 40
 PARTS = 24

@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Diffusion"
+level = "school"
+minutes = 15
 ladder = (
     Series("exact", "molecules", (1500, 3000, 6000, 12_000)),
     Series("dsmc", "molecules", (12_000, 48_000)),

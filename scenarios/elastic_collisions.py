@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Elastic collisions"
+level = "school"
+minutes = 10
 FRAMES = 1200
 SETTLE = 400
 

@@ -54,6 +54,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Evaporation"
+level = "school"
+minutes = 10
 FRAMES = 400
 BLOCKS = 20
 PARTS = 36

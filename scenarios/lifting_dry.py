@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Lifting dry air"
+level = "first year"
+minutes = 15
 FRAMES = 40
 _SLOW = dict.fromkeys(("temperature_at_700_hpa", "temperature_at_300_hpa", "parcel_temperature"), -1.0)
 ladder = (

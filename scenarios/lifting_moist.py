@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Lifting moist air"
+level = "second year"
+minutes = 20
 FRAMES = 60
 SAMPLES = 10
 

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Lifting through a sounding"
+level = "second year"
+minutes = 20
 FRAMES = 80
 SAMPLES = 8
 BUILT_IN = "weisman-klemp"

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Over the mountains"
+level = "first year"
+minutes = 10
 FRAMES = 96
 SAMPLES = 8
 BLOCK = 6

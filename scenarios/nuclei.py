@@ -52,6 +52,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Why clouds need dust"
+level = "second year"
+minutes = 20
 FRAMES = 240
 SETTLE = 120
 BLOCKS = 20

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 title = "Temperature"
+level = "school"
+minutes = 10
 FRAMES = 1000
 SETTLE = 50
 

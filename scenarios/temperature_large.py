@@ -6,5 +6,7 @@ the square root of their number.
 """
 
 title = "Temperature, more molecules"
+level = "school"
+minutes = 10
 variant_of = "temperature"
 defaults = {"molecules": 800}

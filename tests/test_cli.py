@@ -145,6 +145,22 @@ def test_what_must_be_there_at_once_waits_for_nothing_heavy(folder):
     assert set(HEAVY).isdisjoint(loaded)
 
 
+def test_a_high_temperature_without_a_unit_is_said_to_be_in_degrees_celsius():
+    for value, told in [("300", True), (" 300.5", True), ("300K", False), ("300degC", False), ("30", False)]:
+        result = atmosbox_in_process("run", "temperature", f"temperature={value}", "--dry-run")
+        number = value.strip()
+        note = f"note: temperature={number} is taken as {number} degC; for kelvin, give temperature={number}K\n"
+        assert result.stderr == (note if told else "")
+
+
+def test_a_figure_of_a_scene_that_was_run_is_offered_its_file(folder):
+    assert "did you mean" not in refused(atmosbox_in_process("plot", "temperature"))
+    Path("temperature.nc").touch()
+    assert "temperature does not exist: did you mean temperature.nc" in refused(
+        atmosbox_in_process("plot", "temperature")
+    )
+
+
 @pytest.mark.parametrize(("scene", "settings"), [(SCENE, {}), ("evaporation", {"molecules": 300, "pool": 50})])
 def test_what_is_told_of_a_scene_is_what_its_box_is(scene, settings):
     prepared = runner.prepare(scene, settings)
@@ -163,10 +179,45 @@ def test_a_wrong_usage_ends_with_2(folder):
         ["plot"],
         ["plot", "x.nc", "--theme", "z"],
     ]:
-        result = atmosbox_in_process(*words)
-        assert result.exit_code == 2
-        assert result.stdout == ""
+        refused(atmosbox_in_process(*words))
         assert list(folder.iterdir()) == []
+
+
+def test_a_setting_needs_no_option_and_another_spelling_is_answered_with_the_users_own_value(folder, no_computing):
+    assert planned(SCENE, "duration=2s", "seed=3")["settings"]["duration"] == 2.0
+    Path("a.toml").write_text(f'scene = "{SCENE}"', encoding="utf-8")
+    assert planned("--config", "a.toml", "duration=2s")["settings"]["duration"] == 2.0
+    assert planned(SCENE, "--out", "a=b.nc")["file"] == "a=b.nc"
+    run = ["run", "temperature"]
+    for words, said in [
+        ([*run, "--temperature", "30"], "give temperature=30, or --set temperature=30"),
+        ([*run, "--temperature=30degC"], "give temperature=30degC"),
+        ([*run, "--set", "temperature", "=", "30"], "write temperature=30"),
+        ([*run, "temperature=", "30"], "write temperature=30"),
+        ([*run, "temperature=30", "degC"], "write temperature=30degC"),
+        ([*run, "temperature", "30"], "temperature=30"),
+        ([*run, "--forse"], "--force"),
+        (["set", "temperature=30"], "atmosbox run SCENE --set temperature=30"),
+        (["temperature", "temperature=30"], "atmosbox run temperature temperature=30"),
+        ([*run, "temperature="], "has no value: give --set temperature=value"),
+        ([*run, "temperature"], "temperature is a setting and has no value: give temperature=VALUE"),
+        ([*run, "-temperature", "30"], "give temperature=30"),
+        ([*run, "rotation=maybe"], "give one of molecules, temperature"),
+        (["run", "temperature.nc"], "atmosbox run --from temperature.nc"),
+        (["info", "temperature", "temperature=30"], "atmosbox info takes no settings"),
+        (["plot", "a.nc", "b.nc"], "atmosbox compare a.nc b.nc"),
+        (["view"], "atmosbox view temperature.nc"),
+        (["set", "temperature", "30"], "atmosbox run SCENE --set temperature=30"),
+        (["start", "temperature"], "atmosbox run temperature"),
+        (["lsit"], "atmosbox list"),
+        (["info"], "atmosbox info lifting-dry"),
+        (["plot", "x.nc", "--theme", "slide"], "one of notes, slides: give --theme slides"),
+        (["animate", "x.nc", "--fps", "fast"], "--fps = fast is not a number"),
+        (["list", "--json=3"], "--json takes no value"),
+        ([*run, "--set"], "--set NAME=VALUE"),
+        (["--foo"], "atmosbox --help"),
+    ]:
+        assert said in refused(atmosbox_in_process(*words)), words
 
 
 # The scenes
@@ -269,8 +320,48 @@ def test_force_replaces_a_file(folder):
 
 
 def test_what_an_earlier_run_left_is_not_replaced_in_silence(folder):
-    Path(f"{SCENE}.part.nc").write_text("left", encoding="utf-8")
-    assert f"{SCENE}.part.nc is left from a run that was stopped" in atmosbox_in_process(*SHORT).stderr
+    Path("x.part.nc").write_text("left", encoding="utf-8")
+    assert "x.part.nc is left from a run that was stopped" in atmosbox_in_process(*SHORT, "--out", "x.nc").stderr
+
+
+def test_a_second_run_gets_a_number_and_loses_nothing(folder):
+    Path(f"{SCENE}.nc").write_text("mine", encoding="utf-8")
+    Path(f"{SCENE}-2.part.nc").write_text("of a run that was stopped", encoding="utf-8")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert planned(*SHORT[1:])["file"] == f"{SCENE}-3.nc"
+    result = atmosbox_in_process(*SHORT)
+    assert (result.exit_code, result.stderr) == (
+        0,
+        f"note: the name {SCENE}.nc is in use, so this file is {SCENE}-3.nc\n",
+    )
+    assert result.stdout.endswith(f"file: {SCENE}-3.nc\nnext: atmosbox plot {SCENE}-3.nc\n")
+    assert output.read(f"{SCENE}-3.nc").attrs["atmosbox_status"] == "complete"
+    assert {name: Path(name).read_bytes() for name in before} == before
+
+
+def test_two_runs_at_once_write_two_files(folder, monkeypatch):
+    """The second begins when the first has its name, but no file yet."""
+    execute, inner = runner.execute, []
+
+    def interrupted(prepared, *, checkpoint, **named):
+        if not inner:
+            inner.append(None)
+            checkpoint.begin()
+            taken = checkpoint._lock.path.read_text(encoding="utf-8")
+            checkpoint._lock.path.write_text(taken.replace(str(os.getpid()), "1"), encoding="utf-8")
+            inner.append(atmosbox_in_process(*SHORT, "--quiet"))
+        return execute(prepared, checkpoint=checkpoint, **named)
+
+    monkeypatch.setattr(runner, "execute", interrupted)
+    assert atmosbox_in_process(*SHORT, "--quiet").stdout == f"{SCENE}.nc\n"
+    assert inner[1].stdout == f"{SCENE}-2.nc\n", inner[1].output
+    assert sorted(path.name for path in folder.iterdir()) == [f"{SCENE}-2.nc", f"{SCENE}.nc"]
+
+
+def test_a_dry_run_asks_for_nothing_that_only_a_run_needs(folder, no_computing):
+    Path("x.nc").write_text("mine", encoding="utf-8")
+    assert planned(*SHORT[1:], "--out", "x.nc")["file"] == "x.nc"
+    assert [path.name for path in folder.iterdir()] == ["x.nc"]
 
 
 def test_a_dry_run_shows_everything_and_writes_nothing(folder, no_computing):
@@ -293,9 +384,21 @@ def test_verbose_says_on_stderr_what_is_run(folder):
     assert "duration" in result.stderr
 
 
-def test_the_molecules_are_saved_on_request(folder):
-    atmosbox_in_process(*SHORT, "--save-molecules")
-    assert "molecule_position" in output.read(f"{SCENE}.nc")
+def test_the_molecules_are_saved_on_request_and_those_of_a_small_run_unasked(folder):
+    small = ["run", "temperature", "duration=0.05ns", "molecules=50"]
+    large = ["run", "temperature", "duration=0.05ns", "molecules=400"]
+    for words, kept in [
+        ([*SHORT, "--save-molecules"], True),
+        (SHORT, False),  # its discs are saved in any case
+        (small, True),
+        ([*small, "--no-save-molecules"], False),
+        (large, False),
+        ([*large, "--save-molecules"], True),
+    ]:
+        result = atmosbox_in_process(*words, "--out", "x.nc", "--force")
+        assert ("molecule_position" in output.read("x.nc")) is kept, words
+        assert ("molecules: not kept" in result.stdout) is (words is large)
+        assert (gather(None, source="x.nc").save_molecules) is {"-": kept}.get(words[-1][0]), words
 
 
 def test_a_scene_of_ones_own_runs_by_its_path_and_its_prints_are_no_result(folder):
@@ -332,11 +435,6 @@ def test_an_earlier_run_is_repeated_bit_for_bit(folder, finished):
     assert atmosbox_in_process("run", "--from", str(finished), "--out", "again.nc").exit_code == 0
     first, again = output.read(finished), output.read("again.nc")
     xr.testing.assert_equal(first, again)
-
-
-def test_an_earlier_run_that_saved_its_molecules_does_so_again(folder):
-    atmosbox_in_process(*SHORT, "--save-molecules")
-    assert gather(None, source=f"{SCENE}.nc").save_molecules is True
 
 
 def test_a_run_of_another_version_is_repeated_with_a_note(folder, finished, monkeypatch):
@@ -475,6 +573,27 @@ def test_no_command_replaces_a_file_unasked(folder, no_computing, finished, endi
     assert "--force" in refused(atmosbox_in_process(*words, "-o", f"mine.{ending}"))
     assert made.read_text(encoding="utf-8") == "mine"
     assert sorted(folder.iterdir()) == before
+
+
+def test_a_default_name_that_is_in_use_gets_a_number(folder, finished):
+    shutil.copy(finished, "x.nc")
+    for words, first in [
+        (["plot", "x.nc"], "x.png"),
+        (["view", "x.nc"], "x.html"),
+        (["compare", "x.nc", "x.nc"], "x-and-x.png"),
+        (["export", "x.nc", "--format", "csv"], "x-headlines.csv"),
+        (["sheet", SCENE, "--format", "md"], f"{SCENE}-sheet.md"),
+        (["lab", SCENE], f"{SCENE}-lab.html"),
+    ]:
+        Path(first).write_text("mine", encoding="utf-8")
+        before = set(folder.iterdir())
+        result = atmosbox_in_process(*words)
+        assert result.exit_code == 0, result.output
+        second = first.replace("x-headlines", "x-2-headlines") if "csv" in words else "-2.".join(first.rsplit(".", 1))
+        assert folder / second in set(folder.iterdir()) - before, words
+        assert second in result.stdout + result.stderr
+        assert "is in use, so this file is" in result.stderr
+        assert Path(first).read_text(encoding="utf-8") == "mine"
 
 
 def test_a_run_without_settings_in_its_file_cannot_be_repeated(folder):

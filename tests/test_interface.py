@@ -191,7 +191,7 @@ def test_a_function_of_ones_own_hears_how_far_a_run_is():
 
 def test_a_refusal_says_what_to_write_in_python():
     for call, fix in [
-        (lambda: ab.run("lifting-dry", molecules=0), "give molecules=4000."),
+        (lambda: ab.run("lifting-dry", molecules=0), "give molecules=50."),
         (lambda: ab.run("lifting-dry", temperature="5 hPa"), 'give temperature="15degC".'),
         (lambda: ab.run("lifting-dry", rotation="maybe"), "give rotation=True."),
         (lambda: ab.run("lifting-dry", molecule=300), "give molecules=4000."),
@@ -210,9 +210,9 @@ def test_a_refusal_says_what_to_write_in_python():
         assert "--" not in str(refused.value)
 
 
-def test_a_run_without_molecules_says_how_to_keep_them(lifted):
+def test_a_run_without_molecules_says_how_to_keep_them():
     with pytest.raises(errors.FileError, match=r'type atmosbox\.run\("lifting-dry", save_molecules=True\)\.$'):
-        ab.show(lifted)
+        ab.show(ab.run("lifting-dry", molecules=50, save_molecules=False))
 
 
 def sentences():

@@ -41,6 +41,23 @@ def test_what_is_allowed_is_said_in_words():
     ]
 
 
+def test_a_refusal_gives_the_nearest_value_that_is_allowed():
+    for parameter, value, fix in [
+        (HEIGHT, "13 km", "12km"),
+        (HEIGHT, "-5", "0km"),
+        (COUNT, 0, "1"),
+        (Parameter("molecules", "1", 200, 1, 1_000_000, kind="int"), "1000000000", "1000000"),
+        (HEIGHT, "1,5", "1.5km"),
+        (HEIGHT, "1500,5 m", "1.5005km"),
+        (HEIGHT, "1,500 m", "0.0015km"),
+        (COUNT, "1,000", "1000"),
+        (COUNT, "1,2,3", "123"),
+        (HEIGHT, "13,5", "2km"),
+    ]:
+        with pytest.raises(SettingError, match=rf": give --set {parameter.name}={fix}\.$"):
+            parameter.parse(value)
+
+
 def test_a_value_is_typed_as_the_shell_takes_it():
     assert [p.typed() for p in KNOWN.values()] == ["on", "equilibrium", "4000", "2km"]
     assert START.typed("bottom heavy") == "'bottom heavy'"

@@ -37,7 +37,7 @@ def refusal(parameter, value, error=UnitError):
     assert type(caught.value) is error
     assert sentence.isprintable()
     assert sentence.startswith(f"{parameter.name} = ")
-    assert sentence.endswith(f"give --set {parameter.name}={parameter.typed()}.")
+    parameter.parse(sentence.removesuffix(".").rpartition(f": give --set {parameter.name}=")[2])
     return sentence
 
 

@@ -159,10 +159,19 @@ def test_a_wheel_does_not_look_into_the_project_of_somebody_else(tmp_path, wheel
     assert "theirs" not in run.stdout.split()
 
 
-def test_names_are_sorted_and_typed_with_dashes():
-    found = scenarios.names()
-    assert list(found) == sorted(set(found))
-    assert not [name for name in found if "_" in name]
+def test_the_scenes_are_in_the_order_of_teaching_each_with_its_level_and_minutes():
+    found = scenarios.summaries()
+    assert tuple(found) == scenarios.names()
+    assert set(found) == set(scenarios._ORDER)
+    assert [name for name in found if name.startswith("lifting")] == [
+        "lifting-dry",
+        "lifting-moist",
+        "lifting-sounding",
+    ]
+    levels = [each.level for each in found.values()]
+    assert set(levels) == {"school", "first year", "second year"}
+    assert levels[0] == "school"
+    assert all(5 <= each.minutes <= 50 for each in found.values())
 
 
 def test_every_scenario_defines_what_a_scenario_must():

@@ -139,12 +139,12 @@ def test_a_copy_with_another_value_is_that_value_in_si_units_too():
 
 def test_a_value_out_of_range_is_refused_with_range_and_fix():
     assert refusal(temperature=-200) == (
-        "temperature = -200 degC is below the lowest allowed, -100 degC to 500 degC: give --set temperature=15degC."
+        "temperature = -200 degC is below the lowest allowed, -100 degC to 500 degC: give --set temperature=-100degC."
     )
     assert refusal(molecules="2e7") == (
-        "molecules = 2e7 is above the highest allowed, 1 to 10000000: give --set molecules=4000."
+        "molecules = 2e7 is above the highest allowed, 1 to 10000000: give --set molecules=10000000."
     )
-    assert refusal(seed=-1) == ("seed = -1 is below the lowest allowed, 0 to 9223372036854775807: give --set seed=1.")
+    assert refusal(seed=-1) == ("seed = -1 is below the lowest allowed, 0 to 9223372036854775807: give --set seed=0.")
 
 
 def test_a_text_must_be_a_text_and_not_empty_unless_its_default_is():

@@ -54,7 +54,7 @@ def overload(name: str) -> str:
     declared = scenarios.load(name).Settings.describe()
     taken = [f"{p.name}: {annotation(p)} = {p.default!r}" for p in declared]
     lines = [f"{p.name}{f' [{p.unit}]' if p.unit not in ('', '1') else ''}: {p.help}; {p.allowed}" for p in declared]
-    told = "\n    ".join([scenarios.summaries()[name], "", *lines])
+    told = "\n    ".join([scenarios.summaries()[name].sentence, "", *lines])
     listed = ",\n    ".join([f"scene: Literal[{name!r}]", "*", *common(), *taken])
     return f'@overload\ndef run(\n    {listed},\n) -> RunDataset:\n    r"""{told}\n    """'
 

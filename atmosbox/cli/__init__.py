@@ -7,6 +7,7 @@ Each command is one file: its options on top, below them what it does. A new fil
 `request`      where the settings of a run come from: the command line, a `config` file, an earlier run
 `output_name`  the output file if no name is given
 `expectation`  the expected errors of a run
+`usage`        what was typed: NAME=VALUE as a setting, and one sentence for what cannot be understood
 `terminal`     how an error ends a command
 
 Results as text and as JSON, tables, streams and the progress bar are in `atmosbox.text`, which Python uses too.

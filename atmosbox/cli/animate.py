@@ -9,7 +9,7 @@ import typer
 
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Force, RunFile, Theme, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import beside
+from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
 from atmosbox.text.progress import progress
 
@@ -48,7 +48,7 @@ def animate(
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
-    path = beside([file], format or "gif") if out is None else Path(out)
+    path = chosen(out, beside([file], format or "gif"), force=force, quiet=quiet)
 
     from atmosbox.film import save
 

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from atmosbox.cli.terminal import guarded, say
+from atmosbox.cli.usage import Command, OneSentence, UsageError, command_refusal
 
 __all__ = ["app", "command", "typed"]
 
@@ -20,7 +21,7 @@ R = TypeVar("R")
 _WORDS = "atmosbox.words"
 _WIDEST_HELP = 120  # columns: longer lines are hard to read
 # The order of the commands in the help: what a beginner needs first; commands not named here follow by name.
-_ORDER = "tour list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
+_ORDER = "list info run sweep tradeoff plot view live lab animate compare export sheet check prepare"
 
 
 class _Group(TyperGroup):
@@ -28,7 +29,18 @@ class _Group(TyperGroup):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         ctx.meta[_WORDS] = list(args)
-        return super().parse_args(ctx, args)
+        if not args:
+            return super().parse_args(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except UsageError as error:
+            option = getattr(error, "option_name", ctx.meta[_WORDS][0])
+            raise OneSentence(f"{option} is no option of atmosbox: type atmosbox --help to see what is.") from error
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
+            raise command_refusal(args, self.list_commands(ctx))
+        return super().resolve_command(ctx, args)
 
     def list_commands(self, ctx: Any) -> list[str]:
         order = {name: place for place, name in enumerate(_ORDER.split())}
@@ -98,6 +110,6 @@ def command(*examples: str, name: str | None = None) -> Callable[[Callable[P, R]
     """
 
     def added(function: Callable[P, R]) -> Callable[P, R]:
-        return app.command(name, epilog=_examples(*examples))(guarded(function))
+        return app.command(name, cls=Command, epilog=_examples(*examples))(guarded(function))
 
     return added

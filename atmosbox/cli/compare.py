@@ -12,7 +12,7 @@ import typer
 
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Force, Json, Theme, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import beside
+from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say, say_json, tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.comparison_table import comparison_lines
@@ -51,7 +51,7 @@ def compare(
     from atmosbox.file.output_path import check_writable
 
     kind = format or Path(out or "").suffix[1:].lower()
-    path = beside(files, kind or "png") if out is None else Path(out)
+    path = chosen(out, beside(files, kind or "png"), force=force, quiet=quiet)
     datasets = [read(file) for file in files]
 
     from atmosbox.plot.compare import compared, naming, save

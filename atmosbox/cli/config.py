@@ -37,7 +37,7 @@ class Asked(NamedTuple):
     engine
         The name of the engine, with its options; None if none is named.
     save_molecules
-        Whether the molecules are saved.
+        Whether the molecules are saved; None if they take less than 10 MB.
     accuracy
         The requested accuracy, if any.
     """
@@ -45,7 +45,7 @@ class Asked(NamedTuple):
     scene: str
     settings: dict[str, Any]
     engine: str | None = None
-    save_molecules: bool = False
+    save_molecules: bool | None = False
     accuracy: str | None = None
 
     def for_a_page(self) -> Asked:

@@ -8,8 +8,8 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, RunFile, Verbose, out_option
-from atmosbox.cli.output_name import beside
+from atmosbox.cli.option import Force, RunFile, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
 from atmosbox.text.progress import progress
 
@@ -29,6 +29,7 @@ def export(
         typer.Option(help="extxyz holds the molecules, for OVITO and VMD; csv holds the tables, for a spreadsheet."),
     ] = None,
     force: Force = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the file, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Write a run for OVITO, VMD or a spreadsheet.
@@ -40,19 +41,25 @@ def export(
     from atmosbox.file.output_path import check_writable, named, write_whole
 
     dataset = read(file)
-    path = beside([file], format or "extxyz") if out is None else Path(out)
-    if format == "csv" or (format is None and path.suffix.lower() == ".csv"):
+    default = beside([file], format or "extxyz")
+    if format == "csv" or (format is None and Path(out or "").suffix.lower() == ".csv"):
         from atmosbox.file.spreadsheet import tables
 
-        stem = path.with_suffix("") if path.suffix.lower() == ".csv" else path
         made = tables(dataset)
-        paths = [check_writable(stem.with_name(f"{stem.name}-{name}.csv"), force) for name in made]
+
+        def written(path: Path) -> list[Path]:
+            stem = path.with_suffix("") if path.suffix.lower() == ".csv" else path
+            return [stem.with_name(f"{stem.name}-{name}.csv") for name in made]
+
+        path = chosen(out, default, force=force, quiet=quiet, files=written)
+        paths = [check_writable(each, force) for each in written(path)]
         for place, content in zip(paths, made.values(), strict=True):
             write_whole(place, content)
         say("\n".join(map(str, paths)))
         return
+    path = chosen(out, default, force=force, quiet=quiet)
     place, _ = named(path, format, get_args(Exported), force=force, what="box")
-    with progress("export", quiet=False) as show:
+    with progress("export", quiet=quiet) as show:
         show(0.0, "writing the molecules")
         from atmosbox.file.trajectory import extended_xyz
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 from atmosbox.cli.application import command
@@ -19,9 +18,10 @@ from atmosbox.cli.option import (
     Values,
     Verbose,
     out_option,
+    quiet_option,
 )
-from atmosbox.cli.output_name import for_scene
-from atmosbox.cli.request import gather
+from atmosbox.cli.output_name import chosen, for_scene
+from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say
 from atmosbox.text.progress import progress
 
@@ -42,6 +42,7 @@ def lab(
     theme: PageTheme = "auto",
     language: Language = "auto",
     force: Force = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the page, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Write a page in which a scene runs: the engine itself, in the browser.
@@ -50,13 +51,10 @@ def lab(
     it was written with, and gives the same numbers as run. Some knobs of live act in it; all other
     settings are fixed when the page is written.
     """
-    from atmosbox.simulation import runner
-
     asked = gather(scene, values or (), config, source, seed, False, engine, accuracy).for_a_page()
-    with progress("lab", quiet=False) as show:
-        with prints_to_stderr():
-            prepared = runner.prepare(**asked._asdict())
-        path = Path(out) if out is not None else for_scene(prepared.scene, "-lab.html")
+    with progress("lab", quiet=quiet) as show:
+        prepared = checked(asked)
+        path = chosen(out, for_scene(prepared.scene, "-lab.html"), force=force, quiet=quiet)
         from atmosbox.file.output_path import check_writable
 
         check_writable(path, force)

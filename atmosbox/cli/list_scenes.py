@@ -9,7 +9,7 @@ import typer
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Json, Verbose
 from atmosbox.cli.terminal import say, say_json, width
-from atmosbox.text.table import table
+from atmosbox.text.report import scene_lines
 
 
 @command("atmosbox list", "atmosbox list --names", "atmosbox list --json", name="list")
@@ -18,14 +18,18 @@ def list_scenes(
     as_json: Json = False,
     verbose: Verbose = False,
 ) -> None:
-    """List the scenes that come with atmosbox."""
+    """List the scenes that come with atmosbox, in the order of teaching."""
     from atmosbox import scenarios
 
     found = scenarios.summaries()
     if as_json:
-        say_json({"scenes": [{"name": name, "summary": summary} for name, summary in found.items()]})
+        listed = [
+            {"name": name, "summary": each.sentence, "level": each.level, "minutes": each.minutes}
+            for name, each in found.items()
+        ]
+        say_json({"scenes": listed})
     elif names:
         say("\n".join(found))
     else:
-        lines = table(["", ""], list(found.items()), width())
+        lines = scene_lines(found, width())
         say("\n".join([*lines, "", "next: atmosbox info SCENE, or atmosbox run SCENE"]))

@@ -29,8 +29,8 @@ from atmosbox.cli.option import (
     out_option,
     quiet_option,
 )
-from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.request import gather
+from atmosbox.cli.output_name import netcdf_name
+from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import INTERRUPTED, TERMINATED, prints_to_stderr, say, tell
 from atmosbox.errors import SettingError
 
@@ -83,11 +83,9 @@ def live(
     """
     number = _port(port)
 
-    from atmosbox.simulation import runner
-
-    asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
-    with prints_to_stderr():
-        prepared = runner.prepare(**asked._asdict())
+    asked = gather(scene, values or (), config, source, seed, save_molecules or None, engine, accuracy)
+    asked = asked._replace(save_molecules=asked.save_molecules is True)
+    prepared = checked(asked)
     folder, name = _place(out, prepared.scene, force=force)
 
     from atmosbox.live import Session
@@ -139,7 +137,7 @@ def _place(out: str | None, scene: str, *, force: bool) -> tuple[Path, str | Non
         return Path(), None
     from atmosbox.file.output_path import check_writable
 
-    path = check_writable(netcdf_name(out, for_scene(scene)), force)
+    path = check_writable(netcdf_name(Path(out)), force)
     return path.parent, path.name
 
 

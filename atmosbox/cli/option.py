@@ -56,10 +56,15 @@ SceneName = typer.Argument(
 RunFile = Annotated[str, typer.Argument(metavar="FILE", help="A file that `atmosbox run` has written.")]
 Values = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="A setting with its unit, as temperature=25degC; repeatable."),
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A setting with its unit, as temperature=25degC; repeatable. --set may be left out.",
+    ),
 ]
 ValuesOfAll = Annotated[
-    list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A setting for all runs; repeatable.")
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="A setting for all runs; repeatable. --set may be left out."),
 ]
 Config = Annotated[
     str | None, typer.Option("--config", metavar="FILE", help="Settings, and perhaps the scene, from a TOML file.")

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from atmosbox.cli.request import is_path
+from atmosbox.cli.terminal import tell
 from atmosbox.errors import FileError
 
-__all__ = ["FIGURES", "beside", "for_scene", "netcdf_name"]
+__all__ = ["FIGURES", "beside", "chosen", "for_scene", "netcdf_name", "say_number"]
 
 FIGURES = (".png", ".svg", ".pdf")
 _LONGEST = 100  # characters of a name that is made of the names of all files
@@ -49,9 +51,44 @@ def beside(files: Sequence[str], kind: str) -> Path:
     return first.with_name(f"{stem}.{kind}")
 
 
-def netcdf_name(out: str | None, default: Path) -> Path:
+def chosen(
+    out: str | None, default: Path, *, force: bool, quiet: bool, files: Callable[[Path], Sequence[Path]] | None = None
+) -> Path:
+    """Return the path of the output file: the one that was asked for, or else the default, with a number if it exists.
+
+    Parameters
+    ----------
+    out
+        The text after ``--out``.
+    default
+        The default path.
+    force
+        Whether the file may be replaced: then the default path gets no number.
+    quiet
+        Whether not to say that there is a number.
+    files
+        Function that returns the files that are written for a path, if there are several.
+    """
+    if out is not None:
+        return Path(out)
+    if force:
+        return default
+    from atmosbox.file.output_path import unused
+
+    path = unused(default, lambda each: any(map(os.path.lexists, files(each) if files else (each,))))
+    if not quiet:
+        say_number(default, path)
+    return path
+
+
+def say_number(default: Path, path: Path) -> None:
+    """Say that the file has a number in its name, if it has."""
+    if path != default:
+        tell(f"note: the name {default} is in use, so this file is {path}")
+
+
+def netcdf_name(path: Path) -> Path:
     """Return the path of the netCDF file to write; refuse the name of a figure."""
-    path = default if out is None else Path(out)
     if path.suffix.lower() in FIGURES:
         data = shlex.quote(str(path.with_suffix(".nc")))
         figure = shlex.quote(str(path))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import AllPanels, Force, Format, RunFile, Theme, Verbose, out_option
-from atmosbox.cli.output_name import beside
+from atmosbox.cli.option import AllPanels, Force, Format, RunFile, Theme, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
 
 
@@ -35,6 +34,7 @@ def plot(
     ] = False,
     all_panels: AllPanels = False,
     force: Force = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the figure, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Draw the figure of a run.
@@ -44,7 +44,7 @@ def plot(
     from atmosbox.file.netcdf import read
 
     dataset = read(file)
-    path = beside([file], format or "png") if out is None else Path(out)
+    path = chosen(out, beside([file], format or "png"), force=force, quiet=quiet)
 
     from atmosbox.plot import save
 

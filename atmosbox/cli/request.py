@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from atmosbox.cli.terminal import tell
+from atmosbox.cli.terminal import prints_to_stderr, tell
 from atmosbox.errors import AtmosboxError, ConfigError, FileError, SettingError, UnknownSceneError
 
 if TYPE_CHECKING:
     from atmosbox.cli.config import Asked
+    from atmosbox.simulation.preparation import Prepared
+
+WARM = 100.0  # degC: above it, a number without a unit may have been meant in kelvin
 
 
 def gather(
@@ -20,7 +24,7 @@ def gather(
     config: str | None = None,
     source: str | None = None,
     seed: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
 ) -> Asked:
@@ -39,7 +43,7 @@ def gather(
     seed, engine, accuracy
         The texts after the options of these names.
     save_molecules
-        Whether the molecules are saved.
+        Whether the molecules are saved; None if they were in the earlier run, or take less than 10 MB.
 
     Raises
     ------
@@ -61,7 +65,8 @@ def gather(
     if source is not None:
         run = _earlier(source)
         scene = _agreed(scene, run.scene, "--from", source, FileError)
-        settings, of_file, save_molecules = run.settings, run.engine, save_molecules or run.save_molecules
+        settings, of_file = run.settings, run.engine
+        save_molecules = run.save_molecules if save_molecules is None else save_molecules
     if config is not None:
         asked = load_config(config)
         scene = _agreed(scene, asked.scene, "--config", config, ConfigError)
@@ -80,6 +85,21 @@ def gather(
     return Asked(scene, settings, engine or of_file, save_molecules, accuracy)
 
 
+def checked(asked: Asked) -> Prepared:
+    """Return the scene of a request, checked; say how a high temperature without a unit was taken."""
+    from atmosbox.scene.spelling import field_name
+    from atmosbox.simulation import runner
+
+    with prints_to_stderr():
+        made = runner.prepare(**asked._asdict())
+    values = {field_name(name): str(value).strip() for name, value in asked.settings.items() if isinstance(value, str)}
+    for parameter in made.settings.describe():
+        name, value = parameter.name, values.get(parameter.name, "")
+        if parameter.unit == "degC" and re.fullmatch(r"[0-9]+(\.[0-9]*)?", value) and float(value) > WARM:
+            tell(f"note: {name}={value} is taken as {value} degC; for kelvin, give {name}={value}K")
+    return made
+
+
 def is_path(scene: str) -> bool:
     """Return whether a scene is given by the path of its file rather than by its name."""
     return scene.endswith(".py") or "/" in scene or os.sep in scene
@@ -93,12 +113,12 @@ def _earlier(path: str) -> Asked:
     from atmosbox.version import __version__
 
     made = parameters(read(path))
-    scene, settings = made.get("scene"), made.get("settings")
+    scene, settings, kept = made.get("scene"), made.get("settings"), made.get("save_molecules")
     if not isinstance(scene, str) or not isinstance(settings, dict):
         raise FileError(f"{path} does not say which run it holds: give a file that atmosbox run has written.")
     if made.get("version") != __version__:
         tell(f"note: {path} is from atmosbox {made.get('version')}, not {__version__}: numbers may differ")
-    return Asked(scene, settings, str(made.get("engine", "exact")), made.get("save_molecules") is True)
+    return Asked(scene, settings, str(made.get("engine", "exact")), kept if isinstance(kept, bool) else None)
 
 
 def _agreed(scene: str, named: str, option: str, path: str, error: type[AtmosboxError]) -> str:

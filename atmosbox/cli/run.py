@@ -22,8 +22,8 @@ from atmosbox.cli.option import (
     out_option,
     quiet_option,
 )
-from atmosbox.cli.output_name import for_scene, netcdf_name
-from atmosbox.cli.request import gather
+from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
+from atmosbox.cli.request import checked, gather
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 @command(
     "atmosbox run lifting-dry",
-    "atmosbox run lifting-dry --set temperature=25degC --set molecules=2000 --seed 7 --out warm.nc",
-    "atmosbox run --from warm.nc --set temperature=5degC --out cold.nc",
+    "atmosbox run lifting-dry temperature=25degC molecules=2000 --seed 7 --out warm.nc",
+    "atmosbox run --from warm.nc temperature=5degC --out cold.nc",
     "atmosbox run --config lift.toml --dry-run",
     "atmosbox run temperature --accuracy sketch",
     "atmosbox run --resume lifting-dry.part.nc",
@@ -54,9 +54,13 @@ def run(
     out: Annotated[str | None, out_option("The netCDF file.  [default: SCENE.nc in this folder]")] = None,
     force: Force = False,
     save_molecules: Annotated[
-        bool,
-        typer.Option("--save-molecules", help="Save place and velocity of every molecule, in every frame."),
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--save-molecules/--no-save-molecules",
+            help="Save place and velocity of every molecule, in every frame.  [default: if they take less than 10 MB]",
+            show_default=False,
+        ),
+    ] = None,
     resume: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="Go on with a run that was stopped or killed, from its NAME.part.nc."),
@@ -84,6 +88,7 @@ def run(
     bit as if the run had never been stopped; also after a crash.
     """
     from atmosbox.file.checkpoint import Checkpoint
+    from atmosbox.file.output_path import run_is_there, unused, whole_path
     from atmosbox.simulation import runner
     from atmosbox.simulation.expected_time import expected_time
 
@@ -91,27 +96,28 @@ def run(
     if resume is None:
         if extend > 1:
             raise SettingError("extend", extend, "needs a run that is there", "give --resume FILE with it")
-        asked = gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy)
-        with prints_to_stderr():
-            prepared = runner.prepare(**asked._asdict())
-        path = netcdf_name(out, for_scene(prepared.scene))
+        prepared = checked(gather(scene, values or (), config, source, seed, save_molecules, engine, accuracy))
+        default = for_scene(prepared.scene)
     else:
         given = {"set": values, "config": config, "from": source, "seed": seed, "engine": engine, "accuracy": accuracy}
-        for name, value in (given | {"save-molecules": save_molecules or None}).items():
+        for name, value in (given | {"save-molecules": save_molecules}).items():
             if value is not None and value != []:
                 raise SettingError(f"--{name}", None, "cannot change a run that goes on", "leave it out")
-        from atmosbox.file.output_path import whole_path
         from atmosbox.simulation.restart import read_state
 
         restart = read_state(resume)
         with prints_to_stderr():
             prepared = runner.prepared_again(restart, scene)
-        path = netcdf_name(out, whole_path(resume))
-    checkpoint = Checkpoint(path, force=force)
-    if dry_run or verbose:
-        _describe(prepared, path, quiet=quiet, as_json=as_json, dry_run=dry_run)
+        default = whole_path(resume)
+    path = netcdf_name(default if out is None else Path(out))
+    numbered = out is None and resume is None and not force
     if dry_run:
+        path = unused(path, run_is_there) if numbered else path
+        _describe(prepared, path, quiet=quiet, as_json=as_json, dry_run=True)
         return
+    checkpoint = Checkpoint(path, force=force, numbered=numbered)
+    if verbose:
+        _describe(prepared, checkpoint.path, quiet=quiet, as_json=as_json, dry_run=False)
     if checkpoint.stale and not quiet and (resume is None or Path(resume).resolve() != checkpoint.part.resolve()):
         tell(f"note: {checkpoint.part} is left from a run that was stopped, and will be replaced")
     before = _stamp(checkpoint.part)
@@ -130,19 +136,23 @@ def run(
                 strict=strict,
             )
     except runner.Interrupted as stop:
+        if numbered and not quiet:
+            say_number(path, checkpoint.path)
         _say_interrupted(stop, prepared, checkpoint, quiet=quiet, as_json=as_json)
         raise typer.Exit(stop.exit_code) from stop
     except (KeyboardInterrupt, AtmosboxError):
         if _stamp(checkpoint.part) not in (None, before):
             tell(f"note: the frames that were complete are kept in {checkpoint.part}")
         raise
-    _say_outcome(outcome, prepared, path, quiet=quiet, as_json=as_json)
+    if numbered and not quiet:
+        say_number(path, checkpoint.path)
+    _say_outcome(outcome, prepared, checkpoint.path, quiet=quiet, as_json=as_json)
     if not outcome.ledger <= runner.LEDGER_LIMIT:
         from atmosbox.text.report import next_command
 
         raise PhysicsError(
             f"The energy ledger of this run is off by {outcome.ledger:.0e}, more than {runner.LEDGER_LIMIT:.0e}: "
-            f"type {next_command('check', path)} to see what else is."
+            f"type {next_command('check', checkpoint.path)} to see what else is."
         )
 
 
@@ -161,7 +171,10 @@ def _say_outcome(outcome: Outcome, prepared: Prepared, path: Path, *, quiet: boo
         say(str(path))
     else:
         expected_lines = expectation_lines(prepared.expectation, outcome.headlines, prepared.unusual_engine, width())
-        say("\n".join(outcome_lines(outcome, path=path, limit=LEDGER_LIMIT, width=width(), expected=expected_lines)))
+        lines = outcome_lines(outcome, path=path, limit=LEDGER_LIMIT, width=width(), expected=expected_lines)
+        if prepared.save_molecules is None and not {"molecule_position", "disc_position"} & set(outcome.dataset):
+            lines.insert(-2, "molecules: not kept, for they take more than 10 MB; --save-molecules keeps them for view")
+        say("\n".join(lines))
 
 
 def _describe(prepared: Prepared, path: Path, *, quiet: bool, as_json: bool, dry_run: bool) -> None:

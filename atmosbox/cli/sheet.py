@@ -9,7 +9,7 @@ import typer
 
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Engine, Force, SceneName, Seed, ValuesOfAll, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import for_scene
+from atmosbox.cli.output_name import chosen, for_scene
 from atmosbox.cli.request import gather
 from atmosbox.cli.terminal import prints_to_stderr, say, tell
 from atmosbox.text.progress import progress
@@ -57,7 +57,8 @@ def sheet(
     asked = gather(scene, values or (), seed=seed, engine=engine)
     if lab:
         asked = asked.for_a_page()
-    path = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{format or 'pdf'}") if out is None else Path(out)
+    default = for_scene(scene, f"-{'answers' if answers else 'sheet'}.{format or 'pdf'}")
+    path = chosen(out, default, force=force, quiet=quiet)
     path = sheets.check(path, format, paper=paper, force=force)
     with prints_to_stderr(), progress(scene, quiet=quiet) as show:
         made = sheets.worksheet(

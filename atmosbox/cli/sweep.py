@@ -20,7 +20,7 @@ from atmosbox.cli.option import (
     out_option,
     quiet_option,
 )
-from atmosbox.cli.output_name import for_scene, netcdf_name
+from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
@@ -93,7 +93,7 @@ def sweep(
             engine=engine,
             accuracy=accuracy,
         )
-    path = netcdf_name(out, for_scene(scene, "-sweep.nc"))
+    path = netcdf_name(chosen(out, for_scene(scene, "-sweep.nc"), force=force, quiet=quiet))
     processes = None if jobs is None else _whole("jobs", jobs, 1, 4096)
     if dry_run:
         _describe(grid, path, as_json=as_json, quiet=quiet)

@@ -47,7 +47,8 @@ def _listed(given: object) -> list[object]:
 
 def _reason(error: Exception) -> str:
     """Return the reason of an error in one short line."""
-    reason = " ".join(str(error).split())
+    text = str(error.args[0] if isinstance(error, KeyError) and error.args else error)
+    reason = " ".join(text.split()).rstrip(".")
     return type(error).__name__ + (f": {shown(reason, longest=200)}" if reason else "")
 
 
@@ -129,7 +130,15 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
                 what = f"it is not as atmosbox has written it, or this is a bug{again}"
                 tell(f"error: {named} cannot be used ({_reason(error)}): {what}.")
                 raise typer.Exit(FileError.exit_code) from error
-            tell(f"error: This is a bug in atmosbox or in your own scene ({_reason(error)}){again}.")
+            from atmosbox import scenarios
+
+            scene = str(kwargs.get("scene") or "")
+            where = scenarios.place(error) or (scene if scene.endswith(".py") else None)
+            if where is not None:
+                failed = f"{shown(where, longest=4096)} cannot be run ({_reason(error)})"
+                tell(f"error: {failed}: correct it and run it again{again}.")
+                raise typer.Exit(FileError.exit_code) from error
+            tell(f"error: This is a bug in atmosbox ({_reason(error)}){again}.")
             raise typer.Exit(1) from error
 
     return wrapper

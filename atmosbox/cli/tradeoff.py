@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from atmosbox.cli.application import command, typed
 from atmosbox.cli.option import AllPanels, Force, Json, SceneName, ValuesOfAll, Verbose, out_option, quiet_option
-from atmosbox.cli.output_name import for_scene, netcdf_name
+from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
 from atmosbox.cli.terminal import INTERRUPTED, say, say_json, tell, width
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
@@ -61,8 +62,13 @@ def tradeoff(
     except SettingError as error:
         error.fix = error.fix.replace("--set budget=", "--budget ").replace("--set seed=", "--seed ")
         raise
-    path = check_writable(netcdf_name(out, for_scene(scene, "-tradeoff.nc")), force)
-    files = [path, *(check_writable(path.with_suffix(suffix), force) for suffix in (".csv", ".png"))]
+
+    def written(path: Path) -> list[Path]:
+        return [path, path.with_suffix(".csv"), path.with_suffix(".png")]
+
+    default = for_scene(scene, "-tradeoff.nc")
+    path = check_writable(netcdf_name(chosen(out, default, force=force, quiet=quiet, files=written)), force)
+    files = [check_writable(each, force) for each in written(path)]
     with progress(scene, quiet=quiet) as show:
         found = measure(
             scene,

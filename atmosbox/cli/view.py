@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from atmosbox.cli.application import command
-from atmosbox.cli.option import Force, Language, PageTheme, Verbose, out_option
-from atmosbox.cli.output_name import beside
+from atmosbox.cli.option import Force, Language, PageTheme, Verbose, out_option, quiet_option
+from atmosbox.cli.output_name import beside, chosen
 from atmosbox.cli.terminal import say
 from atmosbox.errors import SettingError
 from atmosbox.text.progress import progress
@@ -18,19 +17,19 @@ MOST = 2
 
 
 @command(
-    "atmosbox run temperature --save-molecules",
     "atmosbox view temperature.nc",
     "atmosbox view cold.nc warm.nc --out compared.html --theme dark",
     "atmosbox view temperature.nc --language es --force",
 )
 def view(
     files: Annotated[
-        list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two, made with --save-molecules.")
+        list[str], typer.Argument(metavar="FILE [FILE]", help="One run or two that kept their molecules.")
     ],
     out: Annotated[str | None, out_option("The page.  [default: beside FILE, by its name]")] = None,
     theme: PageTheme = "auto",
     language: Language = "auto",
     force: Force = False,
+    quiet: Annotated[bool, quiet_option("Print the path of the page, no more.")] = False,
     verbose: Verbose = False,
 ) -> None:
     """Show the molecules of a run in three dimensions, with its graphs on the same clock.
@@ -40,12 +39,12 @@ def view(
     """
     if len(files) > MOST:
         raise SettingError("FILE", None, f"is given {len(files)} times", "give one run, or two to compare")
-    with progress("view", quiet=False) as show:
+    with progress("view", quiet=quiet) as show:
         show(0.0, "reading the molecules")
         from atmosbox.file.netcdf import read
         from atmosbox.file.output_path import check_writable
 
-        path = Path(out) if out is not None else beside(files, "html")
+        path = chosen(out, beside(files, "html"), force=force, quiet=quiet)
         check_writable(path, force)
         runs = [read(file) for file in files]
         show(0.4, "writing the page")

@@ -6,6 +6,7 @@ one before as a whole, as `atmosbox.file.netcdf.write` does; the finished run re
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from collections.abc import Callable
@@ -14,8 +15,17 @@ from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError
 from atmosbox.file.netcdf import image
-from atmosbox.file.output_lock import OutputLock
-from atmosbox.file.output_path import AnyPath, check_writable, clear, part_path, write_failure, write_whole
+from atmosbox.file.output_lock import BusyError, OutputLock
+from atmosbox.file.output_path import (
+    AnyPath,
+    check_writable,
+    clear,
+    part_path,
+    run_is_there,
+    unused,
+    write_failure,
+    write_whole,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,13 +49,17 @@ class Checkpoint:
         The shortest time between two writings [s].
     force
         Whether the finished run may replace a file.
+    numbered
+        Whether the run gets another name, NAME-2, if a run of this name is there, finished or not, or is under way.
     clock
         Function that returns the time [s].
 
     Attributes
     ----------
+    wanted
+        The path that was asked for.
     path, part
-        The file of the finished run, and the file of the run so far.
+        The file of the finished run, and the file of the run so far; `begin` may still change a numbered name.
     stale
         Whether an earlier run left a part there, which the first writing will replace.
 
@@ -72,12 +86,13 @@ class Checkpoint:
         every_seconds: float = 2.0,
         *,
         force: bool = False,
+        numbered: bool = False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.path = check_writable(path, force)
-        self.part = part_path(self.path)
-        self.stale = check_writable(self.part, force=True).exists()
         self._force = force
+        self._numbered = numbered
+        self._busy: set[Path] = set()
+        self._name(path)
         self._every = every_seconds
         self._clock = clock
         self._begun = self._written = clock()
@@ -85,19 +100,43 @@ class Checkpoint:
         self._saved = False
         self._lock: OutputLock | None = None
 
+    def _name(self, wanted: AnyPath) -> None:
+        """Set the path of the finished run and that of the run so far."""
+        self.wanted = wanted
+        self.path = check_writable(unused(wanted, self._taken) if self._numbered else wanted, self._force)
+        self.part = part_path(self.path)
+        self.stale = check_writable(self.part, force=True).exists()
+
     def begin(self) -> Checkpoint:
         """Lock the file for this run alone, and remove the temporary files that a killed run has left.
 
         Raises
         ------
         FileError
-            If another run is writing the file.
+            If another run is writing the file, and the name is not to be numbered.
         """
         if self._lock is None:
-            self._lock = OutputLock(self.path)
+            self._lock = self._locked()
             for path in (self.path, self.part):
                 clear(path, everything=True)
         return self
+
+    def _taken(self, path: Path) -> bool:
+        """Return whether a run of this name is there, or was found to be under way."""
+        return path in self._busy or run_is_there(path)
+
+    def _locked(self) -> OutputLock:
+        """Lock the file; if the name is numbered and another run has taken it meanwhile, lock that of the next name."""
+        if not self._numbered:
+            return OutputLock(self.path)
+        while True:
+            with contextlib.suppress(BusyError):
+                lock = OutputLock(self.path)
+                if not self._taken(self.path):  # nothing can take a name whose lock we have
+                    return lock
+                lock.release()
+            self._busy.add(self.path)
+            self._name(self.wanted)
 
     @staticmethod
     def load_libraries() -> None:

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any, Protocol
 
 import numpy as np
@@ -102,9 +103,9 @@ def _array(declared: Variable, values: npt.ArrayLike) -> npt.NDArray[Any]:
     return array.astype(declared.dtype)
 
 
-def _measured(frames: Mapping[str, npt.ArrayLike]) -> dict[str, xr.Variable]:
+def _measured(frames: Mapping[str, npt.ArrayLike], own: Mapping[str, Variable]) -> dict[str, xr.Variable]:
     """Return the variables that hold these arrays."""
-    declared = {name: variable(name) for name in frames}
+    declared = {name: variable(name, own) for name in frames}
     return {name: declared[name].holding(_array(declared[name], values)) for name, values in frames.items()}
 
 
@@ -129,6 +130,7 @@ def dataset(
     attrs: Mapping[str, Any],
     headlines: Iterable[_Headline] = (),
     time_unit: str = "ns",
+    own: Mapping[str, Variable] = MappingProxyType({}),
 ) -> xr.Dataset:
     """Put the numbers of a run into one dataset with all names and attributes that the CF conventions ask for.
 
@@ -146,6 +148,8 @@ def dataset(
         The main results of the run.
     time_unit
         The unit of ``elapsed_time``: s, ns or ps.
+    own
+        The variables that the scene declares, by name.
 
     Returns
     -------
@@ -171,7 +175,7 @@ def dataset(
     """
     if time_unit not in ("s", "ns", "ps"):
         raise ValueError(f"elapsed_time cannot be in {time_unit!r}, only in s, ns or ps")
-    held = _measured(frames)
+    held = _measured(frames, own)
     sizes = {dim: size for entry in held.values() for dim, size in entry.sizes.items()}
     given = {dim: names for dim, names in _LABELS.items() if sizes.get(dim) == len(names)} | dict(coords)
     axes = {name: _coordinate(name, values, time_unit) for name, values in given.items()}
@@ -183,14 +187,19 @@ def dataset(
     return _with(xr.Dataset(bounds, only, dict(attrs)), held, headlines)
 
 
-def extended(run: xr.Dataset, frames: Mapping[str, npt.ArrayLike], headlines: Iterable[_Headline] = ()) -> xr.Dataset:
+def extended(
+    run: xr.Dataset,
+    frames: Mapping[str, npt.ArrayLike],
+    headlines: Iterable[_Headline] = (),
+    own: Mapping[str, Variable] = MappingProxyType({}),
+) -> xr.Dataset:
     """Return a dataset with more variables, such as those that theory predicts, and with headlines.
 
     Parameters
     ----------
     run
         A dataset from `dataset`; it is not changed.
-    frames, headlines
+    frames, headlines, own
         As for `dataset`; a variable of the same name is replaced.
 
     Raises
@@ -209,7 +218,7 @@ def extended(run: xr.Dataset, frames: Mapping[str, npt.ArrayLike], headlines: It
     >>> run.air_temperature.attrs["ancillary_variables"], len(measured.data_vars)
     ('air_temperature_theory', 1)
     """
-    return _with(run, _measured(frames), headlines)
+    return _with(run, _measured(frames, own), headlines)
 
 
 def _with(run: xr.Dataset, held: dict[str, xr.Variable], headlines: Iterable[_Headline]) -> xr.Dataset:

@@ -124,6 +124,7 @@ def read(path: AnyPath) -> xr.Dataset:
     if not os.path.exists(source):
         part = part_path(source)
         hint = f"a run that was stopped left {part}, give that" if os.path.exists(part) else ""
+        hint = f"did you mean {source}.nc" if os.path.isfile(f"{source}.nc") else hint
         raise FileError(f"{source} does not exist: {hint or 'check the name and the folder'}.")
     if not os.path.isfile(source) or not os.access(source, os.R_OK):
         raise FileError(f"{source} may not be read: check what ls -l says of it, or {fix}.")

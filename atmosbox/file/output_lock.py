@@ -13,10 +13,14 @@ from typing import Any
 from atmosbox.errors import FileError
 from atmosbox.file.provenance import moment
 
-__all__ = ["OutputLock", "alive", "hold", "host"]
+__all__ = ["BusyError", "OutputLock", "alive", "hold", "host"]
 
 ABANDONED = 3600.0
 """Seconds after which the lock of a process on another computer, which cannot be checked, counts as abandoned."""
+
+
+class BusyError(FileError):
+    """Another process is writing the file."""
 
 
 def host() -> str:
@@ -62,8 +66,10 @@ class OutputLock:
 
     Raises
     ------
+    BusyError
+        If another process is writing the file.
     FileError
-        If another process is writing the file, or the lock cannot be made.
+        If the lock cannot be made.
 
     Examples
     --------
@@ -95,7 +101,7 @@ class OutputLock:
             owner = _owner(os.read(opened, 1000))
             if held is False or (owner and self._lives(owner, held is True, opened)):
                 whose = f"process {owner['pid']} on {owner['host']} since {owner['since']}" if owner else "another run"
-                raise FileError(
+                raise BusyError(
                     f"{path} is being written by {whose}: wait for it, or name another file with --out; if it runs no "
                     f"more, remove {self.path}."
                 )

@@ -11,7 +11,7 @@ import shlex
 import shutil
 import time
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeAlias
 
@@ -25,6 +25,8 @@ __all__ = [
     "clear",
     "named",
     "part_path",
+    "run_is_there",
+    "unused",
     "whole_file",
     "whole_path",
     "write_failure",
@@ -161,6 +163,40 @@ def part_path(path: AnyPath) -> Path:
     """
     whole = Path(path)
     return whole.with_name(f"{whole.stem}.part{whole.suffix}")
+
+
+def run_is_there(path: AnyPath) -> bool:
+    """Return whether there is the file of a run, finished or not.
+
+    Examples
+    --------
+    >>> run_is_there("no/such/folder/run.nc")
+    False
+    """
+    return os.path.lexists(path) or os.path.lexists(part_path(path))
+
+
+def unused(path: AnyPath, taken: Callable[[Path], bool] = os.path.lexists) -> Path:
+    """Return a path that is not in use: this one, or else NAME-2, NAME-3 and so on with the same suffix.
+
+    Parameters
+    ----------
+    path
+        The default path of an output file.
+    taken
+        Function that returns whether a path is in use.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     Path(folder, "run.nc").touch()
+    ...     unused(Path(folder, "run.nc")).name, unused(Path(folder, "other.nc")).name
+    ('run-2.nc', 'other.nc')
+    """
+    first = Path(path)
+    tried = (first if k == 1 else first.with_name(f"{first.stem}-{k}{first.suffix}") for k in itertools.count(1))
+    return next(each for each in tried if not taken(each))
 
 
 def whole_path(part: AnyPath) -> Path:

@@ -12,6 +12,8 @@ theory have only a ``long_name`` that says so.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from atmosbox.file.declaration import SUFFIXES, Variable, derived
@@ -284,13 +286,15 @@ VARIABLES: dict[str, Variable] = {
 """Every variable of a file by its name."""
 
 
-def variable(name: str) -> Variable:
+def variable(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> Variable:
     """Return the declaration of a variable, or of its standard error, number of samples, theory or tolerance.
 
     Parameters
     ----------
     name
         A name in `VARIABLES`, or one with ``_se``, ``_count``, ``_theory`` or ``_tolerance`` behind it.
+    own
+        The variables that a scene declares, by name.
 
     Returns
     -------
@@ -310,18 +314,20 @@ def variable(name: str) -> Variable:
     >>> error.standard_name, error.units_metadata
     ('air_temperature standard_error', 'temperature: difference')
     """
-    found = known(name)
+    found = known(name, own)
     if found is None:
-        raise KeyError(f"{name!r} is not declared in atmosbox.file.dataset.VARIABLES")
+        fix = f"declare it in the scene, variables = {{'{name}': (dimensions, unit, words)}}"
+        raise KeyError(f"{name} is no variable of atmosbox: {fix}")
     return found
 
 
-def known(name: str) -> Variable | None:
+def known(name: str, own: Mapping[str, Variable] = MappingProxyType({})) -> Variable | None:
     """Return the declaration of a variable as `variable` does; None if nothing of that name is declared."""
-    if name in VARIABLES:
-        return VARIABLES[name]
+    declared = {**own, **VARIABLES}
+    if name in declared:
+        return declared[name]
     for suffix in SUFFIXES:
-        parent = VARIABLES.get(name.removesuffix(suffix))
+        parent = declared.get(name.removesuffix(suffix))
         if parent is not None and name.endswith(suffix):
             return derived(parent, suffix)
     return None

@@ -65,13 +65,11 @@ def scenes(scene: str | os.PathLike[str] | None = None) -> Printed:
     (True, True)
     """
     from atmosbox import scenarios
-    from atmosbox.text.table import table
+    from atmosbox.text.report import parameter_lines, scene_lines
 
     if scene is None:
         found = scenarios.summaries()
-        return Printed(list(found), table(["", ""], list(found.items()), _WIDTH))
-    from atmosbox.text.report import parameter_lines
-
+        return Printed(list(found), scene_lines(found, _WIDTH))
     with in_python():
         module = scenarios.load(scene)
         declared = module.Settings.describe()

@@ -22,7 +22,7 @@ def run(
     progress: Show | bool | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = None,
     **settings: Any,
 ) -> RunDataset:
     """Run a scene and return the measurements, with the predictions of theory beside them.
@@ -49,7 +49,8 @@ def run(
         The accuracy of the run: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, such as ``"0.5K"``
         or ``"2%"``. It picks the engine, and the settings that are not given.
     save_molecules
-        Whether to keep the position and velocity of every molecule in every frame, as `atmosbox.show` needs them.
+        Whether to keep the position and velocity of every molecule in every frame, as `atmosbox.show` needs them; by
+        default if they take less than 10 MB.
     **settings
         The scene's settings, by name, as numbers in their documented units or as text with a unit:
         ``molecules=4000, temperature="25degC"``.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError, shown
 from atmosbox.file.checkpoint import Checkpoint
-from atmosbox.file.output_path import check_writable
+from atmosbox.file.output_path import check_writable, unused
 from atmosbox.file.provenance import history_line
 from atmosbox.live.summary import without_headlines
 from atmosbox.scene.conversion import to_si
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Change", "Tape", "file_for"]
 
-_NAMES = 1000
 _SAID = 20
 
 
@@ -95,12 +94,7 @@ def file_for(name: str | None, scene: str, folder: Path, *, force: bool) -> Path
     atmosbox.errors.FileError: ../warm.nc is not the name of a file: give one without a folder, such as warm.nc.
     """
     if name is None:
-        stem = Path(scene).stem
-        for number in range(1, _NAMES):
-            path = folder / (f"{stem}-live.nc" if number == 1 else f"{stem}-live-{number}.nc")
-            if not os.path.exists(path):
-                return check_writable(path)
-        raise FileError(f"There are {_NAMES} recordings of {stem} here: move them, or give the file a name.")
+        return check_writable(unused(folder / f"{Path(scene).stem}-live.nc"))
     plain = name.strip()
     if not plain or Path(plain).name != plain or plain.startswith(".") or not plain.isprintable() or "\\" in plain:
         stem = Path(plain).stem.lstrip(".")

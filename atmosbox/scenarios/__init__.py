@@ -21,13 +21,44 @@ import zlib
 from importlib.abc import InspectLoader
 from pathlib import Path
 from types import ModuleType
+from typing import Any, NamedTuple
 
 from atmosbox.errors import FileError, UnknownSceneError, shown
 
-__all__ = ["REQUIRED", "load", "names", "summaries"]
+__all__ = ["REQUIRED", "Summary", "load", "names", "place", "summaries"]
 
 REQUIRED = ("Settings", "build", "theory", "headlines", "panels")
 """What every scenario module must define."""
+
+_OWN = "_atmosbox_scene_"  # begins the name of the module of a user's own scene
+
+_ORDER = (
+    "temperature",
+    "temperature-large",
+    "elastic-collisions",
+    "diffusion",
+    "atmosphere",
+    "lifting-dry",
+    "evaporation",
+    "condensation",
+    "nuclei",
+    "lifting-moist",
+    "lifting-sounding",
+    "mountains",
+    "attraction",
+)
+"""The order of teaching; scenes not named here follow by name."""
+
+
+class Summary(NamedTuple):
+    """What `atmosbox list` says of a scene."""
+
+    sentence: str
+    """The first sentence of its docstring."""
+    level: str
+    """For whom it is: school, first year or second year."""
+    minutes: int | None
+    """How much time of a class it takes."""
 
 
 def _checkout_scenarios(here: Path) -> Path | None:
@@ -54,7 +85,7 @@ def names() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The names in alphabetical order, as a user types them: with dashes.
+        The names in the order of teaching, as a user types them: with dashes.
 
     Examples
     --------
@@ -62,16 +93,18 @@ def names() -> tuple[str, ...]:
     True
     """
     found = {module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")}
-    return tuple(sorted(name.replace("_", "-") for name in found))
+    place = {name: k for k, name in enumerate(_ORDER)}
+    typed = (name.replace("_", "-") for name in found)
+    return tuple(sorted(typed, key=lambda name: (place.get(name, len(place)), name)))
 
 
-def summaries() -> dict[str, str]:
-    """Return the first sentence of each scenario's docstring by name; no scenario is imported.
+def summaries() -> dict[str, Summary]:
+    """Return what `atmosbox list` says of each scenario, by name; no scenario is imported.
 
     Examples
     --------
     >>> summaries()["lifting-dry"]
-    'A parcel of dry air rises and cools.'
+    Summary(sentence='A parcel of dry air rises and cools.', level='first year', minutes=15)
     """
     found = {}
     for name in names():
@@ -79,8 +112,15 @@ def summaries() -> dict[str, str]:
         source = None
         if spec is not None and isinstance(spec.loader, InspectLoader):
             source = spec.loader.get_source(spec.name)
-        text = ast.get_docstring(ast.parse(source or "")) or ""
-        found[name] = text.partition("\n\n")[0].replace("\n", " ")
+        tree = ast.parse(source or "")
+        text = ast.get_docstring(tree) or ""
+        said: dict[str, Any] = {
+            ast.unparse(node.targets[0]): node.value.value
+            for node in tree.body
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+        }
+        sentence = text.partition("\n\n")[0].replace("\n", " ")
+        found[name] = Summary(sentence, str(said.get("level", "")), said.get("minutes"))
     return found
 
 
@@ -143,19 +183,21 @@ def _unknown(text: str) -> UnknownSceneError:
     near = difflib.get_close_matches(text.lower().replace("_", "-"), names(), n=3, cutoff=0.5)
     if os.path.isfile(f"{text}.py"):
         fix = f"to run your own file, give its path, ./{text}.py"
+    elif text.endswith(".nc"):
+        fix = f"to run the scene of a file again, type atmosbox run --from {shown(text)}"
     elif near:
         fix = f"did you mean {' or '.join(near)}? `atmosbox list` shows all"
     else:
         fix = "`atmosbox list` shows all"
-    return UnknownSceneError(f"There is no scenario named {shown(text)}: {fix}.")
+    return UnknownSceneError(f"There is no scene {shown(text)}: {fix}.")
 
 
 def _load_file(path: Path) -> ModuleType:
     """Run a user's own file as a module and check that it is a scenario."""
     if os.path.isdir(path):
-        raise FileError(f"{path} is a folder: give the path of the scenario's .py file in it.")
+        raise FileError(f"{path} is a folder: give the path of the scene's .py file in it.")
     if not os.path.exists(path):
-        raise FileError(f"There is no file {path}: check its path, or take a scenario that `atmosbox list` shows.")
+        raise FileError(f"There is no file {path}: check its path, or take a scene that `atmosbox list` shows.")
     try:
         source = path.read_bytes()
     except OSError as error:
@@ -164,7 +206,7 @@ def _load_file(path: Path) -> ModuleType:
     # A unique name, so that a user's file cannot replace a module of Python or of another library; in
     # sys.modules, because pydantic and dataclasses look a module up by its name.
     location = str(path.resolve())
-    module = ModuleType(f"_atmosbox_scene_{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
+    module = ModuleType(f"{_OWN}{zlib.crc32(os.fsencode(location)):08x}_{path.stem}")
     module.__file__ = location
     sys.modules[module.__name__] = module
     try:
@@ -178,10 +220,25 @@ def _load_file(path: Path) -> ModuleType:
     if missing:
         del sys.modules[module.__name__]
         raise FileError(
-            f"{path} is not a scenario, for it does not define {', '.join(missing)}: "
-            "write them as the scenarios of atmosbox do, such as scenarios/lifting_dry.py."
+            f"{path} is not a scene, for it does not define {', '.join(missing)}: "
+            "write them as the scenes of atmosbox do, such as scenarios/lifting_dry.py."
         )
+    for name, declared in getattr(module, "variables", {}).items():
+        if not (isinstance(declared, tuple) and len(declared) == 3 and all(isinstance(part, str) for part in declared)):
+            raise FileError(
+                f"{path} declares the variable {shown(name)} as {shown(declared)}: "
+                'give dimensions, unit and words, such as ("elapsed_time", "m", "mean height").'
+            )
     return module
+
+
+def place(error: BaseException) -> str | None:
+    """Return the line of a user's own scene in which an error arose, as "my_scene.py, line 30"; None if in none."""
+    own = {module.__file__ for name, module in list(sys.modules.items()) if name.startswith(_OWN)}
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        if frame.filename in own:
+            return f"{Path(frame.filename).name}, line {frame.lineno}"
+    return None
 
 
 def _why(path: Path, location: str, error: BaseException) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -124,7 +125,9 @@ class Parameter:
         try:
             unit = number_and_unit(value)[1]
         except ValueError:
-            return True  # words
+            return self.kind not in ("int", "float") or any(
+                c.isdigit() for c in str(value)
+            )  # words, or several numbers
         known = known_unit(unit or "1")
         if known is None:
             return True  # a row of numbers, or a unit that is misspelled
@@ -157,15 +160,24 @@ class Parameter:
                 raise ValueError("is not whole")
         except ValueError as error:
             problem = f"{error}, but {self._wanted} is wanted"
-            raise UnitError(self.name, value, problem, self._fix()) from None
+            raise UnitError(self.name, value, problem, self._fix(self._without_comma(value))) from None
         number = int(exact) if self.kind == "int" else float(exact)
         below = self.low is not None and number < self.low
         if below or (self.high is not None and number > self.high):
             given = shown(value.strip() if isinstance(value, str) else value)
             given = given if unit or self.unit == "1" else f"{given} {self.unit}"
-            side = "below the lowest" if below else "above the highest"
-            raise self._refusal(given, f"is {side} allowed, {self.allowed}")
+            side, limit = ("below the lowest", self.low) if below else ("above the highest", self.high)
+            raise self._refusal(given, f"is {side} allowed, {self.allowed}", self.typed(limit))
         return number
+
+    def _without_comma(self, value: object) -> str | None:
+        """Return how a number is typed that was written with commas, if it is allowed: 30,5 or 1,000."""
+        if isinstance(value, str) and "," in value and len(value) < 100:
+            point, none = value.replace(",", "."), value.replace(",", "")
+            for text in (none, point) if self.kind == "int" else (point, none):
+                with contextlib.suppress(SettingError):
+                    return self.typed(self.parse(text))
+        return None
 
     @property
     def _wanted(self) -> str:

@@ -15,6 +15,7 @@ from atmosbox.engine import RefusedError
 from atmosbox.engine.core.marching import MarchingParcel
 from atmosbox.errors import EngineError, PackingError, SettingError
 from atmosbox.scene.engines import EXACT, EngineChoice, choose
+from atmosbox.scene.instruments import Discs
 from atmosbox.scene.parameter import Parameter
 from atmosbox.scene.settings import SceneSettings
 from atmosbox.scene.setup import Setup
@@ -23,9 +24,10 @@ from atmosbox.simulation import accuracy as accuracies
 from atmosbox.simulation.accuracy import Expectation
 from atmosbox.version import __version__
 
-__all__ = ["Card", "Prepared", "build", "card", "prepare", "usual_engine"]
+__all__ = ["Card", "Prepared", "build", "card", "keeps_molecules", "prepare", "usual_engine"]
 
 _MEMORY = 8e9  # bytes that saved molecules may need
+_SMALL = 10e6  # bytes up to which the molecules are saved unasked
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,8 @@ class Prepared:
     scene: str
     module: ModuleType
     settings: SceneSettings
-    save_molecules: bool = False
+    save_molecules: bool | None = False
+    """None: if they take little space, see `keeps_molecules`."""
     engine: EngineChoice = EXACT
     expectation: Expectation | None = None
     stated: Mapping[str, Any] | None = None
@@ -83,7 +86,7 @@ def prepare(
     *,
     engine: str | EngineChoice | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = False,
 ) -> Prepared:
     """Load a scenario and check its settings; nothing is simulated yet.
 
@@ -99,7 +102,7 @@ def prepare(
         A wish, as `atmosbox.simulation.accuracy.parse` reads it. It chooses the engine and the settings that trade
         accuracy for time; values in `settings` are not changed.
     save_molecules
-        Whether position and velocity of all molecules are saved in every frame.
+        Whether position and velocity of all molecules are saved in every frame; None if they take less than 10 MB.
 
     Returns
     -------
@@ -188,6 +191,8 @@ def build(prepared: Prepared) -> Setup:
     try:
         engine = [prepared.engine] if _takes_engine(prepared.module) else []
         setup: Setup = prepared.module.build(prepared.settings, *engine)
+        if not isinstance(setup, Setup):
+            raise TypeError(f"build returns a {type(setup).__name__}, and not a Setup")
         if isinstance(setup.parcel, MarchingParcel):
             setup.parcel.divide(setup.frame / setup.samples)
     except EnginePackingError as error:
@@ -200,13 +205,30 @@ def build(prepared: Prepared) -> Setup:
             raise SettingError(
                 "engine", str(prepared.engine), f"cannot do {prepared.scene} ({error})", f"give --engine {EXACT}"
             ) from error
-        raise EngineError(f"The box of {prepared.scene} cannot be built: {error}.") from error
+        where = scenarios.place(error)
+        box = f"The box of {prepared.scene}" if where is None else f"{where}: the box"
+        raise EngineError(f"{box} cannot be built: {error}.") from error
     if prepared.save_molecules:
-        molecules = setup.parcel.present.size
-        needed = 28.0 * molecules * setup.frames  # position, velocity and speed in single precision
+        needed = _space(setup)
         if needed > _MEMORY:
             raise SettingError(
-                "molecules", molecules, f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
+                "molecules", setup.parcel.present.size,
+                f"saved in {setup.frames} frames would take {needed / 1e9:.0f} GB",
                 "leave out --save-molecules, or take fewer molecules",
             )  # fmt: skip
     return setup
+
+
+def _space(setup: Setup) -> float:
+    """Return the space that all molecules of a run take: position, velocity and speed in single precision."""
+    return 28.0 * setup.parcel.present.size * setup.frames
+
+
+def keeps_molecules(prepared: Prepared, setup: Setup) -> bool:
+    """Return whether a run saves its molecules: as asked for, or else if they take less than 10 MB.
+
+    Discs are saved in any case, by their own instrument.
+    """
+    if prepared.save_molecules is not None:
+        return prepared.save_molecules
+    return _space(setup) < _SMALL and not any(isinstance(each, Discs) for each in setup.instruments)

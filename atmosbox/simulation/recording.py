@@ -15,7 +15,7 @@ import numpy as np
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.instruments import Instrument, Molecules, Readings
 from atmosbox.scene.setup import Setup
-from atmosbox.simulation.preparation import Prepared
+from atmosbox.simulation.preparation import Prepared, keeps_molecules
 from atmosbox.simulation.verification import with_bias
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class Recording:
     instruments: tuple[Instrument, ...] = ()
 
     def __post_init__(self) -> None:
-        extra = (Molecules(self.setup.right),) if self.prepared.save_molecules else ()
+        extra = (Molecules(self.setup.right),) if keeps_molecules(self.prepared, self.setup) else ()
         self.instruments = (*(self.instruments or self.setup.instruments), *extra)
         if self.first:
             snapshot = self.setup.parcel.snapshot()
@@ -130,8 +130,13 @@ class Recording:
             Whether to compute the scene's headlines.
         """
         from atmosbox.file.dataset import dataset, extended
+        from atmosbox.file.declaration import Variable
 
         setup, settings, module = self.setup, self.prepared.settings, self.prepared.module
+        own = {
+            name: Variable(name, tuple(dims.split()), unit, words)
+            for name, (dims, unit, words) in getattr(module, "variables", {}).items()
+        }
         unseen = int(bool(self.first))
         in_unit = setup.scale.time / {"s": 1.0, "ns": 1e-9, "ps": 1e-12}[setup.time_unit]
         times = np.array(self.times) * in_unit
@@ -146,14 +151,20 @@ class Recording:
         coords["elapsed_time_bnds"] = np.stack([times[:-1], times[1:]], axis=1)
         attributes = self.attributes | {"atmosbox_status": status}
         seen = {"elapsed_time": slice(unseen, None)}
-        measured = dataset(readings, coords, attributes, time_unit=setup.time_unit)
+        measured = dataset(readings, coords, attributes, time_unit=setup.time_unit, own=own)
         if self.frames < 2:
             return measured.isel(seen) if unseen else measured, ()
         try:
-            full = extended(measured, module.theory(measured, settings))
+            expected = module.theory(measured, settings)
+            if not isinstance(expected, dict):
+                raise TypeError(f"theory returns a {type(expected).__name__}, and not a dict of arrays")
+            full = extended(measured, expected, own=own)
             if not judged or unseen:
                 return full.isel(seen) if unseen else full, ()
-            headlines = with_bias(module.headlines(full, settings), self.prepared.parameters)
+            headlines = module.headlines(full, settings)
+            if not isinstance(headlines, tuple) or not all(isinstance(each, Headline) for each in headlines):
+                raise TypeError(f"headlines returns {headlines!r:.60}, and not a tuple of Headline")
+            headlines = with_bias(headlines, self.prepared.parameters)
             return extended(full, {}, headlines), headlines
         except (ArithmeticError, LookupError, ValueError):
             if status == "complete":

@@ -255,7 +255,7 @@ def run(
     progress: Progress | None = None,
     engine: str | None = None,
     accuracy: str | None = None,
-    save_molecules: bool = False,
+    save_molecules: bool | None = False,
     **settings: Any,
 ) -> xr.Dataset:
     """Run a scenario and return its measurements.
@@ -276,7 +276,7 @@ def run(
         How accurate the run is to be: ``"sketch"``, ``"lecture"``, ``"reference"``, or the largest error, as ``"0.5K"``
         or ``"2%"``. It chooses the engine, and the settings that are not given.
     save_molecules
-        Whether positions and velocities of all molecules are saved in every frame.
+        Whether positions and velocities of all molecules are saved in every frame; None if they take less than 10 MB.
     **settings
         Values by name, numbers in the documented unit or texts with a unit.
 
@@ -336,7 +336,7 @@ def prepared_again(restart: Restart, scene: str | os.PathLike[str] | None = None
         named if scene is None else scene,
         made["settings"],
         engine=str(made["engine"]),
-        save_molecules=made["save_molecules"] is True,
+        save_molecules=made["save_molecules"],
     )
     return replace(prepared, expectation=None, stated=made.get("accuracy"))
 

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
+from atmosbox import scenarios
 from atmosbox.errors import AtmosboxError, FileError
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.scene.parameter import Value
@@ -74,7 +75,9 @@ def run(task: Task, progress: Callable[[float, str], None] | None = None) -> Don
         except MemoryError:
             reason = "The computer has not enough memory for it."
         except Exception as error:
-            reason = f"This is a bug in atmosbox or in your own scene ({type(error).__name__}: {error})."
+            where = scenarios.place(error)
+            what = "This is a bug in atmosbox" if where is None else f"{where} cannot be run"
+            reason = f"{what} ({type(error).__name__}: {error})."
     return Done(task, " ".join(reason.split()), tuple(sorted({str(each.message) for each in caught})))
 
 

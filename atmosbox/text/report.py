@@ -209,6 +209,12 @@ def card_json(card: Card) -> dict[str, Any]:
     }
 
 
+def scene_lines(summaries: Mapping[str, Sequence[Any]], width: int) -> list[str]:
+    """Return the table of the scenes from the sentence, the level and the minutes of each."""
+    rows = [[name, level, str(minutes or ""), sentence] for name, (sentence, level, minutes) in summaries.items()]
+    return table(["scene", "level", "minutes", "what it shows"], rows, width)
+
+
 def parameter_lines(parameters: Sequence[Parameter], width: int) -> list[str]:
     """Return the table of the settings of a scene."""
     header = ["setting", "default", "unit", "allowed", "what it is"]

@@ -19,8 +19,11 @@ from atmosbox.simulation import runner
 @job("scenes", quick=True)
 def scenes(found: Findings) -> None:
     """Make the table of the scenes, each with its first line."""
-    rows = [[f"[{name}](scenes/{name}.md)", text] for name, text in scenarios.summaries().items()]
-    found.table(["scene", "what it shows"], rows)
+    rows = [
+        [f"[{name}](scenes/{name}.md)", level, str(minutes), sentence]
+        for name, (sentence, level, minutes) in scenarios.summaries().items()
+    ]
+    found.table(["scene", "level", "minutes", "what it shows"], rows)
 
 
 @job("parameters", quick=True)

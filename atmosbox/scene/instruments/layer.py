@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,10 +31,19 @@ class Layers:
         Number of layers; the box must count its virial in as many layers.
     memory
         Correlation time of the energy of the column [reduced time], see `atmosbox.scene.statistics.average_beside`.
+    gas
+        The name of one of several gases: only number density and temperature are measured then, as
+        ``GAS_number_density`` and ``GAS_layer_temperature``, which the scene declares among its ``variables``.
+    which : (molecule,), optional
+        The molecules of this gas.
     """
 
-    def __init__(self, number: int, memory: float = 0.0) -> None:
+    def __init__(
+        self, number: int, memory: float = 0.0, *, gas: str = "", which: NDArray[np.bool_] | None = None
+    ) -> None:
         self._number = number
+        self._gas = gas
+        self._which = which
         self._memory = memory
         self._energy: list[float] = []
         self._sum = np.zeros((3, number))
@@ -47,7 +59,13 @@ class Layers:
 
     def sample(self, parcel: Parcel, snapshot: Snapshot) -> None:
         """Count the molecules of each layer and sum the energy of their disordered motion."""
-        self._sum += np.stack(layer_sample(parcel, snapshot, self._number))
+        measured: Any = parcel
+        if self._which is not None:
+            measured = SimpleNamespace(length=parcel.length, planar=parcel.planar, mass=parcel.mass[self._which])
+            snapshot = snapshot._replace(
+                position=snapshot.position[self._which], velocity=snapshot.velocity[self._which]
+            )
+        self._sum += np.stack(layer_sample(measured, snapshot, self._number))
         self._looks += 1
 
     def end_frame(self, parcel: Parcel, snapshot: Snapshot) -> None:
@@ -85,6 +103,8 @@ class Layers:
             "layer_temperature": (scale.temperature, kT + warmer),
             "layer_pressure": (scale.pressure, (number * kT + mean_number * warmer + rate / dimensions) / volume),
         }
+        if self._gas:
+            unit = {f"{self._gas}_{name}": unit[name] for name in ("number_density", "layer_temperature")}
         slow, blocks = np.array(self._energy[settle:]), min(_BLOCKS, len(frames) // 2)
         for name, (factor, values) in unit.items():
             if blocks < 2:

@@ -1,0 +1,81 @@
+"""A scene of one's own: its variables, one of several gases, and the line that is named if it fails."""
+
+from pathlib import Path
+
+import pytest
+
+from atmosbox.errors import FileError
+from atmosbox.file.netcdf import read
+from atmosbox.scenarios import load
+from atmosbox.simulation import runner
+from tests.in_process import typed
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "docs" / "examples"
+FLASK = (EXAMPLES / "my_scene.py").read_text(encoding="utf-8")
+
+
+def test_of_two_gases_in_gravity_each_has_its_own_height(tmp_path):
+    file = tmp_path / "two.nc"
+    result = typed("run", EXAMPLES / "two_gases.py", "molecules=300", "--out", file)
+    assert result.exit_code == 0, result.output
+    dataset = read(file)
+    helium, argon = runner.headlines_of(dataset)
+    assert helium.agrees
+    assert argon.agrees
+    assert argon.value + 10.0 * argon.standard_error < argon.theory * 2.0 < helium.value
+    assert dataset.argon_mean_height.attrs["units"] == "m"
+    assert dataset.argon_mean_height.attrs["ancillary_variables"] == "argon_mean_height_theory"
+    assert set(dataset.helium_number_density.attrs["ancillary_variables"].split()) == {
+        "helium_number_density_se",
+        "helium_number_density_theory",
+    }
+    found = (dataset.helium_layer_temperature - 288.15) / dataset.helium_layer_temperature_se
+    assert abs(found).max() < 5.0
+    for words in (["plot", file, "--out", tmp_path / "two.svg"], ["check", file]):
+        assert typed(*words).exit_code == 0
+
+
+WRONG = {
+    "an unknown name in build": ("rng = Random", "rng = random", "LINE cannot be run (NameError: name 'random"),
+    "a box that no engine makes": (
+        "maxwell_velocities(1.0",
+        "maxwell_velocities(-1.0",
+        "LINE: the box cannot be built",
+    ),
+    "no setup": ("    return Setup(", "    Setup(", "my_scene.py cannot be run (TypeError: build returns a NoneType"),
+    "a variable without a declaration": (
+        '"air_temperature_theory": np',
+        '"light_height": np',
+        "my_scene.py cannot be run (KeyError: light_height is no variable of atmosbox: declare it in the scene",
+    ),
+    "no theory": ('    return {"air_', '    {"air_', "my_scene.py cannot be run (TypeError: theory returns a NoneType"),
+    "a missing variable": ("dataset.heat_from_wall", "dataset.heat", "LINE cannot be run (AttributeError"),
+    "headlines that are none": (
+        "    return (Headline(",
+        "    return (Headline, Headline(",
+        "my_scene.py cannot be run (TypeError: ",
+    ),
+    "a shape": ('np.full(dataset.sizes["elapsed_time"],', "np.full(3,", "my_scene.py cannot be run (ValueError"),
+    "wrong arguments": ("return (Headline(", "return (Headline(1, 2, 3, 4,", "LINE cannot be run (TypeError"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_scene_that_fails_is_told_its_line_and_the_reason(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    old, new, said = WRONG[name]
+    scene = FLASK.replace(old, new).replace("450", "100")
+    assert scene.count(new) == 1
+    Path("my_scene.py").write_text(scene, encoding="utf-8")
+    result = typed("run", "./my_scene.py", "molecules=10")
+    assert result.exit_code in (1, 2)
+    (sentence,) = result.stderr.splitlines()
+    assert said.replace("LINE", f"my_scene.py, line {scene.partition(new)[0].count(chr(10)) + 1}") in sentence
+    assert "bug" not in sentence
+
+
+def test_a_variable_that_is_not_declared_in_full_is_refused(tmp_path):
+    path = tmp_path / "my_scene.py"
+    path.write_text(f"{FLASK}\nvariables = {{'light_height': 'm'}}\n", encoding="utf-8")
+    with pytest.raises(FileError, match="give dimensions, unit and words"):
+        load(path)
