@@ -198,10 +198,10 @@ def agree(box):
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_the_engine_meets_the_same_events_as_the_reference(name):
-    compared = []
+def test_the_engine_meets_the_same_events_as_the_reference(name, pytestconfig):
+    compared, more = [], pytestconfig.getoption("--fuzz")
 
-    @settings(max_examples=16)
+    @settings(max_examples=16 * more, derandomize=more == 1)
     @given(boxes(FAMILIES[name]))
     def the_same_events(box):
         compared.append(agree(box))
