@@ -165,6 +165,14 @@ def lone(place, velocity):
     return ParcelSet([place, [8, 2, 8]], [velocity, [0, 0, 0]], length=(10, 10, 10))
 
 
+@pytest.mark.parametrize("speed", [1e-49, 1e-30, 1e-13, 1e40])
+def test_two_molecules_meet_however_slow_or_fast_they_are(speed):
+    pair = [[3, 5, 5], [7, 5, 5]]
+    box = within(ParcelSet(pair, [[speed, 0, 0], [-speed, 0, 0]], length=(10, 10, 10)), 2.0 / speed)
+    assert box.contacts == 1
+    assert box.snapshot().velocity[:, 0].tolist() == [-speed, speed]
+
+
 def test_a_clock_that_has_run_for_long_has_lost_none_of_its_digits():
     # a lone molecule comes back to its place after each period, 18 in time; a float of 1e9 has 1e-7 left
     box = lone([3, 5, 5], [1.0, 0, 0])
