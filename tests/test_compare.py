@@ -144,6 +144,12 @@ def test_a_number_that_one_run_alone_has_is_left_out():
     assert compared([run_with(280.0, 0.3), xr.Dataset()]) == ()
 
 
+def test_a_result_that_no_file_holds_is_refused():
+    changed = xr.Dataset(attrs={"atmosbox_headlines": '["warmth"]'})
+    with pytest.raises(FileError, match="No file has the variable 'warmth'"):
+        compared([changed, changed])
+
+
 def test_two_seeds_agree_within_their_errors(files):
     # |z| < 4 for three numbers of two independent runs: a false alarm in 5000 pairs of seeds.
     for each in compared(read(files, "mild", "again")):

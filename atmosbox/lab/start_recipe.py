@@ -21,7 +21,7 @@ from atmosbox.engine import RandomNumbers, clear_of_drops, equal_speeds, maxwell
 from atmosbox.engine.core.elementary import cbrt
 from atmosbox.engine.core.lift import Gauges
 from atmosbox.engine.core.walls import HEAT_BATH
-from atmosbox.engine.start.overlap import _bins, _Spheres
+from atmosbox.engine.start.overlap import bins_of, spheres_of
 from atmosbox.lab.kernels.pairwise import DEPTH
 from atmosbox.lab.kernels.starting import ALONG_X, AS_PLACED, SHUFFLED, STEP, Cleared, Start, can_start
 from atmosbox.scene import moisture
@@ -33,7 +33,6 @@ __all__ = ["Watched", "no_start", "start_of", "watched"]
 
 Array = NDArray[np.float64]
 
-_GAP = 1e-6
 _WORD = 1 << 64
 _DRAWING = (maxwell_velocities, equal_speeds, rotational_energies, clear_of_drops)
 _PLACING = {"length", "diameter", "periodic", "planar", "top", "scale_height"}
@@ -203,22 +202,14 @@ def no_start(setup: Setup) -> Start | None:
 def _start(parcel: Any, diameter: Array, top: float | None, cleared: Any) -> Start:
     """Return a start with all data that follow from the box, without its cells, for molecules placed below ``top``."""
     n, planar = parcel.number, bool(parcel.planar)
-    radius = 0.5 * diameter
-    sides, turns = np.array(parcel._sides), np.array(parcel._periodic)
+    sides = np.array(parcel._sides)
     spread = _spread(parcel, sides)
     sides[2] = sides[2] if top is None else top
-    low = np.where(turns, 0.0, 1.0)[None, :] * 0.5 * diameter[:, None]
-    high = sides[None, :] - low
-    if planar:
-        low[:, 1] = high[:, 1] = 0.5 * sides[1]
-    turn = sides * turns
-    flags = (np.zeros(n, np.bool_), np.zeros(n, np.bool_))
+    spheres = spheres_of(diameter, sides, parcel._periodic, planar)
     liquid = float(parcel.condensed_energy), _warm(parcel)
     return Start(
         0, 0, 0, 0, AS_PLACED, 0.0, int(planar), 0.0, 0.0, 0.0, 0.0, 0.0, *liquid,
-        _Spheres(np.zeros((n, 3)), radius, low, high, turn, *flags),
-        _bins(radius, low, high, turn, _GAP),
-        np.zeros(n), np.array(parcel.mass), np.zeros(n), spread, _first_gauges(parcel),
+        spheres, bins_of(spheres), np.zeros(n), np.array(parcel.mass), np.zeros(n), spread, _first_gauges(parcel),
         0, cleared, np.zeros((n, 3)), np.zeros(3 * n), np.zeros(n, np.int64), np.zeros(n, np.int64),
         np.zeros((DEPTH, 2), np.int64), np.zeros(DEPTH), np.zeros(1, np.uint64),
     )  # fmt: skip

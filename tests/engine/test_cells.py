@@ -147,7 +147,7 @@ def test_a_boundary_is_the_entry_into_one_cell_or_the_way_out_of_one(made):
     check_boundaries(grid, len(radii))
 
 
-@pytest.mark.parametrize("share", [0.25, 0.5, 1.0, 1.5])
+@pytest.mark.parametrize("share", [0.0, 1e-300, 1e-13, 0.25, 0.5, 1.0, 1.5])
 @pytest.mark.parametrize("periodic", [(False,) * 3, (True,) * 3])
 @pytest.mark.parametrize("margin", [0.0, 1e-7])
 def test_spheres_that_just_fit_their_cells_are_no_exception(share, periodic, margin):

@@ -30,6 +30,7 @@ class Family:
     """Boxes that need the same kernels: every new combination of these costs seconds of compilation."""
 
     mixed: bool = False
+    any_size: bool = False  # a sphere up to the size of the box, three of any size down to 0, and points
     points: bool = False
     gravity: bool = False
     rotation: bool = False
@@ -45,6 +46,10 @@ FAMILIES = {
     "equal, gravity, piston": Family(gravity=True, piston=True),
     "points": Family(points=True),
     "mixed": Family(mixed=True),
+    "any size": Family(mixed=True, any_size=True, sides=(1.02, 3.0)),
+    "any size, periodic, piston": Family(
+        mixed=True, any_size=True, periodic="xy", piston=True, sides=(2.0, 3.9), numbers=(12, 30, 40)
+    ),
     "equal, periodic": Family(periodic="xyz", sides=(5.2, 6.0), numbers=CROWDS),
     "mixed, periodic, rotation": Family(mixed=True, rotation=True, periodic="xyz", sides=(2.0, 3.9), numbers=CROWDS),
     "mixed, rotation, gravity, piston, periodic": Family(
@@ -82,6 +87,10 @@ def boxes(draw, family):
         diameter = 10.0 ** random.uniform(-1.0, 0.0, number)
         diameter[:2] = 1.0, 0.4
         mass = 10.0 ** random.uniform(0.0, 3.0, number)
+        if family.any_size:
+            few = 10.0 ** random.uniform(-15.0, 0.0, 3) * random.choice([0.0, 1.0], 3, p=[0.2, 0.8])
+            diameter = np.concatenate([[1.0], few, np.zeros(number)])[:number]
+            mass = 10.0 ** random.uniform(0.0, 6.0, number)
     else:
         diameter = np.full(number, 0.0 if family.points else 1.0)
         mass = np.full(number, 10.0 ** random.uniform(-1.0, 1.0))
@@ -189,10 +198,10 @@ def agree(box):
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_the_engine_meets_the_same_events_as_the_reference(name):
-    compared = []
+def test_the_engine_meets_the_same_events_as_the_reference(name, pytestconfig):
+    compared, more = [], pytestconfig.getoption("--fuzz")
 
-    @settings(max_examples=16)
+    @settings(max_examples=16 * more, derandomize=more == 1)
     @given(boxes(FAMILIES[name]))
     def the_same_events(box):
         compared.append(agree(box))

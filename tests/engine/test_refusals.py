@@ -39,6 +39,7 @@ from atmosbox.engine.stepped.stepped_parcel import SteppedParcel
 S, P, NAN, INF = Specular(), Periodic(), math.nan, math.inf
 SMOOTH, TURNING, COLUMN = (S,) * 6, (P,) * 6, (*(P,) * 4, HeatBath(1.0), S)
 WAY_OUT = re.compile(r"\b(give|make|choose) |\bmust be (finite and )?above 0$|is no number from 0 to 1$")
+CRYSTAL = 0.70711 * np.array([[0, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0]])
 FACTS = {"mass": 0.62, "diameter": 0.5, "binding_energy": 3.0, "heat_capacity": 9.0, "volatility": 1.0, "rotation": 3.0}
 
 
@@ -76,6 +77,10 @@ def driven(interval):
 
 def wall(**law):
     return new_walls((*SMOOTH[:4], HeatBath(**({"kT": 1.0} | law)), S), 1.0)
+
+
+def moving(speed):
+    return box(ParcelSet)(velocity=[[speed, 0, 0], [-speed, 0, 0]])
 
 
 def piston(velocity):
@@ -125,21 +130,22 @@ exact, stepped, classic, dsmc = map(box, (ParcelSet, SteppedParcel, ClassicParce
 
 NUMBERS = [
     # the object, its argument, the name of that in a refusal, values that are refused
-    (exact, "mass", "mass", (0.0, -2.0, NAN, INF)),
-    (exact, "diameter", "diameter", (-1.0, INF)),
+    (exact, "mass", "mass", (0.0, -2.0, NAN, INF, 1e-60, 1e60)),
+    (exact, "diameter", "diameter", (-1.0, INF, 1e-320, 1e155)),
+    (moving, "speed", "velocity", (1e-60, 1e155)),
     (exact, "rotation", "rotation", (-2.0, NAN)),
     (exact, "rotational_energy", "rotational_energy", (-1.0, NAN)),
-    (exact, "length", "length", ((4.0, 4.0), (4.0, 4.0, 0.0), (4.0, NAN, 4.0), "large")),
-    (exact, "gravity", "gravity", (-9.8, NAN, INF, "down")),
+    (exact, "length", "length", ((4.0, 4.0), (4.0, 4.0, 0.0), (4.0, NAN, 4.0), (4.0, 4.0, 1e60), "large")),
+    (exact, "gravity", "gravity", (-9.8, NAN, INF, 1e300, "down")),
     (exact, "collision_number", "collision_number", (0.5, NAN)),
     (exact, "seed", "seed", (-1, 1.5, "x")),
     (exact, "layers", "layers", (0,)),
     (driven, "interval", "interval of the driver", (0.0, NAN)),
     (sides, "length", "length", ([1.0, 0.0, 1.0], [1.0, NAN, 1.0])),
     (lid, "top", "top", (0.0, -1.0, 20.1, NAN)),
-    (wall, "kT", "kT of wall z_low", (0.0, -1.0, NAN, INF, "hot")),
+    (wall, "kT", "kT of wall z_low", (0.0, -1.0, NAN, INF, 1e200, "hot")),
     (wall, "accommodation", "accommodation of wall z_low", (-0.1, 1.1, NAN, None)),
-    (piston, "velocity", "velocity of the piston", (NAN, INF, "fast")),
+    (piston, "velocity", "velocity of the piston", (NAN, INF, -1e60, "fast")),
     (stepped, "delta", "delta", (0.0, NAN)),
     (stepped, "dt", "dt", (-1.0,)),
     (stepped, "motion", "motion", ("verlet",)),
@@ -215,6 +221,10 @@ def test_what_no_box_can_hold_is_refused():
         ({"position": [[0.4, 2, 2], [3, 2, 2]]}, r"molecule 0 at x = 0.4 .*x_low.* 0.5 and 3.5"),
         ({"position": [[1.0, 2, 2], [3, 2, 4.1]]}, r"molecule 1 at z = 4.1 .*z_high"),
         ({"diameter": 5.0}, "reaches through wall"),
+        (
+            {"position": CRYSTAL, "velocity": CRYSTAL, "length": [1.41422] * 3, "walls": TURNING},
+            "4 molecules .* can hardly",
+        ),
         ({"planar": True, "velocity": [[0.0, 1, 0], [0, 0, 0]]}, "no velocity along y"),
         ({"planar": True, "position": [[1.0, 2, 2], [3, 2.5, 2]]}, "in one plane"),
         ({"gravity": 1.0, "walls": TURNING}, "periodic along z cannot have gravity"),

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from atmosbox.engine import random_positions
+from atmosbox import theory
+from atmosbox.engine import ParcelSet, Periodic, RandomNumbers, maxwell_velocities, random_positions
 
 
 def shortest(x, sides, periodic):
@@ -50,3 +51,21 @@ def test_points_thin_out_with_height_as_an_isothermal_atmosphere():
     expected = scale - height / math.expm1(height / scale)
     assert abs(blocks.mean() - expected) <= 4.0 * error
     assert error < 0.01
+
+
+@pytest.mark.parametrize("packing", [0.02, 0.1])
+def test_molecules_collide_from_the_first_moment_as_often_as_in_equilibrium(packing):
+    number, runs = 1000, 40
+    side = (number * math.pi / 6.0 / packing) ** (1.0 / 3.0)
+    rate = float(theory.collision_rate(number / side**3, 1.0, 1.0, 1.0))
+    contacts = np.zeros(runs)
+    for seed in range(runs):
+        rng = RandomNumbers(seed)
+        x = random_positions((side,) * 3, np.ones(number), rng, periodic=(True,) * 3)
+        v = maxwell_velocities(1.0, np.ones(number), rng, exact=True)
+        gas = ParcelSet(x, v, length=(side,) * 3, walls=(Periodic(),) * 6)
+        gas.advance(0.25 / rate)
+        contacts[seed] = gas.contacts
+    error = contacts.std(ddof=1) / math.sqrt(runs)
+    assert abs(contacts.mean() - 0.125 * number) <= 4.0 * error
+    assert error < 0.02 * 0.125 * number

@@ -5,7 +5,7 @@ from abc import abstractmethod
 
 from atmosbox.engine.core.account import Account
 from atmosbox.engine.core.inputs import number
-from atmosbox.engine.core.refusal import RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, SPECULAR, WALL_NAMES, HeatBath, Specular, new_walls
 
 __all__ = ["Adjustable"]
@@ -52,7 +52,7 @@ class Adjustable(Account):
         """
         if self._walls.law[5] != PISTON:
             raise RefusedError("this box has no piston: make wall z_high a Piston")
-        velocity = number(velocity, "velocity of the piston")
+        velocity = number(velocity, "velocity of the piston", least=-LARGEST, most=LARGEST)
         self._walls.piston[:] = self.ceiling, velocity, self._now
         self._piston_turned()
 
@@ -84,7 +84,7 @@ class Adjustable(Account):
         >>> box.wall_kT().tolist()
         [1.0, 1.0, 1.0, 1.0, 2.0, 1.0]
         """
-        kT = number(kT, "kT of a wall")
+        kT = number(kT, "kT of a wall", most=LARGEST)
         if not kT > 0.0:
             raise RefusedError(f"kT of a wall = {kT} is not positive: give a number above 0")
         baths = [w for w, law in enumerate(self._walls.law) if law == HEAT_BATH]
@@ -169,7 +169,7 @@ class Adjustable(Account):
         >>> box.gravity_work, box.energy()[2], box.ledger()
         (2.0, 4.0, 0.0)
         """
-        gravity = number(gravity, "gravity", least=0.0)
+        gravity = number(gravity, "gravity", least=0.0, most=LARGEST)
         if gravity == self._gravity:
             return
         if gravity > 0.0 and self._periodic[2]:

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.elementary import cbrt
-from atmosbox.engine.core.refusal import RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError, shown
 from atmosbox.engine.core.walls import HEAT_BATH, PISTON, WALL_NAMES
 
-__all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "sum_of_squares", "whole"]
+__all__ = ["column", "inside", "matrix", "natural_time", "number", "sides_of", "speeds", "sum_of_squares", "whole"]
 
 Array = NDArray[np.float64]
 
@@ -48,11 +48,13 @@ def column(
     *,
     above: float | None = None,
     least: float | None = None,
+    small: float = 0.0,
     shared: bool = False,
 ) -> Array:
-    """Return one finite number per molecule within its limits as (molecule,), or refuse.
+    """Return one number per molecule within its limits as (molecule,), or refuse.
 
-    If ``shared``, one number given for all molecules is stored once, and the result cannot be changed.
+    No number may lie between 0 and ``small``. If ``shared``, one number given for all molecules is stored once, and the
+    result cannot be changed.
 
     Examples
     --------
@@ -70,9 +72,11 @@ def column(
         bad |= ~(array > above)
     if least is not None:
         bad |= ~(array >= least)
+    bad |= ~(array <= LARGEST) | ((array > 0.0) & (array < small))
     if bad.any():
         value = float(array.reshape(-1)[np.argmax(bad.reshape(-1))])
         limit = f"above {above:g}" if above is not None else f"{least:g} or above"
+        limit += f" and at most {LARGEST:g}" + (f", but not between 0 and {small:g}" if small else "")
         raise RefusedError(f"{name} = {value:g} of a molecule is impossible: give a finite number, {limit}")
     column = np.broadcast_to(array, (n,))
     return column if shared else column.copy()
@@ -125,9 +129,21 @@ def sides_of(length: Any) -> Array:
         sides = np.array(length, np.float64)
     except (TypeError, ValueError):
         sides = np.zeros(0)
-    if sides.shape != (3,) or not (np.isfinite(sides).all() and (sides > 0).all()):
-        raise RefusedError(f"length = {shown(length)}: give three sides, each above 0")
+    if sides.shape != (3,) or not ((sides >= SMALLEST) & (sides <= LARGEST)).all():
+        raise RefusedError(
+            f"length = {shown(length)}: give three sides, each above 0 (from {SMALLEST:g} to {LARGEST:g})"
+        )
     return sides
+
+
+def speeds(velocity: Array) -> None:
+    """Refuse velocities so large, or all so small, that their squares times those of lengths would not be numbers."""
+    top = max(float(velocity.max(initial=0.0)), -float(velocity.min(initial=0.0)))
+    if top > LARGEST or 0.0 < top < SMALLEST:
+        raise RefusedError(
+            f"velocity = {top:g}, the largest component of all, is impossible: give 0, or one from {SMALLEST:g} to "
+            f"{LARGEST:g} (in another unit of time)"
+        )
 
 
 def inside(x: Array, diameter: Array, sides: Array, periodic: tuple[bool, bool, bool]) -> Array:

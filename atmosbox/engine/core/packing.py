@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.refusal import PackingError, RefusedError, shown
 
-__all__ = ["packing_fraction", "refuse_impossible"]
+__all__ = ["packing_fraction", "refuse_impossible", "refuse_solid"]
 
 Array = NDArray[np.float64]
 _DENSEST = math.pi / math.sqrt(18.0)
@@ -91,4 +91,22 @@ def refuse_impossible(sides: Array, sigma: Array, periodic: tuple[bool, bool, bo
         raise PackingError(
             f"{sigma.size} molecules would fill {phi:.3g} of the space, and no packing of spheres fills more than "
             f"{densest:.3g}: take fewer or smaller molecules, or a larger box"
+        )
+
+
+def refuse_solid(sides: Array, sigma: Array, planar: bool) -> None:
+    """Refuse equal molecules that fill all but a ten-thousandth of the densest packing: they collide without end.
+
+    Examples
+    --------
+    A crystal in which molecules still move is no problem:
+
+    >>> refuse_solid(np.full(3, 4.6), np.full(128, 1.0), planar=False)
+    """
+    densest = _DENSEST_PLANE if planar else _DENSEST
+    phi = packing_fraction(list(sides), sigma, planar=planar)
+    if sigma.size > 1 and np.ptp(sigma) == 0.0 and phi > 0.9999 * densest:
+        raise PackingError(
+            f"{sigma.size} molecules fill {phi:.6f} of the space, and can hardly move: the densest packing fills "
+            f"{densest:.6f}. Take fewer or smaller molecules, or a larger box"
         )

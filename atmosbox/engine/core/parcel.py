@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from atmosbox.engine.core.account import Array, Snapshot
 from atmosbox.engine.core.adjustment import Adjustable
-from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, whole
+from atmosbox.engine.core.inputs import column, inside, matrix, natural_time, number, sides_of, speeds, whole
 from atmosbox.engine.core.random import new_state
-from atmosbox.engine.core.refusal import RefusedError
+from atmosbox.engine.core.refusal import LARGEST, SMALLEST, RefusedError
 from atmosbox.engine.core.saved_state import SavedState, pack, restore, save, unpack
 from atmosbox.engine.core.state import Tallies
 from atmosbox.engine.core.walls import PERIODIC, PISTON, Specular, Wall, new_walls
@@ -112,16 +112,17 @@ class Parcel(Adjustable):
         v = matrix(velocity, "velocity", copy=not self._frugal)
         if x.shape != v.shape:
             raise RefusedError(f"{len(x)} positions and {len(v)} velocities: give one velocity for each position")
+        speeds(v)
         n = len(x)
-        self._mass = column(mass, n, "mass", above=0.0, shared=self._frugal)
-        self._diameter = column(diameter, n, "diameter", least=0.0, shared=self._frugal)
+        self._mass = column(mass, n, "mass", above=0.0, small=SMALLEST, shared=self._frugal)
+        self._diameter = column(diameter, n, "diameter", least=0.0, small=SMALLEST, shared=self._frugal)
         self._rotation = column(rotation, n, "rotation", least=0.0, shared=self._frugal)
         if not np.isin(self._rotation, (0.0, 2.0, 3.0)).all():
             raise RefusedError("the rotational degrees of freedom of a molecule are 0, 2 or 3")
         spin = 0.0 if rotational_energy is None else rotational_energy
         spin = column(spin, n, "rotational_energy", least=0.0, shared=self._frugal)
         self._sides = sides_of(length)
-        self._gravity = number(gravity, "gravity", least=0.0)
+        self._gravity = number(gravity, "gravity", least=0.0, most=LARGEST)
         self._collision_number = number(collision_number, "collision_number", least=1.0, infinite=True)
         layers = whole(layers, "layers", least=1)
         self._seed = whole(seed, "seed", least=0)

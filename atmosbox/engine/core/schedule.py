@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from atmosbox.engine.core.refusal import RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
 
 __all__ = ["Constant", "Ramp", "Schedule", "Steps", "as_schedule"]
 
@@ -111,8 +111,10 @@ def as_schedule(value: "float | Schedule", name: str, *, positive: bool = True) 
     if not corners:
         raise RefusedError(f"{name} = {value!r} has no points: give at least one (time, value)")
     for time, number in corners:
-        if not (math.isfinite(time) and math.isfinite(number)):
-            raise RefusedError(f"{name} = {number} at time {time} is not finite: give a finite number")
+        if not (math.isfinite(time) and abs(number) <= LARGEST):
+            raise RefusedError(
+                f"{name} = {number} at time {time} is impossible: give a finite number of at most {LARGEST:g}"
+            )
         if positive and not number > 0.0:
             raise RefusedError(f"{name} = {number} is not positive: give a number above 0")
     if any(later < earlier for (earlier, _), (later, _) in itertools.pairwise(corners)):

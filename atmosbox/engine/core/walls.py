@@ -16,7 +16,7 @@ import numpy as np
 from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.random import gamma, gaussian_pair, uniform
-from atmosbox.engine.core.refusal import RefusedError, shown
+from atmosbox.engine.core.refusal import LARGEST, RefusedError, shown
 from atmosbox.engine.core.schedule import Schedule, as_schedule
 from atmosbox.engine.core.state import Walls
 
@@ -133,9 +133,10 @@ def new_walls(walls: tuple[Wall, ...], height: float) -> Walls:
                 velocity = float(wall.velocity)
             except (TypeError, ValueError):
                 velocity = math.nan
-            if not math.isfinite(velocity):
+            if not abs(velocity) <= LARGEST:
                 raise RefusedError(
-                    f"velocity of the piston = {shown(wall.velocity)} is not finite: give a finite number"
+                    f"velocity of the piston = {shown(wall.velocity)} is impossible: give a finite number from "
+                    f"{-LARGEST:g} to {LARGEST:g}"
                 )
         else:
             raise RefusedError(f"wall {name} = {shown(wall)} is no law: give Specular, Periodic, HeatBath or Piston")

@@ -58,6 +58,8 @@ __all__ = [
 ]
 
 _FEW = 4
+_LEAST_REACH = 1e-9
+"""Smallest radius that a molecule is assumed to have, relative to the box: a point too is in two cells at an edge."""
 ROW = 32
 
 
@@ -258,12 +260,12 @@ def _slots(
     Where molecules may span cells, the table has no walls, as the molecules of a class differ in radius: the walls are
     then computed for each molecule.
     """
-    reach = radius * MARGIN
     n = len(edges) - 1
     length = float(edges[-1])
     # where one cell is entered exactly as another is left, the slot between would have no width: increase the reach
+    reach = max(radius, _LEAST_REACH * length) * MARGIN
     inside = edges[:-1] if periodic else edges[1:-1]
-    while reach > 0.0 and inside.size:
+    while inside.size:
         ends = np.sort(np.mod(np.concatenate([inside - reach, inside + reach]), length))
         if np.diff(ends, append=ends[0] + length).min() > 1e-12 * length:
             break

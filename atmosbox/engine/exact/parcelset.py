@@ -15,6 +15,7 @@ from atmosbox.engine.core.box import new_box
 from atmosbox.engine.core.inputs import number
 from atmosbox.engine.core.kind import classify
 from atmosbox.engine.core.lift import FollowPressure
+from atmosbox.engine.core.packing import refuse_solid
 from atmosbox.engine.core.parcel import Array, Parcel, Snapshot
 from atmosbox.engine.core.refusal import RefusedError, StalledError
 from atmosbox.engine.core.state import EVENT, MOLECULE, SLOT_OFFSET, Cells, Gas, Modes, aligned_records
@@ -60,6 +61,8 @@ class ParcelSet(Parcel):
     """The number of the first kind that is a drop, 0 if there is none."""
 
     def _begin(self, position: Array, velocity: Array, rotational_energy: Array) -> None:
+        if self._collisions:
+            refuse_solid(self._sides, self._diameter, self._planar)
         self._crowded = False
         self._fill(position, velocity, rotational_energy)
         self._box = new_box(

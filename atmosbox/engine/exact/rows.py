@@ -51,6 +51,8 @@ One word of 64 bits tells which are occupied.
 START, STOP, TOP_SPEED, LONGEST = range(4)
 """The numbers of an epoch: its start and its end [time], the top speed V [length/time], its greatest length [time]."""
 _PLACE, _SPEED, _EXTENT = LANES, 4 * LANES, 7 * LANES
+_SLOW = 1e-12
+"""Smallest speed of which copies are made [length/time]."""
 _DILUTE, _DENSE = 0.05, 0.2
 """Below the first packing fraction a horizon gains nothing (measured); above the second a shorter one is enough."""
 
@@ -353,6 +355,8 @@ def _new_epoch(now, fastest, usual, copies, gravity):
         # with 128 g W <= V^2, V H = 64 W means g H <= V / 2
         speed = max(2.0 * speed, math.sqrt(2.0 * PATH * gravity * width))
     speed = min(speed, SPEEDS)
+    if speed < _SLOW:
+        speed = 0.0  # copies of all that move are NaN: single precision could not hold their products
     epoch[START] = now
     epoch[STOP] = now + (min(epoch[LONGEST], PATH * width / speed) if speed > 0.0 else epoch[LONGEST])
     epoch[TOP_SPEED] = speed

@@ -1,7 +1,7 @@
 """Positions and velocities of the molecules at the start.
 
 `scatter`    positions at random
-`overlap`    overlapping molecules are pushed apart
+`overlap`    which molecules overlap, and pushing them apart
 `clearing`   molecules that overlap a drop get new positions
 `lattice`    positions on a lattice
 `velocity`   velocities and rotational energies

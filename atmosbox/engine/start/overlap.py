@@ -1,4 +1,4 @@
-"""Overlapping molecules are pushed apart along their line of centres, until none overlap."""
+"""Which molecules overlap: bins in which neighbours are found, and a push apart for molecules that overlap."""
 
 import math
 from typing import Any, NamedTuple
@@ -9,29 +9,40 @@ from numpy.typing import NDArray
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.pair import nearest_along
 
-__all__ = ["push_apart"]
+__all__ = ["Bins", "Spheres", "bins_of", "enter", "is_free", "leave", "push", "spheres_of"]
 
 Array = NDArray[np.float64]
+_GAP = 1e-6
+"""Gap that is left between two that were pushed apart, as a fraction of their distance in contact."""
 
 
-class _Spheres(NamedTuple):
-    """The data of `push_apart`; ``moved``, ``moves : (molecule,)`` which were pushed in the last round, and in this."""
+class Spheres(NamedTuple):
+    """Molecules that are to be placed.
+
+    ``x : (molecule, axis)`` are their centres, ``size : (molecule,)`` their radii, ``radius : (molecule,)`` the same
+    while they grow, ``low`` and ``high : (molecule, axis)`` the lowest and highest coordinates that each centre may
+    have [length]; ``turn : (axis,)`` is the side of the box along a periodic axis, 0 along any other, ``inverse :
+    (axis,)`` its inverse, or 0. ``order : (molecule,)`` are the molecules from the largest to the smallest. ``moved``
+    and ``moves : (molecule,)`` tell which were pushed in the last round, and in this.
+    """
 
     x: Any
+    size: Any
     radius: Any
     low: Any
     high: Any
     turn: Any
+    inverse: Any
+    order: Any
     moved: Any
     moves: Any
 
 
-class _Bins(NamedTuple):
-    """The bins in which neighbours are searched.
+class Bins(NamedTuple):
+    """The bins in which neighbours are searched; each is wider than any pair in contact.
 
     ``number``, ``origin``, ``size : (axis,)``: number of bins, lowest coordinate and extent of all bins; ``head :
-    (bin,)`` a molecule in each bin, ``follower : (molecule,)`` the next one in the same bin, -1 for none;
-    ``place : (molecule, axis)`` the bin of each molecule.
+    (bin,)`` a molecule in each bin, ``follower : (molecule,)`` the next one in the same bin, -1 for none.
     """
 
     number: Any
@@ -39,40 +50,132 @@ class _Bins(NamedTuple):
     size: Any
     head: Any
     follower: Any
-    place: Any
 
 
-def _bins(radius: Array, low: Array, high: Array, turn: Array, gap: float) -> _Bins:
-    """Return bins that are wider than any pair in contact, and not many more than there are molecules."""
-    n = radius.size
-    widest = 2.0 * float(radius.max()) * (1.0 + gap)
+def spheres_of(diameter: Array, sides: Array, periodic: tuple[bool, bool, bool], planar: bool) -> Spheres:
+    """Return spheres, all at the origin, for a box with these sides [length]; ``planar`` if all lie in one plane."""
+    n = diameter.size
+    turn = sides * np.array(periodic)
+    low = np.where(periodic, 0.0, 1.0)[None, :] * 0.5 * diameter[:, None]
+    high = sides[None, :] - low
+    if planar:
+        low[:, 1] = high[:, 1] = 0.5 * sides[1]
+        turn[1] = 0.0
+    inverse = np.where(turn > 0.0, 1.0 / np.where(turn > 0.0, turn, 1.0), 0.0)
+    order = np.argsort(-diameter, kind="stable")
+    size, moved, moves = 0.5 * diameter, np.zeros(n, np.bool_), np.zeros(n, np.bool_)
+    return Spheres(np.zeros((n, 3)), size, size.copy(), low, high, turn, inverse, order, moved, moves)
+
+
+def bins_of(spheres: Spheres) -> Bins:
+    """Return empty bins, not many more than there are molecules."""
+    n = spheres.size.size
+    widest = 2.0 * float(spheres.size.max()) * (1.0 + 2.0 * _GAP)
     most = max(math.isqrt(2 * n), 4)
-    turns = turn > 0.0
-    origin = np.where(turns, 0.0, low.min(axis=0))
-    size = np.where(turns, turn, np.maximum(high.max(axis=0) - origin, 1e-300))
-    number = np.clip(np.minimum(size / widest, float(most)).astype(np.int64), 1, None)
+    turns = spheres.turn > 0.0
+    origin = np.where(turns, 0.0, spheres.low.min(axis=0))
+    size = np.where(turns, spheres.turn, np.maximum(spheres.high.max(axis=0) - origin, 1e-300))
+    number = np.full(3, most) if widest == 0.0 else np.minimum(size / widest, float(most)).astype(np.int64)
+    number = np.clip(number, 1, None)
     number[turns & (number < 3)] = 1
     while math.prod(number.tolist()) > 4 * n + 64:
         number[np.argmax(number)] = max(1, int(number.max()) // 2)
         number[turns & (number < 3)] = 1
-    place = np.zeros((n, 3), np.int64)
-    return _Bins(number, origin, size, np.zeros(math.prod(number.tolist()), np.int64), np.zeros(n, np.int64), place)
+    return Bins(number, origin, size, np.full(math.prod(number.tolist()), -1), np.full(n, -1))
 
 
 @kernel
-def _push_pair(i, j, gap, spheres):
+def _bin_along(u, axis, bins):
+    """Return the number along an axis of the bin at a coordinate, which may be beyond an end."""
+    number = bins.number[axis]
+    return math.floor((u - bins.origin[axis]) / bins.size[axis] * number) if number > 1 else 0
+
+
+@kernel
+def _bin_of(i, spheres, bins):
+    """Return the bin of molecule i."""
+    x, number = spheres.x, bins.number
+    a = min(max(_bin_along(x[i, 0], 0, bins), 0), number[0] - 1)
+    b = min(max(_bin_along(x[i, 1], 1, bins), 0), number[1] - 1)
+    c = min(max(_bin_along(x[i, 2], 2, bins), 0), number[2] - 1)
+    return (a * number[1] + b) * number[2] + c
+
+
+@kernel
+def enter(i, spheres, bins):
+    """Enter molecule i into its bin."""
+    k = _bin_of(i, spheres, bins)
+    bins.follower[i] = bins.head[k]
+    bins.head[k] = i
+
+
+@kernel
+def leave(i, spheres, bins):
+    """Remove molecule i from its bin."""
+    k = _bin_of(i, spheres, bins)
+    j = bins.head[k]
+    if j == i:
+        bins.head[k] = bins.follower[i]
+        return
+    while bins.follower[j] != i:
+        j = bins.follower[j]
+    bins.follower[j] = bins.follower[i]
+
+
+@kernel
+def _bins_along(u, reach, axis, turn, bins):
+    """Return the first and the last bin along an axis within ``reach`` of a coordinate; they may be beyond an end."""
+    low, high = _bin_along(u - reach, axis, bins), _bin_along(u + reach, axis, bins)
+    if turn[axis] > 0.0:
+        return low, high
+    return max(low, 0), min(high, bins.number[axis] - 1)
+
+
+@kernel
+def _distance_squared(x, y, z, j, spheres):
+    """Return the square of the distance from a point to the centre of molecule j, or its nearest image."""
+    turn, inverse = spheres.turn, spheres.inverse
+    dx = nearest_along(x - spheres.x[j, 0], turn[0], inverse[0])
+    dy = nearest_along(y - spheres.x[j, 1], turn[1], inverse[1])
+    dz = nearest_along(z - spheres.x[j, 2], turn[2], inverse[2])
+    return dx * dx + dy * dy + dz * dz
+
+
+@kernel
+def is_free(i, x, y, z, spheres, bins):
+    """Return whether molecule i would overlap no other one at a point."""
+    radius, number = spheres.radius, bins.number
+    reach = radius[i] + radius[spheres.order[0]]
+    low_x, high_x = _bins_along(x, reach, 0, spheres.turn, bins)
+    low_y, high_y = _bins_along(y, reach, 1, spheres.turn, bins)
+    low_z, high_z = _bins_along(z, reach, 2, spheres.turn, bins)
+    for a in range(low_x, high_x + 1):
+        for b in range(low_y, high_y + 1):
+            for c in range(low_z, high_z + 1):
+                j = bins.head[((a % number[0]) * number[1] + b % number[1]) * number[2] + c % number[2]]
+                while j >= 0:
+                    touching = radius[i] + radius[j]
+                    if j != i and _distance_squared(x, y, z, j, spheres) < touching * touching:
+                        return False
+                    j = bins.follower[j]
+    return True
+
+
+@kernel
+def _push_pair(i, j, spheres):
     """Push two molecules apart if they overlap; return whether they did."""
-    x, radius, low, high, turn = spheres.x, spheres.radius, spheres.low, spheres.high, spheres.turn
-    dx = nearest_along(x[j, 0] - x[i, 0], turn[0], 1.0 / turn[0] if turn[0] > 0.0 else 0.0)
-    dy = nearest_along(x[j, 1] - x[i, 1], turn[1], 1.0 / turn[1] if turn[1] > 0.0 else 0.0)
-    dz = nearest_along(x[j, 2] - x[i, 2], turn[2], 1.0 / turn[2] if turn[2] > 0.0 else 0.0)
+    x, radius, low, high = spheres.x, spheres.radius, spheres.low, spheres.high
+    turn, inverse = spheres.turn, spheres.inverse
+    dx = nearest_along(x[j, 0] - x[i, 0], turn[0], inverse[0])
+    dy = nearest_along(x[j, 1] - x[i, 1], turn[1], inverse[1])
+    dz = nearest_along(x[j, 2] - x[i, 2], turn[2], inverse[2])
     touching = radius[i] + radius[j]
     square = dx * dx + dy * dy + dz * dz
-    apart = touching * (1.0 + 0.5 * gap)
+    apart = touching * (1.0 + 0.5 * _GAP)
     if square >= apart * apart:
         return 0
     distance = math.sqrt(square)
-    wanted = touching * (1.0 + gap)
+    wanted = touching * (1.0 + _GAP)
     if distance < 1e-9 * wanted:
         dx, dy, dz, distance = wanted * 1e-3, 0.0, wanted * 1e-3, wanted * 1.5e-3
     # a little more than needed; the larger sphere moves less
@@ -93,93 +196,37 @@ def _push_pair(i, j, gap, spheres):
     return 1
 
 
-def push_apart(x: Array, radius: Array, low: Array, high: Array, turn: Array, rounds: int, gap: float) -> int:
-    """Push overlapping molecules apart in several rounds; return how many pairs were pushed in the last one.
+@kernel
+def push(spheres, bins, rounds):
+    """Push overlapping molecules apart along their lines of centres in at most so many rounds.
 
-    Parameters
-    ----------
-    x : (molecule, axis)
-        Centres, which are moved [length].
-    radius : (molecule,)
-        Radii [length].
-    low, high : (molecule, axis)
-        Lowest and highest coordinates that each centre may have [length].
-    turn : (axis,)
-        Side of the box along a periodic axis, 0 along any other [length].
-    rounds
-        Largest number of rounds over all pairs.
-    gap
-        Gap that is left between two that were pushed, as a fraction of their distance in contact.
-
-    Returns
-    -------
-    int
-        0 as soon as no molecules overlap.
-
-    Notes
-    -----
-    After the first round only pairs of which one has just moved are tested, so that late rounds cost little.
-
-    Examples
-    --------
-    >>> x = np.array([[1.0, 1.0, 1.0], [1.5, 1.0, 1.0]])
-    >>> low, high = np.full((2, 3), 0.5), np.full((2, 3), 3.5)
-    >>> push_apart(x, np.full(2, 0.5), low, high, np.zeros(3), 8, 1e-6)
-    0
-    >>> bool(x[1, 0] - x[0, 0] > 1.0)
-    True
+    Returns the number of pairs that were pushed in the last round, 0 as soon as no molecules overlap; then all are in
+    their bins. After the first round only pairs of which one has just moved are tested, so late rounds cost little.
     """
-    moved, moves = np.ones(radius.size, np.bool_), np.zeros(radius.size, np.bool_)
-    return int(
-        _push(_Spheres(x, radius, low, high, turn, moved, moves), _bins(radius, low, high, turn, gap), rounds, gap)
-    )
-
-
-@kernel(entry=True)
-def _push(spheres, bins, rounds, gap):
-    """Push overlapping molecules apart: see `push_apart`."""
-    x, turn, moved, moves = spheres.x, spheres.turn, spheres.moved, spheres.moves
-    number, origin, size = bins.number, bins.origin, bins.size
-    head, follower, place = bins.head, bins.follower, bins.place
-    n = spheres.radius.size
+    x, moved, moves, number = spheres.x, spheres.moved, spheres.moves, bins.number
+    n, reach = spheres.radius.size, 2.0 * spheres.radius[spheres.order[0]] * (1.0 + _GAP)
     pushed = 0
+    moved[:] = True
     for _ in range(rounds):
         pushed = 0
-        head[:] = -1
+        bins.head[:] = -1
         moves[:] = False
         for i in range(n):
-            for axis in range(3):
-                k = int((x[i, axis] - origin[axis]) / size[axis] * number[axis])
-                place[i, axis] = min(max(k, 0), number[axis] - 1)
-            c = (place[i, 0] * number[1] + place[i, 1]) * number[2] + place[i, 2]
-            follower[i] = head[c]
-            head[c] = i
+            enter(i, spheres, bins)
         for i in range(n):
             if not moved[i]:
                 continue
-            for a in range(-1, 2):
-                p = place[i, 0] + a
-                if turn[0] > 0.0 and number[0] > 1:
-                    p = p % number[0]
-                if p < 0 or p >= number[0]:
-                    continue
-                for b in range(-1, 2):
-                    q = place[i, 1] + b
-                    if turn[1] > 0.0 and number[1] > 1:
-                        q = q % number[1]
-                    if q < 0 or q >= number[1]:
-                        continue
-                    for c in range(-1, 2):
-                        r = place[i, 2] + c
-                        if turn[2] > 0.0 and number[2] > 1:
-                            r = r % number[2]
-                        if r < 0 or r >= number[2]:
-                            continue
-                        j = head[(p * number[1] + q) * number[2] + r]
+            low_x, high_x = _bins_along(x[i, 0], reach, 0, spheres.turn, bins)
+            low_y, high_y = _bins_along(x[i, 1], reach, 1, spheres.turn, bins)
+            low_z, high_z = _bins_along(x[i, 2], reach, 2, spheres.turn, bins)
+            for a in range(low_x, high_x + 1):
+                for b in range(low_y, high_y + 1):
+                    for c in range(low_z, high_z + 1):
+                        j = bins.head[((a % number[0]) * number[1] + b % number[1]) * number[2] + c % number[2]]
                         while j >= 0:
                             if j != i and (j > i or not moved[j]):
-                                pushed += _push_pair(i, j, gap, spheres)
-                            j = follower[j]
+                                pushed += _push_pair(i, j, spheres)
+                            j = bins.follower[j]
         if pushed == 0:
             break
         for i in range(n):

@@ -9,9 +9,9 @@ than it should be, and a pair that grazes may move apart before it is found. Wit
 .. math:: \frac{Z - 1}{Z_{exact} - 1} = 1 - \frac{4}{\sqrt{\pi}} \delta, \qquad
           \frac{\nu}{\nu_{exact}} = 1 - \frac{8}{3} \delta^2
 
-(in a plane :math:`3/\sqrt{\pi}` and 1). In a denser gas both are low by another :math:`6.6\, \phi\, \delta` (in a plane
-2.8), because molecules that overlap have more free space. Each impulse conserves energy to rounding, however
-large the other errors: so conservation of energy says nothing about accuracy.
+(in a plane :math:`3/\sqrt{\pi}` and 1). In a denser gas both are lower still, by the factor :math:`1 - 6.6\, \phi\,
+\delta` (in a plane 2.8), because molecules that overlap have more free space. Each impulse conserves energy to
+rounding, however large the other errors: so conservation of energy says nothing about accuracy.
 
 The virial is computed with the actual r, overlap included. So n kT + virial / 3 V is the pressure on the walls: walls
 aside, between collisions the sum of r . p changes by twice the kinetic energy alone, and at each collision by the

@@ -1,8 +1,8 @@
 """Draw the positions and velocities of molecules for another seed, in a page.
 
-The kernels draw and place as the functions of `atmosbox.engine.start` do, in the same order and with the same numbers;
-the engine's own kernels push overlapping molecules apart and clear the places of drops. `start_recipe` finds out how a
-scene uses these functions.
+The kernels draw as the functions of `atmosbox.engine.start` do, in the same order and with the same numbers; the
+engine's own kernels place the molecules and clear the places of drops. `start_recipe` finds out how a scene uses these
+functions.
 """
 
 import functools
@@ -12,22 +12,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atmosbox.engine.core.elementary import expm1, log1p, log_of_normal
+from atmosbox.engine.core.elementary import log_of_normal
 from atmosbox.engine.core.jit import kernel
 from atmosbox.engine.core.lift import Gauges, ceiling_velocity
 from atmosbox.engine.core.random import RUN, START, gaussian_pair, uniform
 from atmosbox.engine.core.state import Modes
 from atmosbox.engine.exact.rows import LONGEST
-from atmosbox.engine.start import clearing, overlap
+from atmosbox.engine.start import clearing, scatter
 from atmosbox.lab.kernels.laying_out import write_column
 from atmosbox.lab.kernels.moist_passing import moist_passing
 from atmosbox.lab.kernels.pairwise import pairwise_sum
 
-__all__ = ["ALONG_X", "AS_PLACED", "PATIENCE", "SHUFFLED", "STEP", "Cleared", "Start", "can_start", "starting"]
+__all__ = ["ALONG_X", "AS_PLACED", "SHUFFLED", "STEP", "Cleared", "Start", "can_start", "starting"]
 
 AS_PLACED, SHUFFLED, ALONG_X = range(3)
 """How molecules are numbered after they have been placed: as before, in random order, or from left to right."""
-PATIENCE, _ROUNDS, _GAP = 100, 8, 1e-6
 STEP = 0x9E3779B97F4A7C15
 """Increment of the state of the random numbers with each number."""
 _STEP = np.uint64(STEP)
@@ -35,7 +34,9 @@ _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 _FIRST_OF_RUN, _FIRST_OF_START = (
     np.uint64(0x6A09E667F3BCC909 * (2 * use + 1) & ((1 << 64) - 1)) for use in (RUN, START)
 )
-_push, _clear = (kernel(getattr(each, "py_func", each)) for each in (overlap._push, clearing.clear))
+_scatter, _crowd, _clear = (
+    kernel(getattr(each, "py_func", each)) for each in (scatter.scatter, scatter.crowd, clearing.clear)
+)
 
 
 class Cleared(NamedTuple):
@@ -58,7 +59,7 @@ class Start(NamedTuple):
     the energy of the liquid [energy]; ``warm`` a speed of molecules that leave the warmest wall [length/time], in a box
     with liquid.
 
-    ``spheres`` and ``bins`` are the arguments of the engine's function that pushes molecules apart; ``factor :
+    ``spheres`` and ``bins`` are the arguments of the engine's functions that place molecules; ``factor :
     (molecule,)`` is sqrt(kT / m) [length/time], ``mass`` and ``degrees : (molecule,)`` are mass and rotational degrees
     of freedom. ``spread : (2,)`` is the spacing of molecules [length], and the fastest speed of the walls and of a fall
     over that spacing [length/time]. ``at`` has the data of the gas that the law of the piston needs, without the
@@ -144,23 +145,16 @@ def _sort(key, rank, other):
 
 @kernel
 def _place(seed, start):
-    """Place all molecules at random and push apart those that overlap; return whether that was possible."""
-    spheres, state = start.spheres, start.state
-    x, low, high = spheres.x, spheres.low, spheres.high
+    """Place all molecules at random; return whether that was possible: see `random_positions`."""
+    state = start.state
     _skip(seed, start.place, state)
-    for i in range(x.shape[0]):
-        for axis in range(3):
-            x[i, axis] = low[i, axis] + uniform(state) * (high[i, axis] - low[i, axis])
-    if start.scale_height > 0.0:
-        for i in range(x.shape[0]):
-            reach = high[i, 2] - low[i, 2]
-            thinned = log1p(uniform(state) * expm1(-reach / start.scale_height))
-            x[i, 2] = low[i, 2] - start.scale_height * thinned
-    for _ in range(PATIENCE):
-        spheres.moved[:] = True
-        if _push(spheres, start.bins, _ROUNDS, _GAP) == 0:
-            return True
-    return False
+    first = uniform(state)
+    after = state[0]
+    state[0] = np.uint64(first * 2.0**53)
+    given = start.spheres, start.bins, start.scale_height, state
+    possible = _scatter(*given) or _crowd(*given)
+    state[0] = after
+    return possible
 
 
 @kernel

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from atmosbox.errors import UnitError
+from atmosbox.errors import FileError, UnitError
 from atmosbox.plot.caption import stated
 from atmosbox.scene.conversion import from_si
 
@@ -98,7 +98,7 @@ def compared(datasets: Sequence[xr.Dataset]) -> tuple[Compared, ...]:
     Raises
     ------
     FileError
-        If the attribute ``atmosbox_headlines`` of a file cannot be read.
+        If the attribute ``atmosbox_headlines`` of a file cannot be read, or names a variable that no file has.
 
     Examples
     --------
@@ -117,7 +117,11 @@ def compared(datasets: Sequence[xr.Dataset]) -> tuple[Compared, ...]:
 
 def _compared(datasets: Sequence[xr.Dataset], name: str) -> Compared:
     """Return one headline number of all runs, in the unit of the first run that has it."""
-    attrs = next(dataset[name].attrs for dataset in datasets if name in dataset.variables)
+    attrs = next((dataset[name].attrs for dataset in datasets if name in dataset.variables), None)
+    if attrs is None:
+        raise FileError(
+            f"No file has the variable {name!r} that its results name: it was changed; run the scene again."
+        )
     unit = str(attrs.get("display_units", attrs.get("units", "1")))
     label = str(attrs.get("long_name", name.replace("_", " ")))
     return Compared(name, label, unit, tuple(_measured(dataset, name, unit) for dataset in datasets))
