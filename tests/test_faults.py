@@ -4,6 +4,7 @@ Tests that take long, or must run as root, are in the tier ``soak``.
 """
 
 import contextlib
+import ctypes
 import json
 import os
 import random
@@ -15,7 +16,9 @@ import time
 from pathlib import Path
 
 import pytest
+import typer
 
+from atmosbox.cli.terminal import guarded
 from atmosbox.engine.core.kernel_cache import cache_folder
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
@@ -205,6 +208,49 @@ def test_a_signal_to_a_sweep_keeps_what_is_complete_and_says_so_by_its_status(tm
     assert process.returncode == status, said
     assert "1 of 2 runs are saved, type the same again" in said
     assert read(tmp_path / "x.part.nc").attrs["atmosbox_status"] == "interrupted"
+
+
+def dropped_by_c(number):
+    """Raise a signal in a function that C calls, where Python drops the exception of its handler."""
+    ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(number))()
+    until = time.monotonic() + 20.0
+    while time.monotonic() < until:
+        pass
+
+
+def dropped_by_python(number):
+    with contextlib.suppress(BaseException):
+        signal.raise_signal(number)
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("command", [dropped_by_c, dropped_by_python])
+def test_a_signal_is_not_lost_where_its_exception_is_dropped(number, status, command):
+    began = time.monotonic()
+    with pytest.raises(typer.Exit) as end:
+        guarded(command)(number)
+    assert end.value.exit_code == status
+    assert time.monotonic() - began < 10.0
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+def test_ctrl_c_while_the_program_is_loaded_gives_no_traceback(tmp_path):
+    code = """
+import signal, sys
+
+class Finder:
+    def find_spec(name, *_):
+        if name == "typer":
+            signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Finder)
+import atmosbox.cli
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False,
+        preexec_fn=listen,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
 
 
 # Disks

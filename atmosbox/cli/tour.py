@@ -14,7 +14,7 @@ import typer
 
 from atmosbox.cli.application import command
 from atmosbox.cli.option import Verbose
-from atmosbox.cli.terminal import say, tell
+from atmosbox.cli.terminal import INTERRUPTED, say, tell
 from atmosbox.errors import AtmosboxError, FileError, SettingError
 
 FOLDER = "atmosbox-tour"
@@ -177,10 +177,8 @@ def _status(words: Sequence[str], folder: Path) -> int:
     with subprocess.Popen(words, cwd=folder) as running:
         try:
             return running.wait()
-        except KeyboardInterrupt:
-            running.wait()
-            raise
-        except BaseException:  # SIGTERM reaches only this process
-            running.terminate()
+        except BaseException as stop:
+            if getattr(stop, "exit_code", INTERRUPTED) != INTERRUPTED:  # SIGTERM reaches only this process
+                running.terminate()
             running.wait()
             raise
