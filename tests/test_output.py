@@ -469,6 +469,16 @@ def listed(path):
     output.write(lifting().assign_attrs(atmosbox_headlines='{"a": 1}'), path)
 
 
+def unnamed(path):
+    output.write(lifting().assign_attrs(atmosbox_headlines="[[]]"), path)
+
+
+def turned(path):
+    run = everything()
+    turned = run.molecule_position.transpose("molecule", "elapsed_time", "axis")
+    output.write(run.assign(molecule_position=turned), path)
+
+
 def worded(path):
     run = lifting()
     output.write(run.assign(air_temperature=("elapsed_time", ["warm"] * run.sizes["elapsed_time"])), path)
@@ -512,6 +522,8 @@ def missing(_path):
         (lambda path: os.mkfifo(path), "may not be read"),
         (nested, "atmosbox_parameters .* is not as atmosbox writes it"),
         (listed, "atmosbox_headlines .* is not as atmosbox writes it"),
+        (unnamed, "which its headlines name"),
+        (turned, "holds molecule_position as molecule x elapsed_time x axis"),
         (worded, "text in air_temperature, where numbers belong"),
         (boundless, "declares 5.6 GB"),
         (deserted, "molecule_mass of no molecule"),

@@ -143,7 +143,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             if kwargs.get("verbose"):
                 tell(traceback.format_exc())
             again = "" if kwargs.get("verbose") else "; --verbose shows where"
-            read = [str(file) for name in ("file", "files") for file in _listed(kwargs.get(name))]
+            read = [str(file) for name in ("file", "files", "resume", "source") for file in _listed(kwargs.get(name))]
             if read:  # the file may have the names that atmosbox writes, but values that it never writes
                 named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
                 what = f"it is not as atmosbox has written it, or this is a bug{again}"
