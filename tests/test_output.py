@@ -479,6 +479,12 @@ def turned(path):
     output.write(run.assign(molecule_position=turned), path)
 
 
+def unitless(path):
+    output.write(lifting(), path)
+    with netCDF4.Dataset(path, "r+") as file:
+        file["elapsed_time"].delncattr("units")
+
+
 def worded(path):
     run = lifting()
     output.write(run.assign(air_temperature=("elapsed_time", ["warm"] * run.sizes["elapsed_time"])), path)
@@ -524,6 +530,7 @@ def missing(_path):
         (listed, "atmosbox_headlines .* is not as atmosbox writes it"),
         (unnamed, "which its headlines name"),
         (turned, "holds molecule_position as molecule x elapsed_time x axis"),
+        (unitless, "does not say the units of elapsed_time"),
         (worded, "text in air_temperature, where numbers belong"),
         (boundless, "declares 5.6 GB"),
         (deserted, "molecule_mass of no molecule"),

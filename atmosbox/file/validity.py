@@ -62,8 +62,8 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     ------
     FileError
         If it declares more numbers than it can hold or than fit into memory; if an attribute that should hold JSON
-        holds something else; if a headline has no variable; or if a variable of atmosbox has other dimensions, holds
-        text where numbers belong, or nothing at all.
+        holds something else; if a headline has no variable; or if a variable of atmosbox has other dimensions or no
+        units, holds text where numbers belong, or nothing at all.
     """
     declared = float(sum(_bytes(each) for each in file.variables.values()))
     if declared > max(SMALL, DENSEST * source.stat().st_size):
@@ -117,3 +117,6 @@ def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> Non
     empty = [dim for dim in held.dimensions if dim not in ("elapsed_time", "drop") and not sizes[dim].size]
     if empty and numeric:
         raise FileError(f"{source} holds {name} of no {empty[0]}: run the scene again.")
+    for needed in {"units", "flag_meanings"} & declared.attributes().keys():
+        if not isinstance(getattr(held, needed, None), str):
+            raise FileError(f"{source} does not say the {needed} of {name}: run the scene again.")
