@@ -78,14 +78,13 @@ def test_a_checkpoint_waits_and_takes_less_than_a_fiftieth_of_the_time(tmp_path,
     clock = SimpleNamespace(now=100.0, writing=0.0, written=[])
     checkpoint = Checkpoint(tmp_path / "run.nc", every_seconds=2.0, clock=lambda: clock.now)
 
-    def slow(_dataset):
+    def slow(_path, _dataset):
         cost = 0.002 * (clock.now - 100.0)  # the file grows with the run
         clock.written.append(clock.now - 100.0)
         clock.now += cost
         clock.writing += cost
-        return b""
 
-    monkeypatch.setattr("atmosbox.file.checkpoint.image", slow)
+    monkeypatch.setattr("atmosbox.file.checkpoint.write_dataset", slow)
     while clock.now < 1100.0:
         clock.now += 0.01
         checkpoint(lambda: None)

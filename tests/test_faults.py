@@ -4,6 +4,7 @@ Tests that take long, or must run as root, are in the tier ``soak``.
 """
 
 import contextlib
+import ctypes
 import json
 import os
 import random
@@ -15,8 +16,9 @@ import time
 from pathlib import Path
 
 import pytest
+import typer
 
-from atmosbox.engine.core.kernel_cache import cache_folder
+from atmosbox.cli.terminal import guarded
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
 from atmosbox.simulation import runner
@@ -207,6 +209,49 @@ def test_a_signal_to_a_sweep_keeps_what_is_complete_and_says_so_by_its_status(tm
     assert read(first).attrs["atmosbox_status"] == "complete"
 
 
+def dropped_by_c(number):
+    """Raise a signal in a function that C calls, where Python drops the exception of its handler."""
+    ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(number))()
+    until = time.monotonic() + 20.0
+    while time.monotonic() < until:
+        pass
+
+
+def dropped_by_python(number):
+    with contextlib.suppress(BaseException):
+        signal.raise_signal(number)
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("command", [dropped_by_c, dropped_by_python])
+def test_a_signal_is_not_lost_where_its_exception_is_dropped(number, status, command):
+    began = time.monotonic()
+    with pytest.raises(typer.Exit) as end:
+        guarded(command)(number)
+    assert end.value.exit_code == status
+    assert time.monotonic() - began < 10.0
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+def test_ctrl_c_while_the_program_is_loaded_gives_no_traceback(tmp_path):
+    code = """
+import signal, sys
+
+class Finder:
+    def find_spec(name, *_):
+        if name == "typer":
+            signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Finder)
+import atmosbox.cli
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False,
+        preexec_fn=listen,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
+
+
 # Disks
 
 
@@ -270,16 +315,17 @@ def test_a_cache_on_a_full_disk_costs_time_and_nothing_else(usual, tmp_path):
 
 
 @pytest.mark.soak
-def test_a_cache_of_which_every_file_is_cut_or_empty_is_made_anew(usual, tmp_path):
-    kept = cache_folder()
-    assert kept is not None
+def test_a_cache_of_which_every_file_is_damaged_is_made_anew(usual, tmp_path):
     home = tmp_path / "cache"
     home.mkdir(mode=0o700)
     assert command(SHORT, tmp_path / "first", NUMBA_CACHE_DIR=str(home))[0] == 0
     draw = random.Random(5)
     for path in (path for path in home.rglob("*") if path.is_file()):
-        size = path.stat().st_size
-        path.write_bytes(path.read_bytes()[: draw.choice([0, size // 2, max(size - 1, 0)])])
+        content = path.read_bytes()
+        bit = draw.randrange(max(len(content), 1))
+        flipped = bytes([content[bit] ^ 1]) if content else b""
+        others = [b"", content[: len(content) // 2], content[:-1], content[:bit] + flipped + content[bit + 1 :]]
+        path.write_bytes(draw.choice(others))
     for name in ("second", "third"):
         status, _, said = command(SHORT, tmp_path / name, NUMBA_CACHE_DIR=str(home))
         assert status == 0, said

@@ -77,7 +77,8 @@ def other_bytes(path, draw):
 
 def other_content(path, draw):
     """Change attributes, names and numbers of a file that stays a valid netCDF file."""
-    with netCDF4.Dataset(path, "r+") as file:
+    refusals = OSError, RuntimeError, ValueError, AttributeError, TypeError, KeyError
+    with netCDF4.Dataset(path, "r+") as file, contextlib.suppress(*refusals):  # netCDF itself refuses to write that
         for _ in range(draw.randrange(1, 4)):
             owner = draw.choice([file, *file.variables.values()])
             names = owner.ncattrs()
@@ -117,15 +118,19 @@ def other_json(held, draw):
     return draw.choice([None, True, [], {}, -1, 1e300, *ODD_TEXTS[:4], *ODD_TEXTS[6:]])
 
 
-def tried(files, seed):
-    """Damage a file in a way that depends on a number, and give it to a command."""
-    draw = random.Random(seed)
+def damaged(files, draw):
+    """Return a sound file, and a copy of it that is damaged."""
     good = draw.choice(files)
     odd = good.with_name("odd.nc")
     shutil.copy(good, odd)
-    refusals = OSError, RuntimeError, ValueError, AttributeError, TypeError, KeyError
-    with contextlib.suppress(*refusals):  # netCDF itself refuses to write that
-        (other_content if draw.random() < 0.6 else other_bytes)(odd, draw)
+    (other_content if draw.random() < 0.6 else other_bytes)(odd, draw)
+    return good, odd
+
+
+def tried(files, seed):
+    """Damage a file in a way that depends on a number, and give it to a command."""
+    draw = random.Random(seed)
+    good, _ = damaged(files, draw)
     name = draw.choices([*COMMANDS], [weight for _, weight in COMMANDS.values()])[0]
     words = [word.format(odd="odd.nc", good=good.name) for word in COMMANDS[name][0]]
     try:
@@ -134,6 +139,28 @@ def tried(files, seed):
         for path in Path.cwd().iterdir():
             if path not in files:
                 path.unlink()
+
+
+def test_nearly_all_cases_change_their_file(files):
+    draw = random.Random(1)
+    changed = 0
+    for _ in range(200):
+        good, odd = damaged(files, draw)
+        changed += good.read_bytes() != odd.read_bytes()
+    odd.unlink()
+    assert changed >= 190
+
+
+def test_other_programs_can_append_to_every_kind_of_file(files):
+    for path in files:
+        odd = path.with_name("odd.nc")
+        shutil.copy(path, odd)
+        with netCDF4.Dataset(odd, "r+") as file:
+            file.setncattr("institution", "A school")
+        said = [typed("netCDF files", "check", name) for name in (path.name, "odd.nc")]
+        odd.unlink()
+        assert said[0].exit_code == said[1].exit_code in (0, 3)
+        assert said[0].output.replace(path.name, "odd.nc") == said[1].output
 
 
 @settings(max_examples=60)

@@ -23,18 +23,28 @@ import os
 import pkgutil
 import signal
 import sys
+import threading
 import warnings
+
+# Ctrl-C while the program is being loaded ends it at once, without a traceback
+_in_main = threading.current_thread() is threading.main_thread()
+_loading = _in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+if _loading:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 # The matrices of the theory are small: several threads only wait for each other, and the last digit would depend on
 # their number. OpenBLAS reads this when numpy is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from atmosbox.cli.application import app
+from atmosbox.cli.application import app  # noqa: E402
 
 __all__ = ["app", "main"]
 
 for _file in pkgutil.iter_modules(__path__):
     importlib.import_module(f"atmosbox.cli.{_file.name}")
+
+if _loading:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def main() -> None:

@@ -62,31 +62,51 @@ class Stopped(KeyboardInterrupt):
 
 @contextlib.contextmanager
 def stoppable() -> Iterator[None]:
-    """Make a request to end (SIGTERM) or the closing of the terminal (SIGHUP) stop a command as Ctrl-C does.
+    """Make Ctrl-C, a request to end (SIGTERM) and the closing of the terminal (SIGHUP) stop a command.
 
-    The command then removes files that are half written, and keeps what is complete.
+    The command then removes files that are half written, and keeps what is complete. Python drops an exception that is
+    raised in a function which a C library calls, as LLVM does while it compiles: such a signal is sent again. If it
+    gets lost in another way, the block raises `Stopped` at its end.
 
     Raises
     ------
     Stopped
         When such a signal arrives.
     """
-    status = {signal.SIGTERM: TERMINATED}
-    if hasattr(signal, "SIGHUP"):
-        status[signal.SIGHUP] = HUNG_UP
+    names = {"SIGINT": INTERRUPTED, "SIGTERM": TERMINATED, "SIGHUP": HUNG_UP}
+    status = {getattr(signal, name): code for name, code in names.items() if hasattr(signal, name)}
+    usual = (signal.SIG_DFL, signal.default_int_handler)
+    main = threading.current_thread() is threading.main_thread()
+    before = {number: handler for number in status if main and (handler := signal.getsignal(number)) in usual}
+    came: list[int] = []
+    sent: list[threading.Timer] = []
+    hook = sys.unraisablehook
 
     def stop(number: int, frame: object) -> Never:
+        came.append(number)
         raise Stopped(status[signal.Signals(number)])
 
-    main = threading.current_thread() is threading.main_thread()
-    ours = [number for number in status if main and signal.getsignal(number) is signal.SIG_DFL]
-    for number in ours:
+    def dropped(what: sys.UnraisableHookArgs) -> None:
+        if isinstance(what.exc_value, Stopped):
+            sent.append(threading.Timer(0.05, signal.raise_signal, [came[-1]]))
+            sent[-1].start()
+        else:
+            hook(what)
+
+    for number in before:
         signal.signal(number, stop)
+        sys.unraisablehook = dropped
     try:
         yield
+        if came:
+            raise Stopped(status[signal.Signals(came[-1])])
     finally:
-        for number in ours:
-            signal.signal(number, signal.SIG_DFL)
+        for timer in sent:
+            timer.cancel()
+            timer.join()
+        for number, handler in before.items():
+            signal.signal(number, handler)
+            sys.unraisablehook = hook
 
 
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
@@ -124,7 +144,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             if kwargs.get("verbose"):
                 tell(traceback.format_exc())
             again = "" if kwargs.get("verbose") else "; --verbose shows where"
-            read = [str(file) for name in ("file", "files") for file in _listed(kwargs.get(name))]
+            read = [str(file) for name in ("file", "files", "resume", "source") for file in _listed(kwargs.get(name))]
             if read:  # the file may have the names that atmosbox writes, but values that it never writes
                 named = shown(" or ".join(read), longest=LONGEST_SENTENCE)
                 what = f"it is not as atmosbox has written it, or this is a bug{again}"

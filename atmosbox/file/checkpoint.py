@@ -14,18 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from atmosbox.errors import FileError
-from atmosbox.file.netcdf import image
+from atmosbox.file.netcdf import fill, write_dataset
 from atmosbox.file.output_lock import BusyError, OutputLock
-from atmosbox.file.output_path import (
-    AnyPath,
-    check_writable,
-    clear,
-    part_path,
-    run_is_there,
-    unused,
-    write_failure,
-    write_whole,
-)
+from atmosbox.file.output_path import AnyPath, check_writable, clear, part_path, run_is_there, unused, write_failure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -141,9 +132,10 @@ class Checkpoint:
     @staticmethod
     def load_libraries() -> None:
         """Import all libraries that writing needs, before the run: Ctrl-C must not interrupt an import half-way."""
+        import netCDF4
         import xarray as xr
 
-        image(xr.Dataset({"x": ("y", [0.0])}, attrs={"atmosbox_parameters": "{}"}))
+        fill(netCDF4.Dataset("run.nc", "w", diskless=True), xr.Dataset({"x": ("y", [0.0])}))  # makes no file
 
     def release(self) -> None:
         """Unlock the file for other runs; the part, if there is one, stays."""
@@ -181,7 +173,7 @@ class Checkpoint:
     def save(self, dataset: xr.Dataset) -> Path:
         """Write the run so far at once, for instance when the run is interrupted, and return the path of the part."""
         self.begin()
-        write_whole(self.part, image(dataset))
+        write_dataset(self.part, dataset)
         self._saved = True
         return self.part
 

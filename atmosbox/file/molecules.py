@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Molecules", "molecules"]
 
 _NEEDED = ("molecule_position", "molecule_speed", "molecule_mass", "molecule_diameter", "box_side", "wall_law")
+_NEEDED_OF_DISCS = ("disc_position", "disc_velocity", "disc_mass", "disc_diameter", "box_length")
 
 Floats = NDArray[np.floating]
 Whole = NDArray[np.integer]
@@ -119,8 +120,8 @@ def molecules(dataset: xr.Dataset, otherwise: str = "") -> Molecules:
         raise FileError(f"{source} holds no molecules: {again}{otherwise}.")
     if dataset.sizes.get("elapsed_time", 0) == 0:
         raise FileError(f"{source} holds no frame, for the run was stopped before its first: {again}.")
-    missing = [name for name in _NEEDED if name not in dataset]
-    if missing and not discs:
+    missing = [name for name in (_NEEDED_OF_DISCS if discs else _NEEDED) if name not in dataset]
+    if missing:
         raise FileError(f"{source} was written by an earlier atmosbox and lacks {missing[0]}: {again}.")
     held = _discs(dataset) if discs else _molecules(dataset)
     frames = dataset.sizes["elapsed_time"]

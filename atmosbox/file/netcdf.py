@@ -1,7 +1,4 @@
-"""Write datasets to netCDF files, and read them.
-
-A file is built in memory, and written whole or not at all as `atmosbox.file.output_path` does.
-"""
+"""Write datasets to netCDF files, whole or not at all, and read them."""
 
 from __future__ import annotations
 
@@ -14,41 +11,55 @@ from numpy.typing import NDArray
 
 from atmosbox.errors import FileError, shown
 from atmosbox.file.heap import has_endless_heap
-from atmosbox.file.output_path import AnyPath, check_writable, part_path, write_whole
+from atmosbox.file.output_path import AnyPath, check_writable, part_path, whole_file
 from atmosbox.file.provenance import FORMAT
 from atmosbox.file.validity import check_valid
 from atmosbox.version import __version__
 
 if TYPE_CHECKING:
+    import netCDF4
     import xarray as xr
 
-__all__ = ["STATE", "image", "read", "read_state", "write"]
+__all__ = ["STATE", "fill", "read", "read_state", "write", "write_dataset"]
 
 STATE = "atmosbox_state"
 """The variable that holds the state from which a run can continue; readers of results do not need it."""
 
 
-def image(dataset: xr.Dataset) -> memoryview:
-    """Return the bytes of the netCDF file of a dataset.
+def write_dataset(path: Path, dataset: xr.Dataset) -> None:
+    """Write a dataset to a netCDF file whole or not at all, as `atmosbox.file.output_path.write_whole` does.
 
-    The file is built in memory, because HDF5 reports a full disk as a lack of permission or as an unspecific
-    error, and keeps the broken file open.
+    The file is not built in memory: netCDF-C (4.6.2 to 4.10.1) builds one there that no program can append to, since
+    it does not record the order in which variables are created.
     """
     import netCDF4
-    from xarray.backends import NetCDF4DataStore
 
     if "atmosbox_parameters" not in dataset.attrs:
         raise KeyError("a dataset without the attribute atmosbox_parameters could not be read again")
+    with whole_file(path) as temporary:
+        # HDF5 keeps a file open for which the disk has no room, and does not say why it failed; so the room is
+        # taken before, by a write that does
+        temporary.write_bytes(bytes(50_000 + 2_000 * len(dataset.variables) + dataset.nbytes))
+        name = os.fsencode(temporary).decode("latin-1")  # the bytes of the name, whatever the language of the system
+        try:
+            fill(netCDF4.Dataset(name, "w", format="NETCDF4", encoding="latin-1"), dataset)
+        except (OSError, RuntimeError, UnicodeError) as error:
+            os.truncate(temporary, 0)  # the room comes back, even if HDF5 keeps the file open
+            raise OSError(str(error)) from error
+
+
+def fill(file: netCDF4.Dataset, dataset: xr.Dataset) -> None:
+    """Write a dataset to an open netCDF file, and close it."""
+    from xarray.backends import NetCDF4DataStore
+
     whole = dataset.copy()
     for variable in whole.variables.values():
         variable.encoding.setdefault("_FillValue", None)
-    # not Dataset.to_netcdf, which first imports Dask, if that is installed, to look for its scheduler
-    file = netCDF4.Dataset("run.nc", "w", format="NETCDF4", memory=1)
     try:
+        # not Dataset.to_netcdf, which first imports Dask, if that is installed, to look for its scheduler
         whole.dump_to_store(NetCDF4DataStore(file))  # type: ignore[no-untyped-call]
     finally:
-        content: memoryview = file.close()
-    return content
+        file.close()
 
 
 def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
@@ -88,7 +99,7 @@ def write(dataset: xr.Dataset, path: AnyPath, *, force: bool = False) -> Path:
     'A box'
     """
     found = check_writable(path, force)
-    write_whole(found, image(dataset))
+    write_dataset(found, dataset)
     return found
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atmosbox.errors import FileError
+from atmosbox.errors import FileError, shown
 from atmosbox.file.variables import known
 
 if TYPE_CHECKING:
@@ -62,7 +62,8 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     ------
     FileError
         If it declares more numbers than it can hold or than fit into memory; if an attribute that should hold JSON
-        holds something else; or if a variable of atmosbox holds text where numbers belong, or nothing at all.
+        holds something else; if a headline has no variable; or if a variable of atmosbox has other dimensions or no
+        units, holds text where numbers belong, or nothing at all.
     """
     declared = float(sum(_bytes(each) for each in file.variables.values()))
     if declared > max(SMALL, DENSEST * source.stat().st_size):
@@ -78,6 +79,10 @@ def check_valid(file: netCDF4.Dataset, source: Path) -> None:
     for name, kind in _JSON.items():
         if name in file.ncattrs() and not isinstance(_parsed(file.getncattr(name)), kind):
             raise FileError(f"The attribute {name} of {source} is not as atmosbox writes it: run the scene again.")
+    named = _parsed(file.getncattr("atmosbox_headlines")) if "atmosbox_headlines" in file.ncattrs() else []
+    for name in named:
+        if not isinstance(name, str) or name not in file.variables:
+            raise FileError(f"{source} lacks {shown(name)}, which its headlines name: run the scene again.")
     for name, held in file.variables.items():
         _check_variable(name, held, source)
 
@@ -104,7 +109,14 @@ def _check_variable(name: str, held: netCDF4.Variable[Any], source: Path) -> Non
     if numeric == (declared.dtype == "U"):
         found, wanted = ("numbers", "text") if numeric else ("text", "numbers")
         raise FileError(f"{source} holds {found} in {name}, where {wanted} belong: run the scene again.")
+    dims = held.dimensions[: None if numeric else -1]  # the last one of a text is its length
+    if dims not in (declared.dims, ()):  # a headline is one number, and may have the name of a variable
+        found = " x ".join(dims)
+        raise FileError(f"{source} holds {name} as {found}, and not as atmosbox writes it: run the scene again.")
     sizes = held.group().dimensions
     empty = [dim for dim in held.dimensions if dim not in ("elapsed_time", "drop") and not sizes[dim].size]
     if empty and numeric:
         raise FileError(f"{source} holds {name} of no {empty[0]}: run the scene again.")
+    for needed in {"units", "flag_meanings"} & declared.attributes().keys():
+        if not isinstance(getattr(held, needed, None), str):
+            raise FileError(f"{source} does not say the {needed} of {name}: run the scene again.")

@@ -59,7 +59,7 @@ class Varied:
         Raises
         ------
         FileError
-            If more than two settings were varied, or no run has measured anything.
+            If more than two settings were varied, one of them is missing, or no run has measured anything.
         """
         about = json.loads(dataset.attrs["atmosbox_parameters"])["sweep"]
         dims = [str(name) for name in about["dimensions"].values()]
@@ -69,6 +69,9 @@ class Varied:
                 "sweep over two of them, or draw parts of the file yourself."
             )
         dataset = dataset.swap_dims({dim: name for dim, name in about["dimensions"].items() if dim != name})
+        missing = [dim for dim in dims if dim not in dataset.sizes]
+        if missing:
+            raise FileError(f"The file lacks {missing[0]}, the setting that varies: type the sweep again.")
         names = [
             str(name) for name in about["headlines"] if name in dataset and np.isfinite(dataset[name].values).any()
         ]

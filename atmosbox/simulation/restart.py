@@ -170,7 +170,8 @@ def read_state(path: str | Path) -> Restart:
         head = json.loads(content[8 : 8 + size].tobytes())
         tree = {"arrays": head["arrays"], **head["tree"]}
         longer = int(tree["longer"])
-        return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], dict(found.attrs), longer)
+        attributes = {**found.attrs, "history": str(found.attrs["history"])}
+        return Restart(Path(path), dict(head["about"]), tree, content[8 + size :], attributes, longer)
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise FileError(f"The state in {path} is damaged: type atmosbox run --from with it to begin anew.") from error
 

@@ -1,11 +1,14 @@
 """Machine code is kept on disk, and is never used when its sources have changed."""
 
+import hashlib
 import os
+import pickle
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -86,9 +89,9 @@ def test_an_edit_in_another_file_is_seen_at_once_and_one_of_a_comment_compiles_n
     assert ask(tree, **cache) == (8.0, 0)
     # the folder that numba is told is the one used
     digest = kernel_cache.source_digest(tree / "atmosbox" / "engine")
-    assert list((tmp_path / "asked" / digest).rglob("*.nbi"))
+    assert list((tmp_path / "asked" / digest).rglob("*.nbc"))
     assert not (tmp_path / "not asked").exists()
-    assert not list(tree.rglob("*.nbi"))
+    assert not list(tree.rglob("*.nbc"))
     edit(tree, "probe_callee.py", "x + 1.0", "x + 2.0")
     edit(tree, "probe_constant.py", "2.0", "3.0")
     assert ask(tree, **cache) == (15.0, 0)
@@ -104,23 +107,132 @@ def tripled(x):
     return 3.0 * x
 
 
+def hits():
+    """Return how often a new kernel finds its machine code on disk."""
+    anew = jit.kernel(entry=True)(tripled)
+    assert anew(2.0) == 6.0
+    return sum(anew.stats.cache_hits.values())
+
+
+def flipped(content):
+    place = len(content) // 2
+    return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
+
+
 @needs_numba
-def test_a_damaged_cache_is_compiled_anew_and_mended(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    "damage",
+    [lambda content: content[: len(content) // 2], lambda content: content[:-1], lambda content: b"", flipped],
+    ids=["cut", "a byte short", "empty", "one bit flipped"],
+)
+def test_a_damaged_cache_is_compiled_anew_and_mended(tmp_path, monkeypatch, damage):
     monkeypatch.setattr(compiler, "_CACHE", tmp_path)
-
-    def hits():
-        """Return how often a new kernel finds its machine code on disk."""
-        anew = jit.kernel(entry=True)(tripled)
-        assert anew(2.0) == 6.0
-        return sum(anew.stats.cache_hits.values())
-
     assert (hits(), hits()) == (0, 1)
-    for kind in ("*.nbi", "*.nbc"):
-        kept = list(tmp_path.rglob(kind))
-        assert kept
-        for path in kept:
-            path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    (kept,) = tmp_path.rglob("*.nbc")
+    kept.write_bytes(damage(kept.read_bytes()))
+    assert (hits(), hits()) == (0, 1)
+
+
+@needs_numba
+def test_what_cannot_be_kept_is_compiled_each_time(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiler, "_CACHE", tmp_path)
+    hits()
+    (kept,) = tmp_path.rglob("*.nbc")
+    kept.unlink()
+    kept.mkdir()
+    assert (hits(), hits()) == (0, 0)
+    kept.rmdir()
+    kept.parent.rename(tmp_path / "away")
+    kept.parent.touch()
+    assert (hits(), hits()) == (0, 0)
+
+
+class Planted:
+    """A pickle that makes a file when it is loaded, as any pickle can run any program."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return Path.touch, (self.mark,)
+
+
+LAYOUTS = ["home", "digest", "module", "file"]
+
+
+def linked(path):
+    path.rename(path.with_name("elsewhere"))
+    path.symlink_to(path.with_name("elsewhere"))
+
+
+@needs_numba
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
+@pytest.mark.parametrize("checked", [True, False], ids=["checked", "not checked"])
+@pytest.mark.parametrize("place", LAYOUTS)
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda path: path.chmod(0o777), "other users may write to it"),
+        (lambda path: path.chmod(0o720), "other users may write to it"),
+        (linked, "it is a link"),
+        (None, "it belongs to another user"),
+    ],
+    ids=["all may write", "the group may write", "link", "another user"],
+)
+def test_what_another_user_may_have_planted_does_not_run(tmp_path, monkeypatch, change, why, place, checked):
+    """Without the check it runs, which shows that the plant would work."""
+    home, mark = tmp_path / "home", tmp_path / "ran"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(home))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "spare"))
+    monkeypatch.setattr(kernel_cache, "source_digest", lambda memory: "digest")
+    monkeypatch.setattr(compiler, "_CACHE", kernel_cache.cache_folder())
+    hits()
+    (file,) = home.rglob("*.nbc")
+    key, _ = pickle.loads(file.read_bytes()[32:])
+    content = pickle.dumps((key, Planted(mark)))
+    file.write_bytes(hashlib.sha256(content).digest() + content)
+    path = dict(zip(LAYOUTS, (home, home / "digest", file.parent, file), strict=True))[place]
+    if change:
+        change(path)
+    else:
+        real = kernel_cache._refuse_foreign
+
+        def theirs(each, about):
+            real(each, SimpleNamespace(st_mode=about.st_mode, st_uid=about.st_uid + (each == path)))
+
+        monkeypatch.setattr(kernel_cache, "_refuse_foreign", theirs)
+
+    def again():
+        monkeypatch.setattr(compiler, "_CACHE", kernel_cache.cache_folder())
+        hits()
+        hits()
+
+    if not checked:
+        monkeypatch.setattr(kernel_cache, "_refuse_foreign", lambda path, about: None)
+        monkeypatch.setattr(kernel_cache, "_without_links", os.open)
+        again()
+        assert mark.exists()
+        return
+    with pytest.warns(UserWarning, match=why) as told:
+        again()
+    assert len(told) == 1
+    assert str(path) in str(told[0].message)
+    assert not mark.exists()
+
+
+@needs_numba
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
+def test_the_cache_is_made_for_its_owner_alone_whatever_the_umask(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "deep" / "home"))
+    before = os.umask(0)
+    try:
+        monkeypatch.setattr(compiler, "_CACHE", kernel_cache.cache_folder())
         assert (hits(), hits()) == (0, 1)
+    finally:
+        os.umask(before)
+    made = list((tmp_path / "deep").rglob("*"))
+    assert {path.stat().st_mode & 0o777 for path in made if path.is_dir()} == {0o700}
+    assert {path.stat().st_mode & 0o777 for path in made if path.suffix in (".nbc", ".digest")} == {0o600}
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="the home of caches has another name there")
@@ -141,6 +253,8 @@ def test_where_nothing_can_be_written_nothing_is_kept(tmp_path, monkeypatch):
     blocked = tmp_path / "a file, not a folder"
     blocked.write_text("", encoding="utf-8")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(blocked))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    monkeypatch.setattr(tempfile, "tempdir", str(blocked))
     assert kernel_cache.cache_folder() is None
     monkeypatch.setattr(compiler, "_CACHE", None)
 
@@ -189,23 +303,6 @@ def test_a_damaged_note_of_the_digest_counts_for_nothing(tmp_path, damage):
     note.write_bytes(damage)
     assert kernel_cache.source_digest(sources, memory=tmp_path) == digest
     assert note.read_text(encoding="ascii") == digest
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
-def test_a_folder_that_others_may_write_to_is_not_trusted(tmp_path, monkeypatch):
-    ours, theirs = tmp_path / "ours", tmp_path / "theirs"
-    monkeypatch.setattr(kernel_cache, "_homes_of_caches", lambda: [theirs, ours])
-    monkeypatch.setattr(kernel_cache, "source_digest", lambda memory: "digest")
-    theirs.mkdir(mode=0o700)
-    assert kernel_cache.cache_folder().parent == theirs
-    theirs.chmod(0o777)
-    assert kernel_cache.cache_folder().parent == ours
-    assert ours.stat().st_mode & 0o077 == 0
-    ours.chmod(0o770)
-    assert kernel_cache.cache_folder() is None
-    theirs.chmod(0o700)
-    monkeypatch.setattr(os, "getuid", lambda: theirs.stat().st_uid + 1)
-    assert kernel_cache.cache_folder() is None
 
 
 def test_the_digest_covers_code_alone(tmp_path):

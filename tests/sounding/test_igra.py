@@ -82,6 +82,13 @@ def test_a_file_that_is_cut_off_is_refused(written, lines):
             read(written(lines[:-cut]))
 
 
+@pytest.mark.parametrize("levels", ["    ", "1  2"])
+def test_a_header_without_the_number_of_levels_is_refused(written, lines, levels):
+    assert lines[0][32:36] == "   9"
+    with pytest.raises(SoundingError, match="line 1: the header does not say how many levels"):
+        read(written([lines[0][:32] + levels + lines[0][36:], *lines[1:]]))
+
+
 def test_a_line_that_is_cut_off_or_no_number_is_refused(written, lines):
     with pytest.raises(SoundingError, match=r"line 3: the line is cut off"):
         read(written([*lines[:2], lines[2][:30], *lines[3:]]))

@@ -3,9 +3,10 @@
 Besides this file, `constant_modes`, `by_reference` and `exact.lanes` extend numba, and `stepped.window` its vectors.
 """
 
-import functools
+import contextlib
 import gc
 import hashlib
+import pickle
 import sys
 import time
 from collections.abc import Callable
@@ -16,11 +17,20 @@ import llvmlite.ir as ir
 import numba
 from numba.core import caching, cgutils, config, types
 from numba.core.registry import cpu_target
+from numba.core.serialize import dumps
 from numba.extending import intrinsic
 
 from atmosbox.engine.core.by_reference import by_reference
 from atmosbox.engine.core.constant_modes import KernelCompiler, for_flags_read
-from atmosbox.engine.core.kernel_cache import announce, cache_folder
+from atmosbox.engine.core.kernel_cache import (
+    ForeignError,
+    announce,
+    cache_folder,
+    keep,
+    own_content,
+    own_folder,
+    warn_once,
+)
 
 if sys.platform != "win32":
     import fcntl
@@ -35,13 +45,14 @@ prange = numba.prange
 _SHARED: dict[str, Any] = {"error_model": "numpy"}
 _CACHE = cache_folder()
 _LONGEST = 120.0  # seconds
+_CHECK = hashlib.sha256().digest_size  # bytes
 
 
 class _Locator(caching._CacheLocator):  # type: ignore[misc]
     """Tells numba the folder of a kernel; its name holds the digest of all sources, so no file needs a time stamp."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self._folder = str(_CACHE / function.__module__)  # type: ignore[operator]
+        self._folder = str(own_folder(_CACHE / function.__module__))  # type: ignore[operator]
 
     @classmethod
     def from_function(cls, py_func: Callable[..., Any], py_file: str) -> "_Locator":
@@ -61,10 +72,42 @@ class _KeptKernel(caching.CompileResultCacheImpl):  # type: ignore[misc]
     _locator_classes: ClassVar = [_Locator]
 
 
+class _Files:
+    """The files of a kernel: one for each version of it, with a checksum. They replace numba's files and index.
+
+    numba would run what any user has written to the folder, and machine code in which the disk has changed a bit.
+    """
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self._folder, self._name = folder, name
+
+    def path(self, key: Any, suffix: str = "nbc") -> Path:
+        """Return the path of the file of a version."""
+        return self._folder / f"{self._name}.{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.{suffix}"
+
+    def load(self, key: Any) -> Any:
+        """Return the machine code of a version, or None if there is none that is whole."""
+        content = own_content(self.path(key))
+        if hashlib.sha256(content[_CHECK:]).digest() != content[:_CHECK]:
+            return None
+        known, data = pickle.loads(content[_CHECK:])
+        return data if known == key else None
+
+    def save(self, key: Any, data: Any) -> None:
+        """Keep the machine code of a version."""
+        content = dumps((key, data))
+        keep(self.path(key), hashlib.sha256(content).digest() + content)
+
+
 class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
     """The machine code of a kernel on disk; one process compiles what is not there while the others wait."""
 
     _impl_class = _KeptKernel
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._cache_file = _Files(Path(self.cache_path), self._impl.filename_base)
+        self._locks: list[Any] = []
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the machine code for some types, or None if it must be compiled; then announce the compilation."""
@@ -76,16 +119,19 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
         return found
 
     def _kept(self, sig: Any, target_context: Any) -> Any:
-        """Return what is on disk, or None; a damaged file may raise any error, counts as missing, and is removed."""
+        """Return what is on disk, or None if it is missing, damaged or not ours: a damaged file may raise any error."""
         try:
             return super().load_overload(sig, target_context)
+        except ForeignError as error:
+            warn_once(str(error))
         except Exception:
-            self.flush()
-            return None
+            pass
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep the machine code for some types."""
-        super().save_overload(sig, data)
+        """Keep the machine code for some types, if it can be written."""
+        with contextlib.suppress(OSError):
+            super().save_overload(sig, data)
         announce(self._py_func.__qualname__, False)
 
     def _wait_for_others(self, sig: Any, target_context: Any) -> bool:
@@ -95,15 +141,12 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
         """
         if sys.platform == "win32":
             return False
-        key = hashlib.sha256(repr(self._index_key(sig, target_context.codegen())).encode()).hexdigest()[:16]
-        waited = False
         try:
-            folder = Path(self.cache_path)
-            folder.mkdir(exist_ok=True)
-            lock = (folder / f"{key}.lock").open("wb")
+            lock = self._cache_file.path(self._index_key(sig, target_context.codegen()), "lock").open("wb")
         except OSError:
             return False
         self._locks.append(lock)
+        waited = False
         until = time.monotonic() + _LONGEST
         while time.monotonic() < until:
             try:
@@ -121,9 +164,16 @@ class _KeptKernels(caching.FunctionCache):  # type: ignore[misc]
             lock.close()
         self._locks.clear()
 
-    @functools.cached_property
-    def _locks(self) -> list[Any]:
-        return []
+
+def _kept_kernels(function: Callable[..., Any]) -> _KeptKernels | None:
+    """Return the machine code of a kernel on disk; None if there is no folder for it that is ours."""
+    try:
+        return _KeptKernels(function) if _CACHE is not None else None
+    except ForeignError as error:
+        warn_once(str(error))
+    except OSError:
+        pass
+    return None
 
 
 def compiled(
@@ -141,7 +191,7 @@ def compiled(
     if not entry:
         return _of_plain_types(numba.njit(forceinline=True, no_cpython_wrapper=True, **options)(function))
     made = numba.njit(nogil=True, **options)(function)
-    kernels = _KeptKernels(function) if kept and _CACHE is not None else None
+    kernels = _kept_kernels(function) if kept else None
     if kernels:
         made._cache = kernels
     made.compile = _without_garbage_collection(made.compile, kernels)

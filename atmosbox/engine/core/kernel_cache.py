@@ -9,16 +9,31 @@ atmosbox from outside its folder, which a test enforces.
 
 import ast
 import contextlib
+import errno
+import functools
 import hashlib
 import os
 import re
 import stat
 import sys
 import tempfile
+import uuid
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-__all__ = ["announce", "cache_folder", "code_of", "compilations", "source_digest"]
+__all__ = [
+    "ForeignError",
+    "announce",
+    "cache_folder",
+    "code_of",
+    "compilations",
+    "keep",
+    "own_content",
+    "own_folder",
+    "source_digest",
+    "warn_once",
+]
 
 
 _DIGEST = re.compile(rb"[0-9a-f]{16}")
@@ -58,15 +73,14 @@ def source_digest(folder: Path | None = None, memory: Path | None = None) -> str
     version = f"{version_of('numba')} {sys.version}"
     written = _digest([version, *(f"{name} {hashlib.sha256(text).hexdigest()}" for name, text in sources.items())])
     known = memory / f"{written}.digest" if memory else None
-    if known and known.is_file():
-        held = known.read_bytes()
-        if _DIGEST.fullmatch(held):  # a power failure may leave anything in a file
-            return held.decode()
+    if known:
+        with contextlib.suppress(OSError):
+            held = own_content(known)
+            if _DIGEST.fullmatch(held):  # a power failure may leave anything in a file
+                return held.decode()
     digest = _digest([version, *(f"{name} {code_of(text.decode())}" for name, text in sources.items())])
     if known:
-        new = known.with_suffix(f".{os.getpid()}")
-        new.write_text(digest, encoding="ascii")
-        new.replace(known)
+        keep(known, digest.encode())
     return digest
 
 
@@ -76,9 +90,6 @@ def _digest(lines: list[str]) -> str:
 
 def _homes_of_caches() -> list[Path]:
     """Return the folders in which a cache may be kept, best first."""
-    asked = os.environ.get("NUMBA_CACHE_DIR")
-    if asked:
-        return [Path(asked)]
     if sys.platform == "win32":
         usual = os.environ.get("LOCALAPPDATA", tempfile.gettempdir())
     elif sys.platform == "darwin":
@@ -89,35 +100,105 @@ def _homes_of_caches() -> list[Path]:
     homes = [Path(tempfile.gettempdir()) / f"atmosbox-{owner}"]
     with contextlib.suppress(RuntimeError):  # in a container, a user may be a number that has no home
         homes.insert(0, Path(usual).expanduser() / "atmosbox")
-    return homes
+    asked = os.environ.get("NUMBA_CACHE_DIR")
+    return [Path(asked), *homes] if asked else homes
 
 
-def _is_ours(folder: Path) -> bool:
-    """Return whether no other user can write into a folder: its files are loaded and run."""
+def own_folder(folder: Path) -> Path:
+    """Return a folder whose files may be run: it is made if needed, and only its owner may write to it, or read it.
+
+    Raises
+    ------
+    ForeignError
+        If it is a link, or belongs to another user, or other users may write to it.
+    """
+    for each in reversed((folder, *folder.parents)):
+        if not os.path.lexists(each):
+            with contextlib.suppress(FileExistsError):  # another process was faster
+                each.mkdir(mode=0o700)
+    _refuse_foreign(folder, folder.lstat())
+    return folder
+
+
+def own_content(path: Path) -> bytes:
+    """Return the content of a file that no other user can have written.
+
+    The file is checked after it was opened, so it does not matter who can write to the folders above it.
+
+    Raises
+    ------
+    ForeignError
+        If it is a link, or belongs to another user, or other users may write to it.
+    """
+    try:
+        with open(path, "rb", opener=_without_links) as file:
+            _refuse_foreign(path, os.fstat(file.fileno()))
+            return file.read()
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise ForeignError(path, "it is a link") from error
+        raise
+
+
+def keep(path: Path, content: bytes) -> None:
+    """Put a file whole into the cache; only its owner may read it or write to it."""
+    new = path.with_name(f"{path.name}.{uuid.uuid4().hex[:16]}.tmp")
+    try:
+        with open(new, "xb", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
+            file.write(content)
+        new.replace(path)
+    finally:
+        new.unlink(missing_ok=True)
+
+
+class ForeignError(PermissionError):
+    """A folder or file of the cache that another user may have written: what is in it would be run."""
+
+    def __init__(self, path: Path, reason: str, remedy: str = "remove it") -> None:
+        super().__init__(f"{path} is not used for compiled code, because {reason}: {remedy}.")
+
+
+@functools.cache
+def warn_once(sentence: str) -> None:
+    """Warn, the first time that this sentence is said."""
+    warnings.warn(sentence, stacklevel=2)
+
+
+def _without_links(name: str, flags: int) -> int:
+    return os.open(name, flags | getattr(os, "O_NOFOLLOW", 0))
+
+
+def _refuse_foreign(path: Path, about: os.stat_result) -> None:
+    """Refuse what another user may have written."""
     if not hasattr(os, "getuid"):
-        return True
-    about = folder.lstat()
-    return stat.S_ISDIR(about.st_mode) and about.st_uid == os.getuid() and not about.st_mode & 0o022
+        return
+    if stat.S_ISLNK(about.st_mode):
+        raise ForeignError(path, "it is a link")
+    if about.st_uid != os.getuid():
+        raise ForeignError(path, "it belongs to another user")
+    if about.st_mode & 0o022:
+        raise ForeignError(path, "other users may write to it", f"type chmod go-w {path}")
 
 
 def cache_folder() -> Path | None:
     """Return the folder of this engine's machine code, made if needed, or None where no folder can be used.
 
-    ``NUMBA_CACHE_DIR`` is respected; with a read-only home, a folder of the user's own among the temporary files is
-    used. A folder that belongs to another user, or that others may write to, is not used: its files are run.
+    ``NUMBA_CACHE_DIR`` is respected if it can be used; with a read-only home, a folder of the user's own among the
+    temporary files is used. A folder that belongs to another user, or that others may write to, is not used, and a
+    warning says so: its files would be run.
     """
     for home in _homes_of_caches():
         try:
-            home.mkdir(mode=0o700, parents=True, exist_ok=True)
-            if not _is_ours(home):
-                continue
-            folder = home / source_digest(memory=home)
-            folder.mkdir(exist_ok=True)
+            own_folder(home)
+            folder = own_folder(home / source_digest(memory=home))
             with tempfile.TemporaryFile(dir=folder):
                 pass
+        except ForeignError as error:
+            warn_once(str(error))
         except OSError:
             continue
-        return folder
+        else:
+            return folder
     return None
 
 

@@ -65,6 +65,8 @@ def parse(lines: Sequence[str], file: str, name: str) -> Table:
     header = _HEADER.fullmatch(lines[0].rstrip())
     if header is None:
         raise SoundingError(f"{file}, line 1: this is no header of IGRA version 2: save the file again.")
+    if not header["levels"].strip().isdecimal():
+        raise SoundingError(f"{file}, line 1: the header does not say how many levels there are: save the file again.")
     levels = int(header["levels"])
     rows: list[list[float]] = []
     for i in range(1, 1 + levels):
