@@ -12,9 +12,6 @@ from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 
 __all__ = ["Meaning", "declared", "names", "panel_record"]
 
-_ALONG = (*ATMOSPHERE_VARIABLES, "liquid_molecule_count")
-"""Variables of the picture of an ascent; the count is needed because a few liquid molecules are not yet a cloud."""
-
 
 class Meaning(NamedTuple):
     """The meaning of a variable: its unit in the file, and its description."""
@@ -71,7 +68,7 @@ def names(panels: Iterable[Panel]) -> tuple[str, ...]:
     graphs = [panel for panel in panels if panel.kind != "discs"]
     wanted = [name for panel in graphs for name in panel.variables]
     if any(panel.kind == "atmosphere" for panel in graphs):
-        wanted += _ALONG
+        wanted += ATMOSPHERE_VARIABLES
     return tuple(dict.fromkeys(wanted))
 
 
@@ -131,7 +128,7 @@ def panel_record(
         "note": panel.note,
         "across": panel.measured_across,
         "averages": panel.averages,
-        **({"along": _ALONG} if panel.kind == "atmosphere" else {}),
+        **({"along": ATMOSPHERE_VARIABLES} if panel.kind == "atmosphere" else {}),
         "sentences": list(sentences),
         "marks": marks or {},
         **{
