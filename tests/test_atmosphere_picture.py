@@ -73,9 +73,7 @@ def test_a_way_that_goes_down_again_has_mountains_below_it_and_rain_where_it_fel
     height = 2e3 * np.sin(np.linspace(0.0, np.pi, 41))
     rain = np.maximum.accumulate(np.where(height > 1.2e3, height - 1.2e3, 0.0)) * 1e-6
     liquid, haze = np.where(height > 1e3, 1e-3, 0.0), np.full(41, 5e-4)
-    run = lift(
-        height, cloud_liquid_water_mixing_ratio=liquid, largest_haze_mixing_ratio=haze, rain_mixing_ratio=rain
-    )
+    run = lift(height, cloud_liquid_water_mixing_ratio=liquid, largest_haze_mixing_ratio=haze, rain_mixing_ratio=rain)
     way, axes = ascent_of(run), Figure().add_subplot()
     assert way.crosses
     assert not ascent_of(lift(np.linspace(0.0, 2e3, 9))).crosses

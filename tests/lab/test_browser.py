@@ -32,7 +32,7 @@ SMALL = {
 }
 BESIDE = {"nuclei": ({"molecules": 1000}, 12)}
 """Fewer molecules, whose rows of cells hold copies of trajectories."""
-TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat")
+TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat", "largest_haze")
 """Beginnings of the names of curves of theory for a parcel."""
 
 

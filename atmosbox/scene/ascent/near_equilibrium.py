@@ -306,7 +306,8 @@ def cloud_along(
     n >= 0 then has a probability proportional to :math:`e^{-(n - 1/2)^2 / 2 s^2}`, where :math:`s^2` is the variance of
     the liquid in a cloud. A cloud is liquid above the mean of this haze plus three of its standard deviations,
 
-    .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s \approx 2.6 \, s .
+    .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
+              \approx 2.6 \, s .
 
     Parameters
     ----------
