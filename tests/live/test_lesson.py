@@ -104,20 +104,6 @@ def test_undo_of_the_first_turn_takes_the_heat_baths_away_again():
         assert (settings.speed, settings.molecules) == (speed, molecules)
 
 
-def test_the_challenge_of_the_dry_ascent_is_missed_by_default_and_met_by_a_warmer_start():
-    challenge = lesson_of(scenarios.load("lifting-dry")).challenges[0]
-    met = {}
-    for start in (15.0, 27.5):
-        session = Session(prepare("lifting-dry", {"molecules": 1000, "ascent": 800, "temperature": start}))
-        session.obey({"type": "play"})
-        while not session.finished:
-            session.run(5.0)
-        found = session.experiment.measured(0)
-        near = [np.abs(found[goal["name"]].values - goal["target"]) <= goal["within"] for goal in challenge["reach"]]
-        met[start] = bool(np.any(np.logical_and.reduce(near)))
-    assert met == {15.0: False, 27.5: True}
-
-
 def test_gauges_read_what_the_instruments_have_measured():
     session = Session(prepare("temperature", {"molecules": 800, "start_temperature": "25 degC"}))
     assert session.state()["gauges"] == []
