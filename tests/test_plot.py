@@ -1001,6 +1001,26 @@ def test_measured_curves_are_averaged_over_equal_parts_of_the_axis_and_theory_is
     assert theory.y.tolist() == time.tolist()
 
 
+def test_a_temperature_that_is_hardly_known_is_not_drawn():
+    held = {
+        "t": variable("height", [288.0, 14.0, 250.0, 250.0], "K"),
+        "t_se": variable("height", [1.0, 13.0, np.nan, 50.0], "K"),
+        "n": variable("height", [9.0, 1.0, 2.0, 2.0], "1"),
+        "n_se": variable("height", [1.0, 1.0, 2.0, 1.0], "1"),
+    }
+    dataset = xr.Dataset(held, coords={"height": variable("height", [1.0, 2.0, 3.0, 4.0], "m")})
+
+    def drawn(name, role="data"):
+        line = Line(name, "height", "air", role, error=f"{name}_se")
+        return np.isfinite(curve(dataset, Panel("profile", "Air", (line,)), line).x).tolist()
+
+    assert drawn("t") == [True, False, False, True]
+    assert drawn("t", "theory") == drawn("n") == [True] * 4
+    all_unknown = dataset.assign(t_se=variable("height", [np.nan] * 4, "K"))
+    line = Line("t", "height", "air", error="t_se")
+    assert np.isfinite(curve(all_unknown, Panel("profile", "Air", (line,)), line).x).all()
+
+
 def test_one_moment_alone_is_its_own_mean():
     dataset = xr.Dataset(
         {"noise": variable("elapsed_time", [5.0], "K")}, coords={"elapsed_time": variable("elapsed_time", [1.0], "ns")}

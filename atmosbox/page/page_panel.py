@@ -147,6 +147,8 @@ def panel_record(
 def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Callable[[str], Meaning]) -> dict[str, Any]:
     """Return a line of a panel; each variable has the factor and the offset that give the unit shown."""
 
+    from atmosbox.plot.curve import WORST
+
     def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
         from atmosbox.plot.unit import convert
 
@@ -156,6 +158,8 @@ def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Call
     record = {"label": line.label, "role": line.role, "x": way(line.x, shown["x"]), "y": way(line.y, shown["y"])}
     if line.error is not None:
         record["error"] = way(line.error, shown[measured], difference=True)
+        if line.role == "data" and line.minus is None and meaning(line.x if measured == "x" else line.y).unit == "K":
+            record["worst"] = WORST
     if line.minus is not None:
         record["minus"] = way(line.minus, shown[measured])
     return record
