@@ -146,7 +146,6 @@ def panel_record(
 
 def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Callable[[str], Meaning]) -> dict[str, Any]:
     """Return a line of a panel; each variable has the factor and the offset that give the unit shown."""
-
     from atmosbox.plot.curve import WORST
 
     def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
