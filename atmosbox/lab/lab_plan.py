@@ -27,9 +27,10 @@ from atmosbox.live.control import controls
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.gauge import FEW, gauges_of
 from atmosbox.live.lesson import lesson_of
-from atmosbox.live.picture import Picture
+from atmosbox.live.picture import COLDER, Picture
 from atmosbox.live.summary import while_it_runs
 from atmosbox.live.trace import plain
+from atmosbox.page import ROUND
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import MOMENTS, Lift, MoistLift
 from atmosbox.simulation.preparation import Prepared
@@ -123,6 +124,10 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "time": setup.scale.time / _SECONDS[setup.time_unit],
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
+        # how the scale of speeds follows the temperature
+        "scale": None
+        if box.attracts
+        else {"swift": pictures[0].swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
         "ledger": Reading.LEDGER.value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature

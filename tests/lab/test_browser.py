@@ -318,6 +318,12 @@ def test_the_temperature_of_the_walls_acts_and_the_saved_table_says_so(lab):
     assert before["air_temperature"][-20:].mean() == pytest.approx(298.15, abs=30.0)
     assert after["air_temperature"][-40:].mean() == pytest.approx(573.15, abs=60.0)
     assert after["air_temperature_theory"][-1] == pytest.approx(573.15)
+    frame = bytes(shown.page.evaluate("Array.from(window.frame)"))
+    fastest = float(np.frombuffer(frame, "<f4", 1, 28)[0])
+    assert fastest == 1500.0  # three thermal speeds of air of 573 K are 1217 m/s
+    assert shown.page.locator("#legend .ends span").last.inner_text() == "1500"
+    speed = np.frombuffer(frame, np.uint8, 250, 32 + 6 * 250) / 255.0 * fastest
+    assert np.mean(speed**2) == pytest.approx(3.0 * 8.314 * 573.15 / 0.02897, rel=0.3)
 
 
 def test_a_pool_that_is_covered_by_hand_has_the_bytes_of_one_that_python_covers(lab):

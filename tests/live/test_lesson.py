@@ -130,6 +130,17 @@ def test_the_scale_of_speeds_follows_walls_that_are_heated_and_the_graph_reaches
     assert edges[-1, 1] > 4.0 * np.sqrt(8.314462618 * 723.15 / 0.0289647)
 
 
+def test_the_scale_of_speeds_of_unlike_discs_is_not_that_of_the_lightest_alone():
+    session = Session(prepare("elastic-collisions", {}))
+    speed = np.linalg.norm(session.setup.parcel.snapshot().velocity, axis=1) * session.setup.scale.velocity
+    assert speed.max() == pytest.approx(0.5)
+    assert highest(session) == 2.0
+    session.obey({"type": "play"})
+    session.run(20.0)
+    speed = np.linalg.norm(session.setup.parcel.snapshot().velocity, axis=1) * session.setup.scale.velocity
+    assert np.mean(speed > highest(session)) < 0.02
+
+
 def test_axes_of_an_ascent_hold_its_way_before_it_begins():
     panels = Session(prepare("lifting-dry", {"molecules": 50})).stage()["stage"]["panels"]
     profile = next(panel for panel in panels if panel["title"] == "A rising parcel cools")

@@ -50,7 +50,7 @@ class Box {
     machine.call("begin");
     machine.call("begin_averages_anew");
     Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],
-      trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
+      fastest: this.plan.fastest, trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
     this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
   }
 
@@ -168,9 +168,20 @@ class Box {
     }
   }
 
+  // Let the scale of speeds follow the temperature of gas and walls; it changes only if the box is too warm or too cold.
+  rescale() {
+    const { machine, plan: { scale } } = this, kelvin = [this.trace.rows.at(-1)?.air_temperature, ...this.walls()].filter(Number.isFinite);
+    if (!scale || !kelvin.length) return;
+    const wanted = scale.swift * Math.sqrt(Math.max(...kelvin)), power = 10 ** Math.floor(Math.log10(wanted));
+    if (!(wanted > this.fastest || wanted < scale.colder * this.fastest)) return;
+    this.fastest = Number((scale.round.find((step) => step * power >= wanted) * power).toPrecision(6));
+    machine.set("look", "2.highest", this.fastest / scale.unit);
+  }
+
   // Send a frame: see atmosbox/page/frame.py.
   look() {
     const { machine, plan } = this;
+    this.rescale();
     machine.call("look");
     const place = machine.array("sight.place"), colour = machine.array("sight.colour"), count = colour.length;
     const drops = machine.array("sight.drops").subarray(0, 4 * Number(machine.array("sight.many")[0]));
@@ -179,7 +190,7 @@ class Box {
     view.setFloat64(4, this.now * plan.time, true);
     machine.array("sight.length").forEach((side, axis) => view.setFloat32(12 + 4 * axis, side * plan.length, true));
     view.setUint32(24, count, true);
-    view.setFloat32(28, plan.fastest, true);
+    view.setFloat32(28, this.fastest, true);
     new Uint16Array(buffer, 32, 3 * count).set(place);
     new Uint8Array(buffer, 32 + 6 * count, count).set(colour);
     new Uint8Array(buffer, 32 + 7 * count, count).set(machine.array("sight.state"));
