@@ -154,7 +154,12 @@ def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Call
         zero, one = convert(np.array([0.0, 1.0]), meaning(name).unit, unit, name=name, difference=difference)
         return {"name": name, "factor": float(f"{one - zero:.12g}"), "offset": float(f"{zero:.12g}")}
 
-    record = {"label": line.label, "role": line.role, "x": way(line.x, shown["x"]), "y": way(line.y, shown["y"])}
+    record: dict[str, Any] = {
+        "label": line.label,
+        "role": line.role,
+        "x": way(line.x, shown["x"]),
+        "y": way(line.y, shown["y"]),
+    }
     if line.error is not None:
         record["error"] = way(line.error, shown[measured], difference=True)
         if line.role == "data" and line.minus is None and meaning(line.x if measured == "x" else line.y).unit == "K":
