@@ -38,6 +38,7 @@ def files(tmp_path_factory):
         if name == "mild":
             made = json.loads(found.attrs["atmosbox_parameters"]) | {"engine": "stepped:delta=0.01"}
             output.write(found.assign_attrs(atmosbox_parameters=json.dumps(made)), folder / "stepped.nc")
+    atmosbox.run("lifting-moist", out=folder / "moist.nc", molecules=300, ascent=20.0)
     atmosbox.run("elastic-collisions", out=folder / "discs.nc", molecules=20, duration=2.0)
     return folder
 
@@ -81,6 +82,17 @@ def test_the_changed_setting_alone_is_named(files):
         assert named.title == title
         assert named.labels == labels
         assert not named.same
+
+
+def test_runs_of_unlike_scenes_are_called_by_their_files_and_each_adiabat_by_its_own_scene(files, tmp_path):
+    result = command(files, "mild.nc", "moist.nc", "--out", str(tmp_path / "both.png"))
+    assert result.stdout.splitlines()[:2] == ["lifting-dry and lifting-moist: different scenes", ""]
+    runs = read(files, "mild", "moist")
+    named = naming(runs, ["mild", "moist"])
+    assert [change.name for change in named.changes] == ["scene"]
+    assert named.labels == ("mild", "moist")
+    labels = legend(comparison.figure(runs, named.labels, named.title).axes[0])
+    assert labels == ["mild", "moist", "dry adiabat, mild", "moist adiabat, moist", "environment"]
 
 
 def test_the_same_run_twice_is_said_to_be_the_same(files):

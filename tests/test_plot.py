@@ -25,6 +25,8 @@ from atmosbox.plot import caption, tick, unit
 from atmosbox.plot.curve import curve
 from atmosbox.plot.layout import panels_of
 from atmosbox.scene.panels import Line, Panel, to_json
+from atmosbox.simulation.recording import Recording
+from tests.in_process import typed
 
 K_B = 1.380649e-23  # J/K
 AIR = 28.9647e-3 / 6.02214076e23  # kg
@@ -640,8 +642,8 @@ def test_a_reference_is_broad_and_pale_under_the_theory_that_it_coincides_with(r
 
 
 def test_a_point_whose_error_is_not_known_is_hollow_and_the_footer_says_so(runs, drawings):
-    run = alone(runs["atmosphere"].copy(deep=True), 2)
-    run["layer_temperature_se"][-3:] = np.nan
+    run = alone(runs["atmosphere"].copy(deep=True), 1)
+    run["layer_pressure_se"][-3:] = np.nan
     drawing = plot.figure(run)
     (axes,) = drawing.axes
     (hollow,) = [line for line in axes.lines if line.get_markerfacecolor() == "white"]
@@ -1001,6 +1003,26 @@ def test_measured_curves_are_averaged_over_equal_parts_of_the_axis_and_theory_is
     assert theory.y.tolist() == time.tolist()
 
 
+def test_a_temperature_that_is_hardly_known_is_not_drawn():
+    held = {
+        "t": variable("height", [288.0, 14.0, 250.0, 250.0], "K"),
+        "t_se": variable("height", [1.0, 13.0, np.nan, 50.0], "K"),
+        "n": variable("height", [9.0, 1.0, 2.0, 2.0], "1"),
+        "n_se": variable("height", [1.0, 1.0, 2.0, 1.0], "1"),
+    }
+    dataset = xr.Dataset(held, coords={"height": variable("height", [1.0, 2.0, 3.0, 4.0], "m")})
+
+    def drawn(name, role="data"):
+        line = Line(name, "height", "air", role, error=f"{name}_se")
+        return np.isfinite(curve(dataset, Panel("profile", "Air", (line,)), line).x).tolist()
+
+    assert drawn("t") == [True, False, False, True]
+    assert drawn("t", "theory") == drawn("n") == [True] * 4
+    all_unknown = dataset.assign(t_se=variable("height", [np.nan] * 4, "K"))
+    line = Line("t", "height", "air", error="t_se")
+    assert np.isfinite(curve(all_unknown, Panel("profile", "Air", (line,)), line).x).all()
+
+
 def test_one_moment_alone_is_its_own_mean():
     dataset = xr.Dataset(
         {"noise": variable("elapsed_time", [5.0], "K")}, coords={"elapsed_time": variable("elapsed_time", [1.0], "ns")}
@@ -1016,3 +1038,32 @@ def test_a_line_of_a_headline_that_the_run_could_not_give_is_left_out():
     assert [line.label for line in panels_of(held)[0].lines] == ["parcel"]
     found = held.assign(cloud_base=9e4, cloud_base_theory=9.1e4)
     assert [line.label for line in panels_of(found)[0].lines] == ["parcel", "condensation level"]
+
+
+USUAL = ("atmosphere", "temperature", "lifting-sounding")
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [pytest.param(name, marks=() if name in USUAL else pytest.mark.validate) for name in scenarios.names()],
+)
+def test_a_run_stopped_after_one_frame_is_drawn_if_the_stop_message_says_so(scene, tmp_path, monkeypatch):
+    advance = Recording.advance
+
+    def advance_once(recording, watch):
+        if recording.frames:
+            raise KeyboardInterrupt
+        advance(recording, watch)
+
+    monkeypatch.setattr(Recording, "advance", advance_once)
+    monkeypatch.chdir(tmp_path)
+    few = () if scene == "elastic-collisions" else ("--set", "molecules=200")
+    stopped = typed("run", scene, *few, "--out", "x.nc")
+    assert "1 complete frames are kept in x.part.nc" in stopped.stderr
+    drawn = typed("plot", "x.part.nc")
+    if scene == "atmosphere":  # a layer needs two frames for its mean
+        assert "atmosbox plot" not in stopped.stderr
+        assert "stopped too early for a figure" in drawn.stderr
+    else:
+        assert "atmosbox plot x.part.nc" in stopped.stderr
+        assert drawn.exit_code == 0, drawn.stderr

@@ -148,6 +148,7 @@ VARIABLES: dict[str, Variable] = {
         ("humidity_mixing_ratio", "kg kg-1", "mass of vapour per mass of dry air", "humidity_mixing_ratio"),
         ("cloud_liquid_water_mixing_ratio", "kg kg-1", "mass of liquid water per mass of dry air",
          "cloud_liquid_water_mixing_ratio"),
+        ("largest_haze_mixing_ratio", "kg kg-1", "mass of liquid water per mass of dry air, above which it is a cloud"),
         ("rain_mixing_ratio", "kg kg-1", "mass of water that has rained out so far per mass of dry air"),
         ("liquid_temperature", "K", "temperature of the liquid water"),
         ("drop_area", "m2", "area of all drops at which molecules hit them"),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from atmosbox.file.variables import known
 from atmosbox.lab.bench import Bench, bench
 from atmosbox.lab.kernels.gauging import Reading
 from atmosbox.lab.kernels.hygrometer import WaterReading
@@ -27,9 +28,11 @@ from atmosbox.live.control import controls
 from atmosbox.live.experiment import Experiment
 from atmosbox.live.gauge import FEW, gauges_of
 from atmosbox.live.lesson import lesson_of
-from atmosbox.live.picture import Picture
+from atmosbox.live.picture import COLDER, Picture
 from atmosbox.live.summary import while_it_runs
 from atmosbox.live.trace import plain
+from atmosbox.page import ROUND
+from atmosbox.page.page_panel import declared
 from atmosbox.scene.conversion import to_si
 from atmosbox.scene.instruments import MOMENTS, Lift, MoistLift
 from atmosbox.simulation.preparation import Prepared
@@ -91,12 +94,12 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
     wanted |= {"sight.state", "sight.drops", "sight.many"}
     wanted |= {"gauges.water.mean", "gauges.water.error"} if box.modes.phases else set()
     found, numbers = _knobs(box)
-    known = short_run(prepared)
+    begun = short_run(prepared)
     readings = _readings(box)
-    if not np.isfinite(known.air_pressure.values).any():  # no wall on which pressure is measured
+    if not np.isfinite(begun.air_pressure.values).any():  # no wall on which pressure is measured
         readings = [each for each in readings if each[0] != "air_pressure"]
     if box.attracts:
-        readings += drop_readings(setup, set(prepared.module.theory(known, prepared.settings)))
+        readings += drop_readings(setup, set(prepared.module.theory(begun, prepared.settings)))
     shown = controls(found, [], {}, collisions=None)
     plan = {
         "told": {
@@ -123,19 +126,27 @@ def lab_plan(prepared: Prepared) -> tuple[dict[str, Any], Image, Bench]:
         "time": setup.scale.time / _SECONDS[setup.time_unit],
         "length": setup.scale.length * stage.record["metre"],
         "fastest": stage.record["speed"]["high"],
+        # how the scale of speeds follows the temperature
+        "scale": None
+        if box.attracts
+        else {"swift": pictures[0].swift, "colder": COLDER, "round": ROUND, "unit": setup.scale.velocity},
         "ledger": Reading.LEDGER.value,
         "readings": readings,
         # the energy of discs on a table is not shown as a temperature
         "gauges": [] if box.gauges.half.size else _gauges(prepared, [name for name, _, _ in readings]),
         "profiles": _profiles(box),
         "fixed": _fixed(box),
-        "tables": [] if box.attracts else _drawn(tables(prepared, setup, known), panels[-1]),
+        "tables": [] if box.attracts else _drawn(tables(prepared, setup, begun), panels[-1]),
         "planned": planned_alone(box),
         "knobs": numbers,
+        "units": {},
         "command": _command(prepared),
         "seeded": is_seeded,
         "seed": prepared.settings.seed,
     }
+    names = [name for name, _, _ in readings]
+    names += [name for table in plan["tables"] for name in table["curves"]]
+    plan["units"] = {name: declared(name, setup.time_unit).unit for name in names if known(name.partition("[")[0])}
     return plan, memory, box
 
 

@@ -27,6 +27,8 @@ __all__ = ["BASE", "Image", "image", "parts"]
 BASE = 0x20000
 _LINE = 64
 _HEAD = 256
+_SET = "highest"
+"""Name of the number inside an argument that a page sets, besides whole arguments: the end of the scale of speeds."""
 
 Works = Mapping[str, tuple[Any, ...]]
 
@@ -43,7 +45,7 @@ class Image(NamedTuple):
     blocks : dict of str to int
         Address of the arguments of each kernel.
     slots : dict of str to dict of str to int
-        Address of each number among the arguments of a kernel, by its path: "4" is the fifth argument.
+        Address of each number that a page may set, by its path: "4" is the fifth argument of a kernel.
     arrays : dict of str to (int, int, str)
         Address, number of elements and type of each array, by the path of its name: "gas.molecules".
     """
@@ -140,7 +142,8 @@ def image(works: Works, named: Mapping[str, Any]) -> Image:
         blocks[name], slots[name] = at, {}
         words = bytearray(_HEAD)
         for kind, part, path in parts(given, ""):
-            if kind != "array" and path.isdigit() and not isinstance(given[int(path)], np.ndarray):
+            whole = path.isdigit() and not isinstance(given[int(path)], np.ndarray)
+            if kind != "array" and (whole or path.endswith(_SET)):
                 slots[name][path] = at + len(words)
             number = np.float64(part) if kind == "number" else np.int64(where(part) if kind == "array" else part)
             words += number.tobytes()

@@ -10,9 +10,9 @@ They are read from a file beside the scene, ``my_scene.live.toml``, which contai
     with = ["molecules", "pressure"]
 
     [[challenge]]
-    ask = "Reach 300 hPa at -60 degC. What must you change?"
+    ask = "Reach 300 hPa at -48 degC. Which start does that need?"
     hint = "A dry parcel cools as T ~ p^(2/7)."
-    reach = {parcel_pressure = ["300 hPa", "3 hPa"], parcel_temperature = ["-60 degC", "1 K"]}
+    reach = {parcel_pressure = ["300 hPa", "4 hPa"], parcel_temperature = ["-48 degC", "1.5 K"]}
 
 A preset restarts the box with its settings, and the scene's defaults for the rest. The settings that a pump names grow
 together. A challenge is met when each variable is within the given distance of its value.

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from atmosbox.live.outlook import outlook, planned
 from atmosbox.page import NEIGHBOURS, Box, Stage, round_up, stage
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Picture"]
 
 _FASTEST = 3.0
-_COLDER = 0.5  # share of the scale of speeds: if the speeds reach less of it, a new scale is chosen
+COLDER = 0.5  # share of the scale of speeds: if the speeds reach less of it, a new scale is chosen
 
 
 class Picture:
@@ -40,6 +41,8 @@ class Picture:
     ----------
     stage
         The data that the page gets once.
+    swift
+        Speed that hardly any molecule exceeds, over the square root of the temperature [m s-1 K-1/2].
     """
 
     def __init__(self, prepared: Prepared, setup: Setup, panels: tuple[Panel, ...]) -> None:
@@ -56,7 +59,7 @@ class Picture:
             mass[~present] = WATER.molecule_mass  # only molecules of water ever leave the gas
             diameter[~present] = float(np.nanmax(diameter)) if present.any() else DRY_AIR.diameter
             water = mass < 0.5 * (DRY_AIR.molecule_mass + WATER.molecule_mass)
-        self._lightest = float(np.nanmin(mass)) / scale.mass if mass.size else 1.0
+        self.swift = _swift(mass / scale.mass) * scale.velocity / math.sqrt(scale.temperature)
         module, settings = prepared.module, prepared.settings
         self._highest = 0.0
         self._counted = hasattr(parcel, "neighbours")  # colours show neighbours, because speeds do not show drops
@@ -98,12 +101,12 @@ class Picture:
     def _fastest(self) -> float:
         """Return a speed that hardly any molecule exceeds at the present temperatures of gas and walls [m/s]."""
         kT = np.array([*self._setup.parcel.wall_kT(), self._kT()])
-        return _FASTEST * math.sqrt(float(np.nanmax(kT)) / self._lightest) * self._setup.scale.velocity
+        return self.swift * math.sqrt(float(np.nanmax(kT)) * self._setup.scale.temperature)
 
     def _scale(self) -> float:
         """Return the end of the scale of speeds; it changes only if the box is too warm or too cold for it."""
         wanted = self._fastest()
-        if not _COLDER * self._highest <= wanted <= self._highest:
+        if not COLDER * self._highest <= wanted <= self._highest:
             self._highest = round_up(wanted)
         return self._highest
 
@@ -149,6 +152,27 @@ class Picture:
             rained=int(getattr(parcel, "rained", 0)),
             highest=NEIGHBOURS if self._counted else self._scale(),
         )
+
+
+def _swift(mass: NDArray[np.float64]) -> float:
+    r"""Return the speed that hardly any molecule exceeds, over :math:`\sqrt{kT}`.
+
+    It is :math:`3 / \sqrt{m}`, in a mixture the c at which the mean of :math:`e^{-m c^2 / 2}` is the same.
+
+    Examples
+    --------
+    >>> _swift(np.full(5, 4.0)), round(_swift(np.array([1.0, 9.0])), 2)
+    (1.5, 2.76)
+    """
+    known = mass[np.isfinite(mass)]
+    if not known.size:
+        return _FASTEST
+    low, high = 1.0 / known.max(), 1.0 / known.min()
+    while high - low > 1e-9 * high:
+        middle = 0.5 * (low + high)
+        rare = np.exp(-0.5 * _FASTEST**2 * middle * known).mean() < math.exp(-0.5 * _FASTEST**2)
+        low, high = (low, middle) if rare else (middle, high)
+    return _FASTEST * math.sqrt(high)
 
 
 def _said(value: object, unit: str) -> str:

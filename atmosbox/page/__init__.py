@@ -13,6 +13,6 @@ scripts, ``vendor`` the two libraries that draw the page.
 from atmosbox.page.document import lab_page, live_page, view_page
 from atmosbox.page.page_box import Box
 from atmosbox.page.page_file import save
-from atmosbox.page.page_stage import NEIGHBOURS, Stage, round_up, stage
+from atmosbox.page.page_stage import NEIGHBOURS, ROUND, Stage, round_up, stage
 
-__all__ = ["NEIGHBOURS", "Box", "Stage", "lab_page", "live_page", "round_up", "save", "stage", "view_page"]
+__all__ = ["NEIGHBOURS", "ROUND", "Box", "Stage", "lab_page", "live_page", "round_up", "save", "stage", "view_page"]

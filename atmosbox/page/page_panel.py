@@ -12,9 +12,6 @@ from atmosbox.scene.panels import ATMOSPHERE_VARIABLES, Line, Panel
 
 __all__ = ["Meaning", "declared", "names", "panel_record"]
 
-_ALONG = (*ATMOSPHERE_VARIABLES, "liquid_molecule_count")
-"""Variables of the picture of an ascent; the count is needed because a few liquid molecules are not yet a cloud."""
-
 
 class Meaning(NamedTuple):
     """The meaning of a variable: its unit in the file, and its description."""
@@ -71,7 +68,7 @@ def names(panels: Iterable[Panel]) -> tuple[str, ...]:
     graphs = [panel for panel in panels if panel.kind != "discs"]
     wanted = [name for panel in graphs for name in panel.variables]
     if any(panel.kind == "atmosphere" for panel in graphs):
-        wanted += _ALONG
+        wanted += ATMOSPHERE_VARIABLES
     return tuple(dict.fromkeys(wanted))
 
 
@@ -131,7 +128,7 @@ def panel_record(
         "note": panel.note,
         "across": panel.measured_across,
         "averages": panel.averages,
-        **({"along": _ALONG} if panel.kind == "atmosphere" else {}),
+        **({"along": ATMOSPHERE_VARIABLES} if panel.kind == "atmosphere" else {}),
         "sentences": list(sentences),
         "marks": marks or {},
         **{
@@ -149,6 +146,7 @@ def panel_record(
 
 def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Callable[[str], Meaning]) -> dict[str, Any]:
     """Return a line of a panel; each variable has the factor and the offset that give the unit shown."""
+    from atmosbox.plot.curve import WORST
 
     def way(name: str, unit: str, *, difference: bool = False) -> dict[str, Any]:
         from atmosbox.plot.unit import convert
@@ -156,9 +154,16 @@ def _line_record(line: Line, shown: dict[str, str], measured: str, meaning: Call
         zero, one = convert(np.array([0.0, 1.0]), meaning(name).unit, unit, name=name, difference=difference)
         return {"name": name, "factor": float(f"{one - zero:.12g}"), "offset": float(f"{zero:.12g}")}
 
-    record = {"label": line.label, "role": line.role, "x": way(line.x, shown["x"]), "y": way(line.y, shown["y"])}
+    record: dict[str, Any] = {
+        "label": line.label,
+        "role": line.role,
+        "x": way(line.x, shown["x"]),
+        "y": way(line.y, shown["y"]),
+    }
     if line.error is not None:
         record["error"] = way(line.error, shown[measured], difference=True)
+        if line.role == "data" and line.minus is None and meaning(line.x if measured == "x" else line.y).unit == "K":
+            record["worst"] = WORST
     if line.minus is not None:
         record["minus"] = way(line.minus, shown[measured])
     return record

@@ -17,7 +17,7 @@ from atmosbox.page.thinning import MOST, chosen
 from atmosbox.scene.panels import Panel
 from atmosbox.theory.constants import DRY_AIR
 
-__all__ = ["NEIGHBOURS", "Stage", "round_up", "stage"]
+__all__ = ["NEIGHBOURS", "ROUND", "Stage", "round_up", "stage"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -25,7 +25,7 @@ Indices = NDArray[np.intp]
 _SEEN = 0.034  # drawn diameter over the side of a cube as large as the box, for _CROWD molecules
 _CROWD = 800
 _BESIDE_DROPS = 0.4  # factor on that diameter in a scene with drops, so that the drops stand out
-_ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 _ALIKE = 0.01
 NEIGHBOURS = 12.0
 """Upper end of the colour scale where colours show the number of neighbours."""
@@ -277,7 +277,7 @@ def _width(diameter: Floats, side: float, count: int, *, discs: bool, unit: str)
         return 1.0, f"{particle}s are points, and chance decides which of them collide."
     ratio = wanted / size
     power = 10.0 ** math.floor(math.log10(ratio)) if ratio > 1.0 else 1.0
-    factor = 1.0 if ratio <= 1.0 else power * min(_ROUND, key=lambda each: abs(math.log(each * power / ratio)))
+    factor = 1.0 if ratio <= 1.0 else power * min(ROUND, key=lambda each: abs(math.log(each * power / ratio)))
     as_drawn = "are drawn true to size" if factor == 1.0 else f"are drawn {factor:g} times as wide"
     if discs:
         return factor, f"{particle}s {as_drawn}."
@@ -302,7 +302,7 @@ def round_up(value: float) -> float:
     if not (math.isfinite(value) and value > 0.0):
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))
-    return float(f"{next(step for step in _ROUND if step * power >= value * (1.0 - 1e-9)) * power:.6g}")
+    return float(f"{next(step for step in ROUND if step * power >= value * (1.0 - 1e-9)) * power:.6g}")
 
 
 def _mean(values: Floats) -> float:

@@ -25,8 +25,6 @@ Entry = tuple[tuple[Artist, ...], str]
 _, _, _, _, _, _BLUE, _VERMILLION, _ = OKABE_ITO
 _SKY = LinearSegmentedColormap.from_list("sky", ("#e4f0f8", "#9cc4e2"))
 _GROUND, _ROCK, _CLOUD, _RIM, _CLEAR = "#8aa37b", "#9a8f80", "#ffffff", "#8c97a3", "#cfe3f1"
-_SMALLEST_CLOUD = 2e-4
-"""Liquid per dry air above which a cloud is drawn [kg kg-1]: 0.2 g/kg, as in a thin cumulus that can be seen."""
 _FAINTEST_RAIN = 0.02
 """Rain of a frame above which it is drawn, as a share of all rain of the run."""
 _DESCENT = 0.1
@@ -56,10 +54,12 @@ class Ascent(NamedTuple):
     """Radius of the parcel in units of its radius at the start, from temperature and pressure."""
     liquid: NDArray[np.float64]
     """Measured liquid per dry air [kg kg-1]; 0 in a scene without water."""
+    haze: NDArray[np.float64]
+    """Liquid per dry air above which it is a cloud [kg kg-1]; infinite if the file does not tell."""
     rain: NDArray[np.float64]
     """Measured rain per dry air from the start up to the frame [kg kg-1]; 0 where none falls."""
     base: float
-    """Height of the measured cloud base [km]; NaN where the run measures none."""
+    """Height of the measured cloud base [km]; NaN where the run measures none above the ground."""
 
     @property
     def crosses(self) -> bool:
@@ -69,8 +69,8 @@ class Ascent(NamedTuple):
 
     @property
     def cloudy(self) -> NDArray[np.bool_]:
-        """Whether there is a cloud in each frame; liquid below the measured base is not a cloud but single clusters."""
-        return np.asarray((self.liquid > _SMALLEST_CLOUD) & ~(self.height < self.base))
+        """Whether there is a cloud in each frame: more liquid than chance puts together in air without a cloud."""
+        return np.asarray(self.liquid > self.haze)
 
 
 def ascent_of(dataset: xr.Dataset) -> Ascent:
@@ -80,7 +80,7 @@ def ascent_of(dataset: xr.Dataset) -> Ascent:
     ----------
     dataset : xarray.Dataset
         The run, with ``parcel_height``, ``parcel_temperature`` and ``environment_pressure``; with water also
-        ``cloud_liquid_water_mixing_ratio``, with rain ``rain_mixing_ratio``.
+        ``cloud_liquid_water_mixing_ratio`` and ``largest_haze_mixing_ratio``, with rain ``rain_mixing_ratio``.
 
     Raises
     ------
@@ -107,19 +107,21 @@ def ascent_of(dataset: xr.Dataset) -> Ascent:
         for name in ("parcel_height", "parcel_temperature", "environment_pressure")
     )
     time = read(dataset, "elapsed_time").values.astype(np.float64)
-    none = np.zeros_like(height)
-    liquid, rain = (
-        dataset[name].values.astype(np.float64) if name in dataset else none
-        for name in ("cloud_liquid_water_mixing_ratio", "rain_mixing_ratio")
-    )
+    liquid, haze, rain = (
+        np.nan_to_num(dataset[name].values.astype(np.float64)) if name in dataset else np.full_like(height, missing)
+        for name, missing in (
+            ("cloud_liquid_water_mixing_ratio", 0.0), ("largest_haze_mixing_ratio", np.inf), ("rain_mixing_ratio", 0.0)
+        )
+    )  # fmt: skip
     return Ascent(
-        time / time[-1] if time[-1] > 0.0 else none,
+        time / time[-1] if time[-1] > 0.0 else np.zeros_like(time),
         height / 1e3,
         kelvin - 273.15,
         pascal / 1e2,
         np.cbrt(kelvin / kelvin[0] * pascal[0] / pascal),
-        np.nan_to_num(liquid),
-        np.nan_to_num(rain),
+        liquid,
+        haze,
+        rain,
         _base(dataset, height, pascal),
     )
 
@@ -184,7 +186,7 @@ def draw_ground(axes: Axes, way: Ascent, theme: Theme) -> None:
     >>> from atmosbox.plot.theme import THEMES
     >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
     >>> axes = Figure().add_subplot()
-    >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, one, none, none, np.nan), THEMES["notes"])
+    >>> draw_ground(axes, Ascent(up / 5.0, up, one, one, one, none, one, none, np.nan), THEMES["notes"])
     >>> [round(float(height), 2) for height in axes.get_ylim()]
     [-0.6, 6.0]
     """
@@ -233,7 +235,7 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     >>> from matplotlib.figure import Figure
     >>> from atmosbox.plot.theme import THEMES
     >>> up, one, none = np.linspace(0.0, 5.0, 9), np.ones(9), np.zeros(9)
-    >>> way = Ascent(up / 5.0, up, one, one, one, 1e-3 * (up > 2.0), none, 1.9)
+    >>> way = Ascent(up / 5.0, up, one, one, one, 1e-3 * (up > 2.0), 5e-4 * one, none, 1.9)
     >>> axes = Figure().add_subplot()
     >>> draw_ground(axes, way, THEMES["notes"])
     >>> [label for _, label in draw_way(axes, way, 8, np.array([0, 8]), THEMES["notes"])]
@@ -242,10 +244,10 @@ def draw_way(axes: Axes, way: Ascent, until: int, stations: NDArray[np.int64], t
     entries: list[Entry] = []
     across, seen = _across(way), way.cloudy & (np.arange(way.height.size) <= until)
     bottom, top = axes.get_ylim()
+    base = way.base if np.isfinite(way.base) else float(way.height[seen.argmax() if seen.any() else until])
     if seen.any() and way.crosses:
         _puffs(axes, across[seen], way.height[seen], 1.4 * np.sqrt(way.liquid[seen] / way.liquid.max()), theme)
     elif seen.any():
-        base = way.base if np.isfinite(way.base) else float(way.height[seen.argmax()])
         _tower(axes, base, float(way.height[: until + 1].max()), theme)
     if seen.any():
         entries.append(((Patch(facecolor=_CLOUD, edgecolor=_RIM, linewidth=theme.line),), "cloud"))
@@ -283,8 +285,8 @@ def _across(way: Ascent) -> NDArray[np.float64]:
 
 
 def _base(dataset: xr.Dataset, height: NDArray[np.float64], pressure: NDArray[np.float64]) -> float:
-    """Return the height of the measured cloud base [km]; NaN where there is none."""
-    if "cloud_base" not in dataset:
+    """Return the height of the measured cloud base [km]; NaN where there is none above the ground."""
+    if "cloud_base" not in dataset or float(dataset.cloud_base) > pressure.max():
         return float("nan")
     return float(np.interp(-np.log(float(dataset.cloud_base)), -np.log(pressure), height)) / 1e3
 

@@ -179,7 +179,7 @@ class _Painter:
                 if role == "data":
                     entries += self._draw_measured(axes, panel, (line, index, len(lines)), curves, look)
                 elif curves:
-                    entries.append(self._draw_calculated(axes, panel, (line, index), curves, look))
+                    entries += self._draw_calculated(axes, panel, (line, index), curves, look)
         return entries, most
 
     def _draw_measured(
@@ -205,16 +205,40 @@ class _Painter:
 
     def _draw_calculated(
         self, axes: Axes, panel: Panel, which: tuple[Line, int], curves: dict[int, Curve], look: Theme
-    ) -> Entry:
-        """Draw a calculated curve once if all runs have the same, else one for each run in a darker colour."""
+    ) -> list[Entry]:
+        """Draw a calculated curve once if all runs have the same, else one for each run in a darker colour.
+
+        If the scenes of the runs call it differently, as the dry and the moist adiabat, each has its own entry.
+        """
         line, index = which
         first, *rest = curves.values()
-        if all(_same(first, other, across=panel.measured_across) for other in rest):
-            return draw_line(axes, panel, line, first, look, index), line.label
+        called = {run: _called(self.datasets[run], panel, line) for run in curves}
+        alike = len(set(called.values())) == 1
+        if alike and all(_same(first, other, across=panel.measured_across) for other in rest):
+            return [(draw_line(axes, panel, line, first, look, index), line.label)]
+        entries = []
         for run, values in curves.items():
             colour = tuple(_DARKER * part for part in to_rgb(DATA_COLOURS[run]))
-            draw_line(axes, panel, line, values, look, index, color=colour)
-        return (Line2D([], [], **line_style(line.role, look, index) | {"color": DARK}),), line.label
+            drawn = draw_line(axes, panel, line, values, look, index, color=colour)
+            entries.append((drawn, f"{called[run]}, {self.names[run]}"))
+        if not alike:
+            return entries
+        return [((Line2D([], [], **line_style(line.role, look, index) | {"color": DARK}),), line.label)]
+
+
+def _called(dataset: xr.Dataset, panel: Panel, line: Line) -> str:
+    """Return the label that the panels of a run give to the variable of a line, by default that of the line."""
+
+    def measured(which: Panel, each: Line) -> str:
+        return each.x if which.measured_across else each.y
+
+    names = (
+        each.label
+        for own in panels_of(dataset)
+        for each in own.lines
+        if each.role == line.role and measured(own, each) == measured(panel, line)
+    )
+    return next(names, line.label)
 
 
 def _same(one: Curve, other: Curve, *, across: bool) -> bool:

@@ -12,6 +12,8 @@ from atmosbox.errors import FileError
 from atmosbox.plot.unit import convert, of_difference
 from atmosbox.scene.panels import Line, Panel
 
+WORST = 0.2
+"""A temperature is not drawn if its standard error is more than this share of it."""
 _AGAIN = "run the scene again with this version of atmosbox"
 
 
@@ -73,7 +75,8 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
 
     A single number beside a list of values is repeated along the list. Values that a logarithmic axis cannot show
     become NaN. If the panel asks for averages, measured values without errors are averaged over equal parts of the x
-    axis; their error is then the scatter (standard deviation) of the single values in each part.
+    axis; their error is then the scatter (standard deviation) of the single values in each part. A measured temperature
+    whose error is more than `WORST` of it becomes NaN, such as that of a layer with two molecules.
 
     Parameters
     ----------
@@ -122,6 +125,10 @@ def curve(dataset: xr.Dataset, panel: Panel, line: Line) -> Curve:
             f"The variables {', '.join(line.variables)} of the file differ in length and cannot be drawn "
             f"together: {_AGAIN}."
         ) from fault
+    if line.error is not None and line.role == "data" and plain and _unit(read(dataset, name)) == "K":
+        error_in_file = read(dataset, line.error).values
+        unknown = ~(error_in_file <= WORST * read(dataset, name).values)
+        measured = np.where(unknown & np.isfinite(error_in_file).any(), np.nan, measured)
     x, y = (measured, along) if measured_is_x else (along, measured)
     if panel.averages and line.role == "data" and error is None:
         x, y, error = _averaged(x, y, panel)

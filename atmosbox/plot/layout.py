@@ -131,6 +131,8 @@ def explanation(dataset: xr.Dataset, panels: tuple[Panel, ...]) -> str:
 def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     """Return the panels that a run lists, without the theory curves of headlines that it did not measure.
 
+    Of a run that was stopped, only panels and curves are returned for which it has measured enough.
+
     Parameters
     ----------
     dataset : xarray.Dataset
@@ -139,7 +141,7 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
     Raises
     ------
     FileError
-        If the dataset lists no panels, or its list cannot be read.
+        If the dataset lists no panels, its list cannot be read, or the run was stopped too early for all of them.
 
     Examples
     --------
@@ -156,7 +158,23 @@ def panels_of(dataset: xr.Dataset) -> tuple[Panel, ...]:
         raise FileError(f"The file does not say what its figure shows, because {error}") from error
     if not panels:
         raise FileError("The file has no figure: its scene names no panels.")
+    if dataset.attrs.get("atmosbox_status", "complete") != "complete":
+        panels = tuple(begun for panel in panels if (begun := _begun(dataset, panel)) is not None)
+        if not panels:
+            raise FileError("The run was stopped too early for a figure: let it go on with atmosbox run --resume.")
     return tuple(replace(panel, lines=_found(dataset, panel)) for panel in panels)
+
+
+def _begun(dataset: xr.Dataset, panel: Panel) -> Panel | None:
+    """Return a panel of a run that was stopped, with the curves that it has; None if none of them is measured."""
+
+    def held(names: tuple[str, ...]) -> bool:
+        return all(name.partition("[")[0] in dataset.variables for name in names)
+
+    if not panel.lines:
+        return panel if held(panel.variables) else None
+    lines = tuple(line for line in panel.lines if held(line.variables))
+    return replace(panel, lines=lines) if any(line.role == "data" for line in lines) else None
 
 
 def _found(dataset: xr.Dataset, panel: Panel) -> tuple[Line, ...]:

@@ -3,10 +3,12 @@
 import hashlib
 import io
 import json
+import shlex
 
 import numpy as np
 import pytest
 
+from atmosbox.file.netcdf import read
 from atmosbox.lab import bench, save_lab
 from atmosbox.lab.lab_plan import STATE
 from atmosbox.lab.moist_plan import DROP_STATE, WET_STATE
@@ -14,6 +16,7 @@ from atmosbox.lab.wasm_module import SCENES
 from atmosbox.live.picture import Picture
 from atmosbox.simulation.preparation import build, prepare
 from atmosbox.simulation.recording import Recording
+from tests.in_process import typed
 
 SMALL = {
     "temperature": ({"molecules": 150}, 60),
@@ -32,7 +35,7 @@ SMALL = {
 }
 BESIDE = {"nuclei": ({"molecules": 1000}, 12)}
 """Fewer molecules, whose rows of cells hold copies of trajectories."""
-TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat")
+TOLD = ("adiabat", "environment", "parcel_height", "parcel_temperature_se", "dry_air_adiabat", "largest_haze")
 """Beginnings of the names of curves of theory for a parcel."""
 
 
@@ -306,7 +309,7 @@ def test_the_temperature_of_the_walls_acts_and_the_saved_table_says_so(lab):
     about, before = shown.table()
     assert any("repeats this run" in line for line in about)
     assert any("--seed 1" in line and "molecules=250" in line for line in about)
-    slider = shown.page.locator("input[type=range][aria-label=temperature]")
+    slider = shown.page.locator("input[type=range][name=temperature]")
     slider.fill("300")
     slider.dispatch_event("change")
     shown.ask(type="frames", value=160)
@@ -318,6 +321,12 @@ def test_the_temperature_of_the_walls_acts_and_the_saved_table_says_so(lab):
     assert before["air_temperature"][-20:].mean() == pytest.approx(298.15, abs=30.0)
     assert after["air_temperature"][-40:].mean() == pytest.approx(573.15, abs=60.0)
     assert after["air_temperature_theory"][-1] == pytest.approx(573.15)
+    frame = bytes(shown.page.evaluate("Array.from(window.frame)"))
+    fastest = float(np.frombuffer(frame, "<f4", 1, 28)[0])
+    assert fastest == 1500.0  # three thermal speeds of air of 573 K are 1217 m/s
+    assert shown.page.locator("#legend .ends span").last.inner_text() == "1500"
+    speed = np.frombuffer(frame, np.uint8, 250, 32 + 6 * 250) / 255.0 * fastest
+    assert np.mean(speed**2) == pytest.approx(3.0 * 8.314 * 573.15 / 0.02897, rel=0.3)
 
 
 def test_a_pool_that_is_covered_by_hand_has_the_bytes_of_one_that_python_covers(lab):
@@ -376,8 +385,11 @@ def test_other_numbers_of_molecules_and_presets_begin_the_runs_that_python_begin
     assert "10, 20, 40, 80, 160" in shown.note()
     choose("80")
     choose("21 %")  # there is a start with both
+    told = shown.page.locator("#notes .note", has_text="all others are as the page was written")
+    assert told.count() == 0
     assert "molecules=80 --set filling=21" in runs_as_python_with(molecules=80, filling=21)
     choose("5")  # with that seed there is only a start with the page's own numbers
+    told.wait_for(timeout=5_000)
     assert runs_as_python_with(molecules=40, seed=5).endswith("molecules=40 --seed 5")
     presets = shown.page.locator("#presets")
     presets.select_option(label="Boulders among pebbles")
@@ -446,7 +458,7 @@ def test_undo_takes_the_knob_back_and_reset_begins_the_same_run(lab):
     shown.ask(type="frames", value=40)
     assert shown.digest() != first
     shown.ask(type="undo")
-    slider = shown.page.locator("input[type=range][aria-label=temperature]")
+    slider = shown.page.locator("input[type=range][name=temperature]")
     shown.until(lambda: slider.input_value() == "25")
     shown.page.click("#reset")
     shown.ask(type="frames", value=20)
@@ -470,6 +482,48 @@ def test_the_page_plays_by_keyboard_and_pauses(lab):
     shown.until(lambda: float(shown.page.locator("body").get_attribute("data-time")) > 0.2)
     shown.page.keyboard.press("Space")
     shown.page.wait_for_selector("body[data-playing=false]")
+
+
+def test_a_knob_has_the_name_beside_it_owns_its_keys_and_keeps_its_value_when_its_field_is_emptied(lab):
+    shown = lab("temperature", {"molecules": 50})
+    page = shown.page
+    slider, field = (page.get_by_role(role, name="temperature of the walls") for role in ("slider", "spinbutton"))
+    slider.focus()
+    before = page.locator("body").get_attribute("data-time"), page.locator("#pace").inner_text()
+    for key, value in (("ArrowRight", "26"), ("ArrowUp", "27"), ("ArrowDown", "26"), ("ArrowLeft", "25")):
+        page.keyboard.press(key)
+        assert (slider.input_value(), field.input_value()) == (value, value), key
+    assert (page.locator("body").get_attribute("data-time"), page.locator("#pace").inner_text()) == before
+    field.fill("")
+    field.press("Tab")
+    assert field.input_value() == "25"
+    assert shown.note().startswith("i\ntemperature of the walls: type a number.")
+    assert {page.locator(name).get_attribute("aria-live") for name in ("#time", "#vitals")} == {"off"}
+    page.keyboard.press("?")
+    keys = page.locator("#sheet").inner_text()
+    assert "Shift" not in keys
+    assert "←" not in keys
+    assert "graph" not in keys
+    assert "by kind" not in keys  # there is one kind of molecule
+    page.keyboard.press("Escape")
+
+
+def test_a_saved_table_names_its_units_and_the_commands_of_a_run_that_went_on_for_longer(lab, tmp_path, monkeypatch):
+    shown = lab("temperature", {"molecules": 50, "duration": "2 ns"})
+    prepared = prepare("temperature", {"molecules": 50, "duration": "2 ns"})
+    frames = build(prepared).frames
+    shown.ask(type="frames", value=frames + 3)
+    about, table = shown.table()
+    assert about[2] == "# repeats this run"
+    assert "elapsed_time [ns], air_temperature [K], air_pressure [Pa], collision_count [1]" in about[3]
+    monkeypatch.chdir(tmp_path)
+    for line in about[:2]:
+        program, *words = shlex.split(line[2:])
+        assert program == "atmosbox"
+        assert typed(*words).exit_code == 0
+    longer = read("longer.nc")
+    assert longer.sizes["elapsed_time"] == 2 * frames
+    np.testing.assert_array_equal(longer.collision_count[: frames + 3], table["collision_count"])
 
 
 def test_a_box_that_runs_for_long_takes_no_more_memory(lab):

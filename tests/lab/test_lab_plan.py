@@ -5,8 +5,12 @@ import shlex
 import numpy as np
 import pytest
 
+from atmosbox import scenarios
 from atmosbox.lab.lab_file import lab_text
 from atmosbox.lab.lab_plan import lab_plan
+from atmosbox.lab.lab_start import lab_starts
+from atmosbox.live import Session
+from atmosbox.live.lesson import lesson_of
 from atmosbox.scene.instruments import MOMENTS
 from atmosbox.simulation.preparation import prepare
 
@@ -57,6 +61,30 @@ def test_theory_that_changes_with_time_goes_on_as_theory_does():
     np.testing.assert_allclose(decay, np.exp(-time), rtol=61 * 5e-7)
     assert time[-1] == pytest.approx(20.0 * prepared.settings.duration)
     assert {f"left_gas_share_{name}_theory" for name in MOMENTS} <= set(rest["curves"])
+
+
+def met_in(scene, values):
+    """Return which challenges of a scene are met in a minute at the usual pace, from a start with these settings."""
+    session = Session(prepare(scene, values))
+    session.obey({"type": "play"})
+    last = 60.0 * session.experiment.rate
+    while not session.finished and session.experiment.now < last:
+        session.run(5.0)
+    found, met = session.experiment.measured(0), set()
+    for challenge in session.lesson.challenges:
+        near = [np.abs(found[goal["name"]].values - goal["target"]) <= goal["within"] for goal in challenge["reach"]]
+        met |= {challenge["ask"]} if np.all(near, axis=0).any() else set()
+    return met
+
+
+@pytest.mark.parametrize("scene", [name for name in scenarios.names() if lesson_of(scenarios.load(name)).challenges])
+def test_each_challenge_is_met_from_a_start_that_the_page_offers_and_not_by_waiting(scene):
+    lesson = lesson_of(scenarios.load(scene))
+    small = {"molecules": 1000, "ascent": 800}
+    offered = {start.key for start in lab_starts(prepare(scene, {"molecules": 100, "ascent": 50}), 1_500_000)[0]}
+    assert not met_in(scene, small)
+    met = [met_in(scene, small | dict(preset.values)) for preset in lesson.presets if preset.title in offered]
+    assert set().union(*met) == {challenge["ask"] for challenge in lesson.challenges}
 
 
 @pytest.mark.parametrize(

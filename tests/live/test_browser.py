@@ -70,7 +70,7 @@ def test_moving_the_slider_makes_the_measured_temperature_follow_and_the_recordi
     page.click("#record")
     page.click("#play")
     page.wait_for_selector("body[data-playing=true]")
-    slider = page.locator("input[type=range][aria-label=temperature]")
+    slider = page.locator("input[type=range][name=temperature]")
     assert slider.input_value() == "25"
     for pace in ("2×", "4×", "8×", "16×"):
         page.click("#faster")
@@ -112,7 +112,7 @@ def test_the_page_opens_playing_unless_the_reader_wants_nothing_to_move(visit):
 def test_a_knob_of_a_box_that_rests_acts_at_once_and_the_words_follow_it(visit):
     page = visit("temperature", {"molecules": 100}, reduced_motion="reduce")
     assert "walls at 25.0 °C" in page.locator("#caption").inner_text()
-    slider = page.locator("input[type=range][aria-label=temperature]")
+    slider = page.locator("input[type=range][name=temperature]")
     slider.fill("400")
     slider.dispatch_event("change")
     page.locator("#caption", has_text="walls at 400 °C").wait_for(timeout=2000)
@@ -136,7 +136,7 @@ def test_walls_and_pool_of_a_box_that_plays_are_changed_without_a_new_start(visi
     page = visit(scene, settings)
     page.wait_for_selector("body[data-playing=true]")
     play_to(page, 0.02)
-    slider = page.locator(f"input[type=range][aria-label='{knob}']")
+    slider = page.locator(f"input[type=range][name='{knob}']")
     slider.fill(value)
     slider.dispatch_event("change")
     page.locator("#caption", has_text=words).wait_for(timeout=2000)
@@ -146,13 +146,13 @@ def test_walls_and_pool_of_a_box_that_plays_are_changed_without_a_new_start(visi
 
 
 def test_a_challenge_is_judged_by_what_has_been_measured(visit):
-    page = visit("lifting-dry", {"molecules": 1000, "ascent": 400, "temperature": 27.3}, ahead=0.9)
+    page = visit("lifting-dry", {"molecules": 1000, "ascent": 400, "temperature": 44.8}, ahead=0.9)
     page.click("text=Challenge 1")
     for pace in ("2×", "4×", "8×", "16×"):
         page.click("#faster")
         page.locator("#pace", has_text=pace).wait_for()
     page.locator(".challenge.reached").wait_for(timeout=20_000)
-    assert re.search(r"Reached: 30\d hPa, −(59|60)\.\d °C\.", page.locator(".verdict").inner_text())
+    assert re.search(r"Reached: 30\d hPa, −(47|48)\.\d °C\.", page.locator(".verdict").inner_text())
 
 
 def test_what_is_measured_can_be_heard(visit):

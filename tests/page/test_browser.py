@@ -11,7 +11,7 @@ from atmosbox.page import live_page
 from atmosbox.page.document import _text, words
 from atmosbox.page.saved_run import pages
 from atmosbox.plot.curve import curve
-from atmosbox.scene.panels import from_json
+from atmosbox.scene.panels import Line, Panel, from_json, to_json
 
 PHONE = (390, 844)
 
@@ -248,7 +248,11 @@ def test_the_list_of_keys_opens_and_closes(opened):
 
 
 def test_the_page_draws_the_same_numbers_as_the_figure_of_the_run(browser, run):
-    dataset = run()
+    unsure = np.array([np.nan, 70.0, 70.0] + [5.0] * 17)  # of about 150 K
+    dataset = run(air_temperature_se=unsure)
+    line = Line("air_temperature", "air_pressure", "air", error="air_temperature_se")
+    known = Panel("profile", "Known", (line,), x_unit="K", y_unit="hPa")
+    dataset.attrs["atmosbox_panels"] = to_json((*from_json(dataset.attrs["atmosbox_panels"]), known))
     (shown,) = pages([dataset])
     context = browser.new_context()
     page = context.new_page()
@@ -278,7 +282,8 @@ def test_the_page_draws_the_same_numbers_as_the_figure_of_the_run(browser, run):
             if expected.error is not None:
                 np.testing.assert_allclose(found["error"], expected.error, rtol=2e-5)
             compared += 1
-    assert compared == 3
+    assert compared == 4
+    assert np.isnan(found["x"]).tolist() == [True] * 3 + [False] * 17
 
 
 CONTROLS = [

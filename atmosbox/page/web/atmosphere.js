@@ -3,8 +3,6 @@
 import { curveColour, look, theme } from "./colour.js";
 import { word } from "./words.js";
 
-const CLOUD = 2e-4; // liquid per dry air above which a cloud is drawn [kg/kg], as in a thin cumulus
-const CLUSTER = 4; // this many molecules of liquid, or fewer, are no cloud: air of 80 % humidity has as many by chance
 const GAP = 0.07; // height of the parcel above the mountains in the picture, in heights of the picture
 const PUFFS = 9; // number of puffs across the width of a cloud
 const COLOURS = {
@@ -19,10 +17,10 @@ const FEW = 50;
 export function wayOf(panel, numbers) {
   const time = numbers.get("elapsed_time"), height = numbers.get("parcel_height");
   if (!time?.length || !height?.length) return [];
-  const [temperature, pressure, liquid, rain, humid, base, vapour, condensed] = panel.along.map((name) => numbers.get(name) ?? []);
+  const [temperature, pressure, liquid, haze, rain, humid, base, vapour] = panel.along.map((name) => numbers.get(name) ?? []);
   const humidity = humid.map((share, frame) => (vapour[frame] < FEW * share ? NaN : share));
   const y = height.map((value) => (value === null ? NaN : value / 1000));
-  return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, rain, humidity, condensed, base: base[0] ?? Infinity } }];
+  return [{ label: panel.lines[0].label, role: "data", index: 0, error: null, x: time, y, way: { temperature, pressure, liquid, haze, rain, humidity, base: base[0] ?? Infinity } }];
 }
 
 // Draw the paths of all runs up to a time into a box of the canvas; `up` converts a height to a pixel.
@@ -51,9 +49,11 @@ function placed({ x, y, way }, number, runs, time, box) {
   const now = time === null ? x.length - 1 : Math.max(0, x.findLastIndex((each) => each <= time));
   const across = (place) => (crosses
     ? box.left + box.width * (0.05 + 0.9 * (x[place] - x[0]) / span) : box.left + wide * (number + 0.3));
-  // liquid below the measured cloud base is not a cloud but single clusters of molecules
-  const cloudy = (place) => (way.liquid[place] ?? 0) > CLOUD && !(way.condensed[place] <= CLUSTER) && !(way.pressure[place] > way.base);
-  return { y, ...way, crosses, across, cloudy, now, wide };
+  const cloudy = (place) => way.liquid[place] > way.haze[place]; // more liquid than chance puts together without a cloud
+  const seen = y.findIndex((_, place) => place <= now && cloudy(place));
+  // a cloud begins where the run has measured its base, or where liquid was first seen to be one
+  const base = seen < 0 ? null : y[way.base <= Math.max(...way.pressure) ? way.pressure.findIndex((value) => value <= way.base) : seen];
+  return { y, ...way, crosses, across, cloudy, now, wide, base };
 }
 
 function drawGround(context, box, { y, crosses, across }, up, colours) {
@@ -69,27 +69,26 @@ function drawGround(context, box, { y, crosses, across }, up, colours) {
 }
 
 // Draw first the rims of all puffs, then their insides, so that a cloud has one outline.
-function drawCloud(context, box, { y, now, liquid, cloudy, crosses, across, wide }, up, unit, colours) {
+function drawCloud(context, box, { y, now, liquid, cloudy, crosses, across, wide, base }, up, unit, colours) {
   const places = Array.from({ length: now + 1 }, (_, place) => place).filter(cloudy);
-  if (!places.length) return;
+  if (!places.length || (!crosses && y[now] <= base)) return;
   const puffs = [];
   context.save();
   if (crosses) {
     const most = Math.max(...places.map((place) => liquid[place]));
     for (const place of places) puffs.push([across(place), up(y[place]), 13 * unit * Math.sqrt(liquid[place] / most)]);
   } else {
-    const clear = y.findLastIndex((_, place) => place <= now && !cloudy(place));
-    const base = up(y[Math.min(clear + 1, now)]), top = up(y[now]);
-    const rows = Math.max(2, Math.round((base - top) / (9 * unit)));
+    const low = up(base), top = up(y[now]);
+    const rows = Math.max(2, Math.round((low - top) / (9 * unit)));
     for (let row = 0; row < rows; row += 1) {
       for (let column = 0; column < PUFFS; column += 1) {
         const jitter = Math.abs(Math.sin(12.9898 * row + 78.233 * column) * 43758.5453) % 1; // the same in every picture
         const half = wide * (0.24 - 0.08 * row / rows) * (2 * column / (PUFFS - 1) - 1);
-        puffs.push([across(now) + half, base + (top - base) * row / (rows - 1), (9 + 6 * jitter) * unit]);
+        puffs.push([across(now) + half, low + (top - low) * row / (rows - 1), (9 + 6 * jitter) * unit]);
       }
     }
     context.beginPath();
-    context.rect(box.left, box.top, box.width, base - box.top);
+    context.rect(box.left, box.top, box.width, low - box.top);
     context.clip();
   }
   for (const [colour, wider] of [[colours.rim, 1.5 * unit], [colours.cloud, 0]]) {
@@ -99,7 +98,7 @@ function drawCloud(context, box, { y, now, liquid, cloudy, crosses, across, wide
   context.restore();
 }
 
-function drawRain(context, box, { y, now, rain, cloudy, crosses, across, wide }, up, unit) {
+function drawRain(context, box, { y, now, rain, crosses, across, wide, base }, up, unit) {
   const last = rain.at(-1) ?? 0;
   if (!(rain[now] > 0)) return;
   context.strokeStyle = look().liquid;
@@ -112,10 +111,10 @@ function drawRain(context, box, { y, now, rain, cloudy, crosses, across, wide },
       context.lineTo(across(place) - 3 * unit, up(y[place]) + GAP * box.height);
     }
   } else {
-    const base = up(y[Math.min(y.findLastIndex((_, place) => place <= now && !cloudy(place)) + 1, now)]);
+    const high = up(base === null ? y[now] : Math.min(base, y[now]));
     for (let streak = -4; streak <= 4; streak += 1) {
       const x = across(now) + 0.05 * streak * wide;
-      context.moveTo(x, base);
+      context.moveTo(x, high);
       context.lineTo(x - 3 * unit, up(0));
     }
   }

@@ -11,9 +11,9 @@ const brief = (number) => Number(Number(number).toPrecision(5));
 const make = (kind, fields = {}) => Object.assign(document.createElement(kind), fields);
 
 export class Controls {
-  // `set(name, value)` is called when a control is changed.
-  constructor(parent, set) {
-    Object.assign(this, { parent, set, shown: new Map() });
+  // `set(name, value)` is called when a control is changed, `tell(text)` when what was typed is no number.
+  constructor(parent, set, tell) {
+    Object.assign(this, { parent, set, tell, shown: new Map() });
   }
 
   // Show the values in force again, because a typed value was refused.
@@ -57,23 +57,29 @@ export class Controls {
     return line;
   }
 
-  #number(line, { name, low, high, step, value, unit, restarts }) {
+  #number(line, { name, label, low, high, step, value, unit, restarts }) {
     const bounded = Number.isFinite(low) && Number.isFinite(high);
     const ratios = bounded && low > 0 && high / low > WIDE;
     const place = (number) => (ratios ? Math.log(number) : number);
     const box = make("input", { type: "number", step: "any", value: brief(value) });
+    box.setAttribute("aria-label", phrase(label));
     if (bounded) Object.assign(box, { min: low, max: high });
     box.addEventListener("keydown", ({ key }) => key === "Enter" && box.blur()); // so that keys control the player again
     const send = (number) => Number.isFinite(number) && this.set(name, number);
-    const slider = make("input", { type: "range", step: ratios ? "any" : step ?? "any" });
+    const slider = make("input", { type: "range", name, step: ratios ? "any" : step ?? "any" });
     box.addEventListener("change", () => {
+      if (!Number.isFinite(box.valueAsNumber)) {
+        box.value = brief(this.told.find((each) => each.name === name).value);
+        this.tell(word("no_number", { name: phrase(label) }));
+        return;
+      }
       slider.value = place(box.valueAsNumber);
       send(box.valueAsNumber);
     });
     if (bounded) {
       Object.assign(slider, { min: place(low), max: place(high) });
       slider.value = place(value);
-      slider.setAttribute("aria-label", name);
+      slider.setAttribute("aria-label", phrase(label));
       let waiting = null;
       const moved = () => Number((ratios ? Math.exp(slider.valueAsNumber) : slider.valueAsNumber).toPrecision(ratios ? 3 : 6));
       slider.addEventListener("input", () => {

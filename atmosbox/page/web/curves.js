@@ -77,6 +77,12 @@ function curveOf(panel, line, numbers) {
     else y = y.map((value, place) => value - base[place]);
   }
   const spread = line.error && numbers.get(line.error.name);
+  if (line.worst && spread?.some(Number.isFinite)) { // a temperature that is hardly known is not drawn
+    const values = panel.across ? across : up, draw = panel.across ? x : y;
+    values.forEach((value, place) => {
+      if (spread[place] === null || !(spread[place] <= line.worst * value)) draw[place] = NaN;
+    });
+  }
   const error = spread?.length ? along(shown(spread, line.error), count) : null;
   const timed = numbers.timed.has(line.x.name) || numbers.timed.has(line.y.name);
   const clean = (values, { log }) => (log ? values.map((value) => (value > 0 ? value : NaN)) : values);

@@ -4,7 +4,7 @@ import { word } from "./words.js";
 
 export const KEYS = [
   [word("space"), word("key_play")],
-  ["→  ←", word("key_step")],
+  ...(document.body.classList.contains("live") ? [["→", word("on")]] : [["→  ←", word("key_step")]]),
   ["↑  ↓", word("key_pace")],
   ["1 2 3 4", word("key_camera")],
   ["C", word("key_colour")],
@@ -21,8 +21,9 @@ export function listen(actions) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const typing = event.target.matches?.("input:not([type=range]), select, textarea");
     const pressing = event.target.matches?.("button") && (event.key === " " || event.key === "Enter");
+    const sliding = event.target.matches?.("input[type=range]") && /^(Arrow|Page|Home|End)/.test(event.key);
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (typing || pressing || !action || document.querySelector("dialog[open]")) return;
+    if (typing || sliding || pressing || !action || document.querySelector("dialog[open]")) return;
     event.preventDefault();
     action(event);
   });

@@ -50,7 +50,7 @@ class Box {
     machine.call("begin");
     machine.call("begin_averages_anew");
     Object.assign(this, { now: 0, led: false, frame: 0, sample: 1, since: 0, sequence: 0, finished: false, failed: false, turned: [], past: [], pictures: [],
-      trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
+      fastest: this.plan.fastest, trace: new Trace(), drawn: 0, measured: 0, stated: 0, fresh: false, arrays: null });
     this.knobs = Object.fromEntries(this.told.controls.map(({ name, value }) => [name, value]));
   }
 
@@ -168,9 +168,20 @@ class Box {
     }
   }
 
+  // Let the scale of speeds follow the temperature of gas and walls; it changes only if the box is too warm or too cold.
+  rescale() {
+    const { machine, plan: { scale } } = this, kelvin = [this.trace.rows.at(-1)?.air_temperature, ...this.walls()].filter(Number.isFinite);
+    if (!scale || !kelvin.length) return;
+    const wanted = scale.swift * Math.sqrt(Math.max(...kelvin)), power = 10 ** Math.floor(Math.log10(wanted));
+    if (!(wanted > this.fastest || wanted < scale.colder * this.fastest)) return;
+    this.fastest = Number((scale.round.find((step) => step * power >= wanted) * power).toPrecision(6));
+    machine.set("look", "2.highest", this.fastest / scale.unit);
+  }
+
   // Send a frame: see atmosbox/page/frame.py.
   look() {
     const { machine, plan } = this;
+    this.rescale();
     machine.call("look");
     const place = machine.array("sight.place"), colour = machine.array("sight.colour"), count = colour.length;
     const drops = machine.array("sight.drops").subarray(0, 4 * Number(machine.array("sight.many")[0]));
@@ -179,7 +190,7 @@ class Box {
     view.setFloat64(4, this.now * plan.time, true);
     machine.array("sight.length").forEach((side, axis) => view.setFloat32(12 + 4 * axis, side * plan.length, true));
     view.setUint32(24, count, true);
-    view.setFloat32(28, plan.fastest, true);
+    view.setFloat32(28, this.fastest, true);
     new Uint16Array(buffer, 32, 3 * count).set(place);
     new Uint8Array(buffer, 32 + 6 * count, count).set(colour);
     new Uint8Array(buffer, 32 + 7 * count, count).set(machine.array("sight.state"));
@@ -243,7 +254,8 @@ class Box {
   }
 
   // Begin anew with another setting that needs another box, such as the number of molecules. If the page does not hold
-  // the combination of this value with the present others, the others become those with which the page was written.
+  // the combination of this value with the present others, the others become those with which the page was written, and
+  // the reader is told so.
   async choose(name, value) {
     const { choices = [] } = this.told.controls.find((each) => each.name === name) ?? {};
     if (!choices.includes(value)) {
@@ -252,15 +264,19 @@ class Box {
     }
     const key = (values) => Object.entries({ ...values, [name]: value }).map((pair) => pair.join("=")).join(", ");
     const [here, written] = [key(this.plan.start), key(this.starts.values)];
+    const kept = this.starts.has(here) && !this.preset;
+    this.preset = null;
     this.take(await this.starts.machine(this.starts.has(here) ? here : written));
     this.again();
+    if (!kept) say({ type: "note", level: "info", text: "This page has no box with these settings together: all others are as the page was written." });
   }
 
   // Begin a preset; the first of the list is the box for which the page was written.
   async try(number) {
     const titles = this.told.lesson.presets;
     if (!(number in titles)) return;
-    this.take(await this.starts.machine(number === 0 ? this.starts.first : titles[number]));
+    this.preset = number === 0 ? null : titles[number];
+    this.take(await this.starts.machine(this.preset ?? this.starts.first));
     this.again();
   }
 
@@ -326,11 +342,14 @@ class Box {
   }
 
   save() {
-    const { rows, every } = this.trace, command = this.command(), names = Object.keys(rows[0] ?? {});
-    const about = this.turned.length ? [`# ${command}`, "# begins like this run; then these changes by hand", ...this.turned]
-      : [`# ${command}`, "# repeats this run"];
+    const { rows, every } = this.trace, { units, frames } = this.plan, command = this.command();
+    const names = Object.keys(rows[0] ?? {}).filter((name) => name in units);
+    const times = Math.ceil(this.frame / frames); // a run that goes on for longer takes two commands
+    const commands = times > 1 ? [`# ${command} --keep-state --out run.nc`, `# atmosbox run --resume run.nc --extend ${times} --out longer.nc`] : [`# ${command}`];
+    const about = this.turned.length ? [...commands, "# begins like this run; then these changes by hand", ...this.turned]
+      : [...commands, "# repeats this run"];
     if (every > 1) about.push(`# every ${every}th frame`);
-    const lines = [...about, "# all in SI units; elapsed_time in the unit of the page", names.join(","),
+    const lines = [...about, `# units: ${names.map((name) => `${name} [${units[name]}]`).join(", ")}`, names.join(","),
       ...rows.map((row) => names.map((name) => row[name]).join(","))];
     say({ type: "file", name: `${this.told.stage.scene}-lab.csv`, text: `${lines.join("\n")}\n` });
   }

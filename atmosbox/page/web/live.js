@@ -28,7 +28,8 @@ class Live {
     this.pulse = new Pulse(find("transport"), (told) => this.link.say(told), offers);
     this.lesson = new Lesson(find("lesson"), (told) => this.link.say(told));
     this.gauges = new Gauges(find("gauges"), find("voice"));
-    this.controls = new Controls(find("controls"), (name, value) => this.link.say({ type: "set", name, value }));
+    this.controls = new Controls(find("controls"), (name, value) => this.link.say({ type: "set", name, value }),
+      (text) => note(find("notes"), { text }));
     this.beat = { arrived: 0, interval: 50 };
     this.stale = false;
   }

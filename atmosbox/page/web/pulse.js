@@ -15,7 +15,7 @@ export class Pulse {
       <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
       <span class="group"><button type="button" id="slower" title="${word("slower_title")}" aria-label="${word("slower")}">−</button>
       <output id="pace"></output><button type="button" id="faster" title="${word("faster_title")}" aria-label="${word("faster")}">+</button></span>
-      <output id="time"></output><output id="vitals"></output>
+      <output id="time" aria-live="off"></output><output id="vitals" aria-live="off"></output>
       <span class="group"><button type="button" id="reset" title="${word("again_title")}">${word("again")}</button></span>
       <label class="seed" title="${word("seed_title")}">${word("seed")} <input type="number" id="seed" min="0" step="1" inputmode="numeric"></label>
       <span class="group"><input type="text" id="file" aria-label="${word("file")}" spellcheck="false"><button type="button" id="record"></button></span>`;

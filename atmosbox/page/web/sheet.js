@@ -95,10 +95,10 @@ export class Sheet {
   }
 
   help() {
-    const dialog = find("sheet");
-    dialog.innerHTML = `<h2>${word("keys")}</h2><dl></dl><p>${word("mouse")}</p><p>${word("libraries")}</p>`
+    const dialog = find("sheet"), seeks = !document.body.classList.contains("live");
+    dialog.innerHTML = `<h2>${word("keys")}</h2><dl></dl><p>${word("mouse")}${seeks ? ` ${word("mouse_time")}` : ""}</p><p>${word("libraries")}</p>`
       + `<form method='dialog'><button>${word("close")}</button></form>`;
-    for (const [key, meaning] of KEYS) {
+    for (const [key, meaning] of KEYS.filter(([key]) => key !== "C" || this.modes.length > 1)) {
       dialog.querySelector("dl").append(
         Object.assign(document.createElement("dt"), { textContent: key }),
         Object.assign(document.createElement("dd"), { textContent: meaning }),

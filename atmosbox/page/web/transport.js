@@ -15,7 +15,7 @@ export class Transport {
       <button type="button" id="play" class="main" title="${word("play_title")}"></button>
       <button type="button" id="on" title="${word("on_title")}" aria-label="${word("on")}">${icon("on")}</button>
       <input type="range" id="line" min="0" max="1000" step="any" aria-label="${word("time")}">
-      <output id="time"></output>
+      <output id="time" aria-live="off"></output>
       <span class="group"><button type="button" id="slower" title="${word("slower_title")}" aria-label="${word("slower")}">−</button>
       <output id="pace"></output><button type="button" id="faster" title="${word("faster_title")}" aria-label="${word("faster")}">+</button></span>`;
     this.part = (name) => parent.querySelector(`#${name}`);

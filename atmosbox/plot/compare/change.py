@@ -16,7 +16,7 @@ from atmosbox.scene.quantity import phrase
 
 __all__ = ["Change", "Naming", "naming"]
 
-_MADE_BY = ("scene", "engine", "version")
+_MADE_BY = ("engine", "version")
 _NOT_SAID = "-"
 _MOST_SAID = 2  # greatest number of changes in a label; if there are more, runs are labelled by their files
 
@@ -55,7 +55,7 @@ class Naming:
     scenes : tuple of str
         The scene of each run.
     changes : tuple of Change
-        What differs, the scene first.
+        What differs; of runs of unlike scenes, the scene alone, because their settings mean different things.
     labels : tuple of str
         A label for each run, all different.
     same : bool
@@ -74,10 +74,11 @@ class Naming:
 
     @property
     def title(self) -> str:
-        """What differs apart from the scenes, in one line."""
-        said = ", ".join(str(change) for change in self.changes if change.name != "scene")
+        """What differs, in one line."""
+        if len(set(self.scenes)) > 1:
+            return "different scenes"
         if self.changes:
-            return said or "with the same settings"
+            return ", ".join(map(str, self.changes))
         return "the same run" if self.same else "the same settings, different results"
 
 
@@ -89,12 +90,12 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
     datasets : sequence of xarray.Dataset
         The runs.
     files : sequence of str
-        Names of their files, which label runs where nothing or too much differs.
+        Names of their files, which label runs of unlike scenes, and runs where nothing or too much differs.
 
     Returns
     -------
     Naming
-        The labels and changes. Of runs of different scenes, only the settings that all of them have are compared.
+        The labels and changes.
 
     Raises
     ------
@@ -117,11 +118,11 @@ def naming(datasets: Sequence[xr.Dataset], files: Sequence[str]) -> Naming:
     scenes = tuple(str(each.get("scene", "")) for each in made)
     settings = [each.get("settings") for each in made]
     held: list[Mapping[str, Any]] = [each if isinstance(each, dict) else {} for each in settings]
-    known = _parameters(scenes[0]) if len(set(scenes)) == 1 else {}
-    names = list(dict.fromkeys(name for each in held for name in each))
     if len(set(scenes)) > 1:
-        known = {name: p for scene in reversed(scenes) for name, p in _parameters(scene).items()}
-        names = [name for name in names if all(name in each for each in held)]
+        unlike = (Change("scene", scenes),)
+        return Naming(scenes, unlike, _labels(unlike, files), same=False)
+    known = _parameters(scenes[0])
+    names = list(dict.fromkeys(name for each in held for name in each))
     changes = [
         Change(name, tuple(str(each.get(name, _NOT_SAID)) for each in made))
         for name in _MADE_BY
@@ -158,18 +159,16 @@ def _value(value: object, parameter: Parameter | None) -> str:
 
 def _labels(changes: Sequence[Change], files: Sequence[str]) -> tuple[str, ...]:
     """Return a label for each run; labels that would be equal are made different by the name of the file."""
-    first = next((change for change in changes if change.name == "scene"), None)
-    if first is not None and len(set(first.values)) == len(files):
-        made = list(first.values)
-    elif not changes or (len(changes) > _MOST_SAID and len(set(files)) == len(files)):
+    unlike = any(change.name == "scene" for change in changes)
+    if unlike or not changes or (len(changes) > _MOST_SAID and len(set(files)) == len(files)):
         made = list(files)
-    elif len(changes) == 1 and (changes[0].name in ("scene", "engine") or _says_what(changes[0])):
+    elif len(changes) == 1 and (changes[0].name == "engine" or _says_what(changes[0])):
         made = list(changes[0].values)
     else:
         made = [
             ", ".join(
                 change.values[run]
-                if change.name in ("scene", "engine")
+                if change.name == "engine"
                 else f"{change.name.replace('_', ' ')} {change.values[run]}"
                 for change in changes
             )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from atmosbox import theory as law
 from atmosbox.scene.ascent import finite_size
 from atmosbox.scene.ascent.fluctuation import along_frames, temperature_covariance, vapour_covariance
-from atmosbox.scene.ascent.near_equilibrium import Cloud
+from atmosbox.scene.ascent.near_equilibrium import Cloud, cloud_along
 from atmosbox.scene.ascent.way import MoistAscent
 from atmosbox.scene.headline import Headline
 from atmosbox.scene.panels import Line, Panel
@@ -116,11 +116,12 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
     -------
     dict
         Arrays (frame,) by the names of the variables: temperature [K], mixing ratios [kg kg-1], relative humidity [1].
+        Liquid above ``largest_haze_mixing_ratio`` is a cloud.
     """
     pressure = dataset.parcel_pressure.values
+    middle = (np.arange(len(pressure)) + 0.5) / frames
     if ascent.rains:
         shares, along = ascent.planned
-        middle = (np.arange(len(pressure)) + 0.5) / frames
         planned = np.exp(np.interp(middle, shares, np.log(ascent.route)))
         if np.allclose(planned, dataset.environment_pressure.values, rtol=1e-6):
             path = law.ParcelPath(*(np.interp(middle, shares, each) for each in along))
@@ -130,10 +131,12 @@ def lifted_theory(dataset: xr.Dataset, ascent: MoistAscent, frames: int) -> dict
         path = ascent.path(pressure, pressure)
     exponent = float(law.moist_air_poisson_exponent(ascent.total_water, ascent.nuclei_heat))
     vapour_pressure = law.vapor_pressure(pressure, path.vapor)
+    cloud = cloud_along(ascent, pressure, middle, path=path)
     found = {
         "dry_air_adiabat_temperature": ascent.temperature * (pressure / ascent.pressure) ** exponent,
         "cloud_liquid_water_mixing_ratio_theory": path.liquid,
         "humidity_mixing_ratio_theory": path.vapor,
+        "largest_haze_mixing_ratio": law.WATER_MASS_RATIO * cloud.haze / cloud.air,
         "relative_humidity_theory": vapour_pressure / law.saturation_vapor_pressure(path.temperature),
     }
     return found | ({"rain_mixing_ratio_theory": path.rain} if "rain_mixing_ratio" in dataset else {})
@@ -200,7 +203,7 @@ def _cloud_base(
     scatter = float(np.sqrt(np.linalg.inv(cloud.resists)[:, 0, 0].max())) * unit
     least = max(LEAST, CLUSTERED * scatter / ascent.total_water)
     base = law.measured_cloud_base(dataset.parcel_pressure.values, vapour, condensed, noise, least)
-    if base is None:
+    if base is None or base.pressure > ascent.pressure:  # noise can put it below the ground
         return []
     # measure theory's parcel in the same way, with its known errors, in frames of the same width
     path = ascent.planned[1]

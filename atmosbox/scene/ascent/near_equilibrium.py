@@ -79,6 +79,8 @@ class Cloud(NamedTuple):
     """Molecules of liquid according to theory, which leaves out clusters in clear air."""
     clustered: Array
     """Mean number of liquid molecules that fluctuations add to ``liquid``."""
+    haze: Array
+    """Molecules of liquid that air without a cloud holds at most; what is more is a cloud. See `cloud_along`."""
     resists: Array
     yields: Array
     warms: Array
@@ -300,6 +302,13 @@ def cloud_along(
     joins; each molecule lowers the next factor, because it leaves the vapour and warms the air. In clear air, where n
     cannot be negative, the mean is nearly RH / (1 - RH), and G is the larger the smaller the variance is there.
 
+    **What is a cloud.** Air without a cloud holds the most liquid by chance, called haze here, where it is saturated:
+    n >= 0 then has a probability proportional to :math:`e^{-(n - 1/2)^2 / 2 s^2}`, where :math:`s^2` is the variance of
+    the liquid in a cloud. A cloud is liquid above the mean of this haze plus three of its standard deviations,
+
+    .. math:: n > \langle n \rangle + 3 \sigma \approx \left[\sqrt{2/\pi} + 3 \sqrt{1 - 2/\pi}\right] s
+              \approx 2.6 \, s .
+
     Parameters
     ----------
     ascent
@@ -323,6 +332,11 @@ def cloud_along(
     >>> cloud = cloud_along(ascent, np.array([7.05e4, 7.0e4, 6.95e4]), np.array([0.25, 0.255, 0.26]))
     >>> round(float(np.sqrt(np.linalg.inv(cloud.resists)[1, 0, 0])))
     12
+
+    Liquid is a cloud if it is more than chance puts together, some 32 molecules there:
+
+    >>> round(float(cloud.haze[1]))
+    32
     """
     path = path or ascent.path(pressure, share)
     t, moment = path.temperature, share * ascent.length
@@ -347,6 +361,7 @@ def cloud_along(
     mode = 0.5 + np.where(liquid > 0.0, liquid, np.log(humidity) * free)
     mean, variance = _counted(mode, np.sqrt(free))
     clustered = mean - liquid
+    haze, scatter = _counted(np.full_like(free, 0.5), np.sqrt(free))
     liquid_heat = ascent.nuclei + capacity * (liquid + clustered)
     resists = stiffness(liquid_heat)
     resists[:, 0, 0] += np.maximum(1.0 / np.maximum(variance, 1e-9) - 1.0 / free, 0.0)
@@ -373,6 +388,7 @@ def cloud_along(
         vapour=vapour,
         liquid=liquid,
         clustered=np.asarray(clustered),
+        haze=np.asarray(haze + 3.0 * np.sqrt(scatter)),
         resists=resists,
         yields=yields,
         warms=warms,

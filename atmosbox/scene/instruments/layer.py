@@ -47,7 +47,7 @@ class Layers:
         self._memory = memory
         self._energy: list[float] = []
         self._sum = np.zeros((3, number))
-        self._looks = 0
+        self._looks = self._samples = 0
         self._virial = np.zeros(number)
         self._time = 0.0
         self._lasted = 0.0
@@ -76,7 +76,7 @@ class Layers:
         self._energy.append(sum(parcel.energy()))
         self._frames.append(np.stack([*(self._sum / max(self._looks, 1)), rate]))
         self._sum = np.zeros((3, self._number))
-        self._looks = 0
+        self._looks, self._samples = 0, self._looks
         self._virial = parcel.virial
         self._time = parcel.time
         self._height = float(parcel.length[2])
@@ -85,7 +85,10 @@ class Layers:
         self._dimensions = 2.0 if parcel.planar else 3.0
 
     def readings(self, scale: Scale, settle: int) -> Readings:
-        """Return the profiles with their standard errors, to first order in the deviations from the mean state."""
+        """Return the profiles with their standard errors, to first order in the deviations from the mean state.
+
+        A temperature of f squares of velocities scatters by sqrt(2 / f) of it even if all are independent.
+        """
         frames = np.array(self._frames[settle:])
         edges = np.linspace(0.0, self._height, self._number + 1) * scale.length
         out = Readings(height=0.5 * (edges[1:] + edges[:-1]), height_bnds=np.stack([edges[:-1], edges[1:]], axis=1))
@@ -111,6 +114,9 @@ class Layers:
                 mean, error = block_average(values, len(frames))
             else:
                 mean, error = average_beside(values, slow, self._memory / self._lasted, blocks)
+            if name == "layer_temperature":  # blocks cannot tell the error where hardly any molecule has been seen
+                counted = np.maximum(freedom.sum(axis=0) * self._samples, 1e-9)
+                error = np.maximum(error, mean * np.sqrt(2.0 / counted))
             out[name] = factor * mean
             out[f"{name}_se"] = factor * error
         return out

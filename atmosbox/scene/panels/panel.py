@@ -23,6 +23,7 @@ ATMOSPHERE_VARIABLES = (
     "parcel_temperature",
     "environment_pressure",
     "cloud_liquid_water_mixing_ratio",
+    "largest_haze_mixing_ratio",
     "rain_mixing_ratio",
     "relative_humidity",
     "cloud_base",
