@@ -425,6 +425,10 @@ def test_the_command_says_the_points_beside_theory(tmp_path, monkeypatch):
     assert "energy of a light disc over the mean" in done.stdout
     assert "next: atmosbox plot elastic-collisions-sweep.nc" in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
+    again = typed("elastic-collisions", "--vary", "molecules=10,20", "--set", "duration=2s", "--jobs", "1")
+    assert "2 of 2 runs are saved" in again.stderr
+    other = typed("elastic-collisions", "--vary", "molecules=10,30", "--set", "duration=2s", "--jobs", "1")
+    assert "file: elastic-collisions-sweep-2.nc" in other.stdout
     quiet = typed("elastic-collisions", "--vary", "molecules=10", "--set", "duration=2s", "--quiet", "--force")
     assert quiet.stdout == "elastic-collisions-sweep.nc\n"
     assert quiet.stderr == ""

@@ -20,7 +20,7 @@ from atmosbox.cli.option import (
     out_option,
     quiet_option,
 )
-from atmosbox.cli.output_name import chosen, for_scene, netcdf_name
+from atmosbox.cli.output_name import for_scene, netcdf_name, say_number
 from atmosbox.cli.terminal import prints_to_stderr, say, say_json, tell, width
 from atmosbox.errors import AtmosboxError, EngineError, PhysicsError, SettingError
 from atmosbox.text.progress import progress
@@ -79,8 +79,9 @@ def sweep(
     Every run is a file in a folder beside the one that joins them. A stopped sweep goes on where it was when the same
     command is typed again, and runs that are there are not repeated. `atmosbox plot` draws the joined file.
     """
+    from atmosbox.file.output_path import unused
     from atmosbox.scene.spelling import assignments
-    from atmosbox.sweep import SweepInterrupted, folder_of, plan
+    from atmosbox.sweep import SweepInterrupted, folder_of, is_taken, plan
     from atmosbox.sweep import sweep as run
 
     with prints_to_stderr():
@@ -93,7 +94,12 @@ def sweep(
             engine=engine,
             accuracy=accuracy,
         )
-    path = netcdf_name(chosen(out, for_scene(scene, "-sweep.nc"), force=force, quiet=quiet))
+    default = for_scene(scene, "-sweep.nc")
+    path = netcdf_name(default if out is None else Path(out))
+    if out is None and not force:
+        path = unused(default, lambda each: is_taken(each, grid))
+        if not quiet:
+            say_number(default, path)
     processes = None if jobs is None else _whole("jobs", jobs, 1, 4096)
     if dry_run:
         _describe(grid, path, as_json=as_json, quiet=quiet)

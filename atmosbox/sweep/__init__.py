@@ -8,7 +8,7 @@ import sys
 
 from atmosbox.callable_room import CallableRoom
 from atmosbox.sweep.axis import Axis, parse_vary
-from atmosbox.sweep.conduct import SweepInterrupted, Swept, folder_of, sweep
+from atmosbox.sweep.conduct import SweepInterrupted, Swept, folder_of, is_taken, sweep
 from atmosbox.sweep.plan import Plan, member_seed, plan
 from atmosbox.sweep.result import FEWEST
 
@@ -19,6 +19,7 @@ __all__ = [
     "SweepInterrupted",
     "Swept",
     "folder_of",
+    "is_taken",
     "member_seed",
     "parse_vary",
     "plan",

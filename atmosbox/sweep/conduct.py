@@ -15,14 +15,14 @@ import xarray as xr
 from atmosbox.errors import FileError, SettingError, shown
 from atmosbox.file.checkpoint import Checkpoint
 from atmosbox.file.netcdf import read
-from atmosbox.file.output_path import part_path, write_whole
+from atmosbox.file.output_path import part_path, write_failure, write_whole
 from atmosbox.file.provenance import history_line
 from atmosbox.simulation.recording import uninterrupted
 from atmosbox.sweep import workers
 from atmosbox.sweep.plan import Plan
 from atmosbox.sweep.result import join, row
 
-__all__ = ["SweepInterrupted", "Swept", "folder_of", "sweep"]
+__all__ = ["SweepInterrupted", "Swept", "folder_of", "is_taken", "sweep"]
 
 REQUEST = "sweep.json"
 """The file in the folder of a sweep that tells which sweep it is."""
@@ -199,6 +199,27 @@ def _folder(plan: Plan, out: str | os.PathLike[str] | None, force: bool) -> Iter
         checkpoint.release()
 
 
+def is_taken(path: Path, plan: Plan) -> bool:
+    """Return whether a file, or the folder of its runs, holds anything else than this sweep."""
+    folder = folder_of(path)
+    return (path.exists() or folder.exists()) and _request_in(folder) != _plain(plan.request())
+
+
+def _plain(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a request as it comes out of a file."""
+    made: dict[str, Any] = json.loads(json.dumps(dict(request)))
+    return made
+
+
+def _request_in(folder: Path) -> dict[str, Any] | None:
+    """Return what determines the runs in a folder; None if it is not the folder of a sweep."""
+    try:
+        made: dict[str, Any] = json.loads((folder / REQUEST).read_bytes())
+    except (OSError, ValueError):
+        return None
+    return made
+
+
 def _take(folder: Path, request: Mapping[str, Any], force: bool) -> None:
     """Make the folder of a sweep, or go on with it if it is of the same sweep.
 
@@ -207,25 +228,23 @@ def _take(folder: Path, request: Mapping[str, Any], force: bool) -> None:
     FileError
         If it holds anything else; with `force`, the runs of another sweep are removed.
     """
-    file = folder / REQUEST
-    wanted = json.loads(json.dumps(dict(request)))
-    try:
-        folder.mkdir(exist_ok=True)
-        known = json.loads(file.read_bytes()) if file.exists() else None
-    except (OSError, ValueError) as error:
-        raise FileError(f"{folder} is in the way of the sweep's runs ({error}): move it, or give --out.") from error
+    wanted, known = _plain(request), _request_in(folder)
     if known == wanted:
         return
-    if known is None and any(folder.iterdir()):
+    if known is None and (os.path.lexists(folder) and not (folder.is_dir() and not any(folder.iterdir()))):
         raise FileError(f"{folder} holds other things than a sweep: move it, or name another file with --out.")
     if known is not None and not force:
         raise FileError(
             f"{folder} has the runs of another sweep, {_difference(known, wanted)}: name another file with --out, "
             "or add --force to replace them."
         )
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise write_failure(error, folder) from error
     for old in folder.glob("*.nc"):
         old.unlink()
-    write_whole(file, json.dumps(wanted, indent=1).encode())
+    write_whole(folder / REQUEST, json.dumps(wanted, indent=1).encode())
 
 
 def _difference(saved: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
