@@ -5,6 +5,7 @@ equations of state are in use, which differ by 0.1 % to 2 %; molecular dynamics 
 """
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from atmosbox import theory
 from atmosbox.engine import Periodic, Specular
 from atmosbox.engine.core.measure import temperature
 from atmosbox.scene.statistics import block_average, kolmogorov_smirnov_critical
+from atmosbox.simulation import runner
 from tests.oracle import kinetic_gas
 
 S, P = Specular(), Periodic()
@@ -139,3 +141,12 @@ def test_discs_of_no_size_press_as_points(gas):
     # each hits each wall at most once more or once less than its share
     assert (np.abs(force - np.sum(speed**2, axis=0) / side) <= np.sum(2.0 * speed, axis=0) / time).all()
     assert box.contacts == 0
+
+
+def test_the_energy_of_half_of_the_discs_scatters_as_their_card_says():
+    prepared = runner.prepare("elastic-collisions", {"duration": "300 s"})
+    (told,) = re.findall(r"scatters by (\d+) %", dict(runner.card(prepared).facts)["noise"])
+    data = runner.execute(prepared).dataset
+    late = data.kinetic_energy_light[400:] / (data.kinetic_energy[0] / 60.0)
+    # what one half has the other lacks: independent discs would scatter by 18 %
+    assert 100.0 * float(late.std()) == pytest.approx(float(told), rel=0.15)
